@@ -25,6 +25,9 @@ _MODEL_ERROR = 0.05
 """Standard error of the logarithm that the form of the law leaves: half of what powers of the
 disorder from 2 to 4 differ by between the measured amplitudes."""
 
+_NOTHING = 1.005
+"""Ratio below which a division by it shows in no digit."""
+
 _EXTRAPOLATION = 0.5
 """Relative standard error of what the law says beyond the measured energies."""
 
@@ -144,10 +147,9 @@ def front_excess(energy: float, size: float, rows: Sequence[ValidityRow] | None 
     logarithm = slope * energy
     reach = REACH * math.hypot(error * energy, grown * energy, beyond, _MODEL_ERROR)
     law = Estimate(logarithm, math.nan, logarithm - reach, logarithm + reach).each(math.exp)
-    sentence = (
-        f"A front has {law.value:.2f} ({law.low:.2f} to {law.high:.2f}) times the hysteresis that "
-        "boundary elements have at this e_el, and is divided by it here."
-    )
+    interval = f"{law.value:.2f} ({law.low:.2f} to {law.high:.2f})"
+    sentence = f"A front has {interval} times the hysteresis that boundary elements have at this "
+    sentence += "e_el" + (", and is divided by that." if law.value >= _NOTHING else ".")
     if grown or beyond:
         sentence += (
             f" Both were compared up to e_el/w_int = {strongest:.2g} and g = {largest:.2g}; here "

@@ -16,7 +16,12 @@ from crackfront.topography.density.bands import BandLimit
 from crackfront.topography.prediction.prediction import Prediction
 from crackfront.topography.prediction.remarks import Remark, Verdict, remark_lines, remark_text
 from crackfront.topography.prediction.surface_remarks import surface_remarks
-from crackfront.topography.prediction.texts import ENERGY, estimate_text, wavelengths_text
+from crackfront.topography.prediction.texts import (
+    ENERGY,
+    estimate_text,
+    part_of_energy,
+    wavelengths_text,
+)
 from crackfront.topography.spectrum.fit import Fit
 from crackfront.topography.spectrum.measures import MeasuredSurface
 
@@ -194,8 +199,9 @@ def _surface_lines(surface: MeasuredSurface) -> Iterator[str]:
         unsure = name == "roll_off" and not joint.fit.has_roll_off
         yield f"    {name:20}{estimate_text(units, found)}{', not resolved' if unsure else ''}"
     yield (
-        f"  {'missing':22}two more decades of short waves would add {shares.missing_short:.0%} "
-        f"to e_el; waves above {prefixed('m', joint.longest)} have {shares.continued_long:.0%}"
+        f"  {'missing':22}two more decades of short waves would add "
+        f"{part_of_energy(shares.missing_short)}; waves above {prefixed('m', joint.longest)} have "
+        f"{shares.continued_long:.0%}"
     )
     yield ""
     yield "Measures of the spectrum, and the scales of 80% of their mean squares"

@@ -17,13 +17,10 @@ from crackfront.data.written_units import prefixed
 from crackfront.topography.options import PredictionOptions
 from crackfront.topography.prediction.conditions import theory_verdict, zero_load_radius
 from crackfront.topography.prediction.remarks import Remark, Verdict, remark_text
-from crackfront.topography.prediction.surface_remarks import measure_next
+from crackfront.topography.prediction.surface_remarks import disagreements, measure_next
 from crackfront.topography.prediction.texts import ENERGY, estimate_text, wavelengths_text
 from crackfront.topography.prediction.works import Works, implied_work_of_adhesion, inverse, works
 from crackfront.topography.spectrum.measures import MeasuredSurface
-
-_MOST_RESERVATIONS = 2
-"""Reservations on a page, which names the most severe ones."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,16 +88,19 @@ def prediction_page(prediction: Prediction) -> str:
         rows.append(("w_int by pull-off", implied))
     rows += [
         ("e_el", f"{estimate_text(ENERGY, e_el)} = {relative:.3g} w_int"),
-        ("recorded of it", f"{prefixed(ENERGY, recorded.value)}; trusted waves from {waves}"),
+        ("as recorded", f"{prefixed(ENERGY, recorded.value)}; trusted waves from {waves}"),
     ]
-    reservations = prediction.verdict.of("undecided", "reservation")
+    apart = [*disagreements(surface)]
+    others = [one for one in prediction.verdict.of("undecided", "reservation") if one not in apart]
     return "\n".join(
         [
+            *map(remark_text, apart),
             *(f"{name:18}{text}" for name, text in rows),
             f"{prediction.verdict.heading}. {prediction.excess.sentence}",
             *map(remark_text, _repelled_remarks(prediction.w_appr)),
-            *map(remark_text, reservations[:_MOST_RESERVATIONS]),
+            *map(remark_text, others),
             remark_text(measure_next(surface)),
+            "Quasi-static: rate, viscoelasticity, ageing and the preload do not enter.",
             "Intervals hold 95%; --long says all.",
         ]
     )

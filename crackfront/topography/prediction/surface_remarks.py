@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Iterator
 
 import numpy as np
@@ -9,8 +10,9 @@ import numpy as np
 from crackfront.data.written_units import prefixed
 from crackfront.topography.density.bands import Scan
 from crackfront.topography.prediction.remarks import Remark
+from crackfront.topography.prediction.texts import part_of_energy
 from crackfront.topography.scan.instruments import is_doubtful
-from crackfront.topography.spectrum.joining import JointDensity, JointSpectrum
+from crackfront.topography.spectrum.joining import JointSpectrum
 from crackfront.topography.spectrum.measures import MeasuredSurface
 
 _MOST_ANISOTROPY = 1.25
@@ -25,8 +27,15 @@ _LEAST_MEASURED = 0.5
 _MOST_UNSETTLED = 0.0125
 """Largest standard error of the ends of intervals over their width, without a reservation."""
 
-_MOST_UNSURE = 0.5
-"""Largest relative distance of e_el to the upper end of its interval that needs no other scan."""
+_UNSURE, _NARROWER = 1.5, 1.1
+"""Factor within which e_el is known that needs no other scan, and that by which one must narrow."""
+
+_WAVES_OF_SIDE, _PIXELS_OF_WAVE, _OVERLAP = 2.0, 4.0, 2.0
+"""Longest waves in a side and pixels in the shortest wave that are trusted, and the ratio of waves
+over which another scan should overlap."""
+
+_LEFT_OUT = 0.1
+"""Part of e_el of the waves that are missing which a new scan may leave out."""
 
 _LEAST_UNEVEN = 0.02
 """Least relative standard error of e_el at which a note says that a surface is not Gaussian."""
@@ -102,23 +111,56 @@ def _treatments(one: Scan) -> Iterator[str]:
 
 
 def measure_next(surface: MeasuredSurface) -> Remark:
-    """Note on what another scan would change."""
-    shares, joint = surface.joint.shares, surface.joint
-    short, long = prefixed("m", joint.shortest), prefixed("m", joint.longest)
-    shorter = max(shares.missing_short, shares.continued - shares.continued_long)
-    unsure = surface.half_derivative.high / surface.half_derivative.value - 1
-    if max(shorter, shares.continued_long) < _MATTERS and unsure < _MOST_UNSURE:
-        sentence = f"A finer or larger scan changes e_el by less than {_MATTERS:.0%}: not needed."
-        return Remark("next scan", "note", sentence)
-    # What is neither continued nor missing is unsure for its few long waves.
-    if shorter >= max(shares.continued_long, _MATTERS):
-        factor, waves = 1 + shorter, f"shorter than {short}"
+    """Note on which scan would narrow the interval of e_el, and by how much."""
+    joint = surface.joint
+    known, (longer, shorter) = joint.draws.factor, joint.draws.factors_with
+    advice = []
+    if known > _NARROWER * longer:
+        gain = f"would narrow it to {longer:.2g}"
+        advice.append((known / longer, f"{_larger_scan(joint)} {gain}"))
+    if known > _NARROWER * shorter or joint.shares.missing_short > _MATTERS:
+        gain = f"would narrow it to {shorter:.2g}"
+        if joint.shares.missing_short > _MATTERS:
+            gain += f", and may add {part_of_energy(joint.shares.missing_short)}"
+        factor = max(known / shorter, 1 + joint.shares.missing_short)
+        advice.append((factor, f"{_finer_scan(surface)} {gain}"))
+    text = f"e_el is known within a factor of {known:.3g}"
+    if advice:
+        ways = "; ".join(way for _, way in sorted(advice, reverse=True))
+        sentence = f"Measure next: {text}. {ways[0].upper()}{ways[1:]}."
+    elif known < _UNSURE:
+        sentence = f"{text}; a finer or larger scan would hardly narrow it."
     else:
-        factor, waves = 1 + max(unsure, shares.continued_long), f"longer than {long}"
-    sentence = (
-        f"Measure next: waves {waves}, by which e_el may be up to {factor:.3g} times as large."
-    )
+        sentence = f"Measure next: {text}. More scans of the same waves would narrow it."
     return Remark("next scan", "note", sentence)
+
+
+def _larger_scan(joint: JointSpectrum) -> str:
+    """A scan that holds nine tenths of e_el of the waves longer than all that are measured."""
+    beyond = joint.spectrum.longer_than(joint.longest)
+    side = _WAVES_OF_SIDE * beyond.dominant_wavelengths(0.5)[1]
+    pixel = joint.longest / _OVERLAP / _PIXELS_OF_WAVE
+    return f"a scan with a side of {_rounded(side)} and pixels of at most {_rounded(pixel)}"
+
+
+def _finer_scan(surface: MeasuredSurface) -> str:
+    """A scan that holds nine tenths of e_el of the waves shorter than all that are measured."""
+    joint = surface.joint
+    total = joint.extended.mean_square(0.5)
+    below = joint.extended.mean_square_between(0.5, joint.extended.short_cutoff, joint.shortest)
+    # Of waves down to the shortest of the scan a share is left out: a tenth to either side.
+    shortest = joint.extended.dominant_wavelengths(0.5, 1 - 2 * _LEFT_OUT * below / total)[0]
+    side = _WAVES_OF_SIDE * _OVERLAP * joint.shortest
+    text = f"a scan with pixels of at most {_rounded(shortest / _PIXELS_OF_WAVE)}"
+    if any(one.measurement.tip_radius for one in surface.scans):
+        curvature = math.sqrt(3 / 8 * joint.extended.longer_than(shortest).mean_square(2.0))
+        text += f", a tip of at most {_rounded(1 / curvature)}"
+    return f"{text} and a side of at least {_rounded(side)}"
+
+
+def _rounded(length: float) -> str:
+    """A length of two digits (Units: m)."""
+    return prefixed("m", float(f"{length:.2g}"))
 
 
 def channel_remarks(surface: MeasuredSurface) -> Iterator[Remark]:
@@ -134,28 +176,34 @@ def channel_remarks(surface: MeasuredSurface) -> Iterator[Remark]:
 
 
 def spectrum_remarks(surface: MeasuredSurface) -> Iterator[Remark]:
-    """Reservations on the spectrum of a surface."""
-    for index, one in enumerate(surface.scans):
-        for sentence in _scan_doubts(one, surface.joint.density, index):
-            yield Remark(str(one.measurement.path), "reservation", sentence)
+    """Reservations on the spectrum of a surface, scans that disagree first."""
+    yield from disagreements(surface)
+    for one in surface.scans:
+        if max(ratio := one.band.anisotropy, 1 / ratio) > _MOST_ANISOTROPY:
+            path = str(one.measurement.path)
+            yield Remark(
+                path,
+                "reservation",
+                f"{path}: the rms slope along x is {ratio:.2g} times that along y; the theory is "
+                "for isotropic surfaces.",
+            )
     for sentence in _spectrum_doubts(surface.joint):
         yield Remark("spectrum", "reservation", sentence)
 
 
-def _scan_doubts(one: Scan, density: JointDensity, index: int) -> Iterator[str]:
-    """Sentences on a scan that is not isotropic, or departs from the other scans."""
-    path, ratio, level = one.measurement.path, one.band.anisotropy, density.levels[index]
-    if max(ratio, 1 / ratio) > _MOST_ANISOTROPY:
-        yield (
-            f"{path}: the rms slope along x is {ratio:.2g} times that along y; the theory is "
-            "for isotropic surfaces."
-        )
-    if density.disagrees(index):
-        yield (
-            f"{path} disagrees with the other scans: its density is {level.value:.2g} "
-            f"({level.low:.2g} to {level.high:.2g}) times theirs where they overlap; the "
-            "intervals hold that."
-        )
+def disagreements(surface: MeasuredSurface) -> Iterator[Remark]:
+    """Reservations on scans whose density departs from that of the others."""
+    density = surface.joint.density
+    for index, one in enumerate(surface.scans):
+        if density.disagrees(index):
+            path, level = str(one.measurement.path), density.levels[index]
+            yield Remark(
+                path,
+                "reservation",
+                f"{path} disagrees with the other scans: its density is {level.value:.2g} "
+                f"({level.low:.2g} to {level.high:.2g}) times theirs where they overlap; the "
+                "intervals hold that.",
+            )
 
 
 def _spectrum_doubts(joint: JointSpectrum) -> Iterator[str]:
@@ -187,5 +235,5 @@ def _spectrum_doubts(joint: JointSpectrum) -> Iterator[str]:
     if joint.shares.missing_short > _MOST_UNMEASURED:
         yield (
             "Waves shorter than the points hold are left out: two more decades of the power law "
-            f"would add {joint.shares.missing_short:.0%} to e_el; add a finer scan."
+            f"would add {part_of_energy(joint.shares.missing_short)}; add a finer scan."
         )

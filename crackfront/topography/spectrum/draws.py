@@ -61,6 +61,8 @@ class Draws:
     """Of what is measured and continued, by orders as of :data:`ORDERS`. Shape (3, n)."""
     recorded: Array
     """Of what the scans hold. Shape (3, n)."""
+    outside: Array
+    """Of half-derivatives, in waves longer and shorter than all that is measured. Shape (2, n)."""
     weight: Array
     """Weights of the draws, whose sum is 1. Shape (n,)."""
     wavevector: Array
@@ -90,6 +92,21 @@ class Draws:
         return self.estimate(self.recorded[ORDERS.index(order)])
 
     @property
+    def factor(self) -> float:
+        """Within which e_el is known: root of the upper over the lower end of its interval."""
+        return _factor(self.mean_square(0.5))
+
+    @property
+    def factors_with(self) -> tuple[float, float]:
+        """The same if the longer, or the shorter waves than all that is measured were known."""
+        energy = self.estimated[ORDERS.index(0.5)]
+        longer, shorter = (
+            _factor(self.estimate(energy - part + quantiles(part, self.weight, 0.5)))
+            for part in self.outside
+        )
+        return longer, shorter
+
+    @property
     def unsettled(self) -> float:
         """Largest standard error of the median and the ends of the interval of e_el.
 
@@ -103,6 +120,11 @@ class Draws:
             ends.append(float(np.ptp(quantiles(logarithm, self.weight, near))) / 2)
         low, _, high = quantiles(logarithm, self.weight, _INTERVAL)
         return max(ends) / float(high - low) if high > low else 0.0
+
+
+def _factor(found: Estimate[float]) -> float:
+    """Root of the upper over the lower end of an interval."""
+    return math.sqrt(found.high / found.low)
 
 
 @dataclass(frozen=True, slots=True)
@@ -161,11 +183,15 @@ class SpectrumSampler:
         beyond = self.rest.wavevector > self.wavevector[-1]
         below = np.broadcast_to(np.log(self.rest.value[beyond]), (count, int(np.sum(beyond))))
         held = np.append(self.wavevector, self.rest.wavevector[beyond])
+        measured = (np.full(count, wave) for wave in self.wavevector[[0, -1]])
+        estimated, longer, known = mean_squares(self.grid, table, end, *measured)
+        [recorded_squares] = mean_squares(
+            held, np.concatenate([recorded, below], axis=1), np.full(count, held[-1])
+        )
         return _Drawn(
-            estimated=mean_squares(self.grid, table, end),
-            recorded=mean_squares(
-                held, np.concatenate([recorded, below], axis=1), np.full(count, held[-1])
-            ),
+            estimated=estimated,
+            recorded=recorded_squares,
+            outside=np.array([longer[1], estimated[1] - known[1]]),
             table=table,
             end=end,
         )
@@ -196,6 +222,8 @@ class _Drawn:
     estimated: Array
     recorded: Array
     """Mean squares. Shapes (3, n)."""
+    outside: Array
+    """As of :class:`Draws`. Shape (2, n)."""
     table: Array
     """Logarithms of C on the grid. Shape (n, n_wavevector)."""
     end: Array
@@ -237,6 +265,7 @@ def drawn(sampler: SpectrumSampler, states: Iterator[Batch], numbers: Sequence[i
         result = Draws(
             estimated=np.concatenate([one.estimated for one in found], axis=1),
             recorded=np.concatenate([one.recorded for one in found], axis=1),
+            outside=np.concatenate([one.outside for one in found], axis=1),
             weight=weight / np.sum(weight),
             wavevector=sampler.grid,
             low=low,
@@ -270,26 +299,28 @@ def _choices(one: Scan, density: Density) -> Array:
     return np.array([none, none, window, levelled, -levelled])
 
 
-def mean_squares(grid: Array, table: Array, end: Array) -> Array:
-    """Mean squares of the derivatives of spectra that end somewhere on a grid, (3, n).
+def mean_squares(grid: Array, table: Array, *ends: Array) -> list[Array]:
+    """Mean squares of the derivatives of spectra up to ends somewhere on a grid, (3, n) each.
 
     They are power laws between the points of the grid, and flat below.
     """
     places = np.log(grid)
     growth = np.diff(places)
-    last = np.clip(np.searchsorted(places, np.log(end), side="right") - 1, 0, growth.size - 1)
-    part = np.clip(np.log(end) - places[last], 0.0, growth[last])
-    rows, found = np.arange(len(end)), []
     slope = np.diff(table, axis=1) / growth
-    for order in ORDERS:
+    rows, found = np.arange(len(table)), np.empty((len(ends), len(ORDERS), len(table)))
+    for index, order in enumerate(ORDERS):
         power = 2 + 2 * order
         exponent = slope + power
         start = np.exp(table + power * places)
         pieces = start[:, :-1] * _grown(exponent, growth)
-        whole = np.where(np.arange(growth.size) < last[:, None], pieces, 0.0).sum(axis=1)
-        whole += start[rows, last] * _grown(exponent[rows, last], part)
-        found.append((whole + start[:, 0] / power) / (2 * np.pi))
-    return np.array(found)
+        for squares, end in zip(found, ends, strict=True):
+            last = np.searchsorted(places, np.log(end), side="right") - 1
+            last = np.clip(last, 0, growth.size - 1)
+            part = np.clip(np.log(end) - places[last], 0.0, growth[last])
+            whole = np.where(np.arange(growth.size) < last[:, None], pieces, 0.0).sum(axis=1)
+            whole += start[rows, last] * _grown(exponent[rows, last], part)
+            squares[index] = (whole + start[:, 0] / power) / (2 * np.pi)
+    return list(found)
 
 
 def _grown(exponent: Array, length: Array) -> Array:

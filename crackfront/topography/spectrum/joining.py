@@ -78,6 +78,8 @@ class JointSpectrum:
     recorded: TabulatedSpectrum
     """As measured, and below the band what the finest scan holds down to its pixels, without its
     noise but as weak as its instrument made it. (Units: m)"""
+    extended: TabulatedSpectrum
+    """The spectrum with two more decades of shorter waves, by the model. (Units: m)"""
     draws: Draws
     """Spectra that agree as well with what was measured."""
     density: JointDensity
@@ -132,13 +134,15 @@ def joint_spectrum(
         rest,
         np.sort(np.append(density.wavevector, _gaps(density.wavevector, fit.lowest, finest))),
     )
+    extended = _extended(spectrum, fit)
     return JointSpectrum(
         spectrum=spectrum,
+        extended=extended,
         recorded=_recorded(density, rest),
         draws=drawn(sampler, itertools.chain([first], states), numbers or sampling.BATCHES),
         density=density,
         fit=fit,
-        shares=_shares(spectrum, density.wavevector, fit),
+        shares=_shares(spectrum, extended, density.wavevector),
     )
 
 
@@ -231,7 +235,16 @@ def _gaps(wavevector: Array, lowest: float, end: float) -> Array:
     return np.concatenate([*found, [last]])
 
 
-def _shares(spectrum: TabulatedSpectrum, wavevector: Array, fit: Fit) -> Shares:
+def _extended(spectrum: TabulatedSpectrum, fit: Fit) -> TabulatedSpectrum:
+    """A spectrum with two more decades of shorter waves."""
+    finer = np.geomspace(1, 10**_DECADES, 20)[1:] * 2 * np.pi / spectrum.short_cutoff
+    return TabulatedSpectrum(
+        (*spectrum.wavelengths, *(2 * np.pi / finer).tolist()),
+        (*spectrum.densities, *fit.median(finer).tolist()),
+    )
+
+
+def _shares(spectrum: TabulatedSpectrum, extended: TabulatedSpectrum, wavevector: Array) -> Shares:
     """Where e_el comes from."""
     total = spectrum.mean_square(0.5)
     # Neighbours further apart than this have a continuation between them.
@@ -240,9 +253,7 @@ def _shares(spectrum: TabulatedSpectrum, wavevector: Array, fit: Fit) -> Shares:
     parts = [spectrum.mean_square_between(0.5, group[-1], group[0]) for group in groups]
     # Round-off may not leave less than nothing to the continuation.
     measured = min(sum(parts) / total, 1.0)
-    finer = np.geomspace(1, 10**_DECADES, 20) * 2 * np.pi / spectrum.short_cutoff
-    tail = TabulatedSpectrum(tuple((2 * np.pi / finer).tolist()), tuple(fit.median(finer).tolist()))
-    beyond = tail.mean_square_between(0.5, tail.short_cutoff, spectrum.short_cutoff)
+    beyond = extended.mean_square_between(0.5, extended.short_cutoff, spectrum.short_cutoff)
     longest = max(2 * np.pi / float(wavevector[0]), spectrum.short_cutoff)
     longer = spectrum.longer_than(longest).mean_square(0.5)
     return Shares(measured, 1 - measured, beyond / total, longer / total)

@@ -61,9 +61,7 @@ def test_intervals_do_not_depend_on_the_seeds(measurements, request):
     assert 0 < moved(known, ends(measured_surface(measurements))) < MOST
 
 
-def test_intervals_do_not_depend_on_the_digits_of_heights(measurements, request):
-    if "optic" in request.node.name:
-        pytest.skip("of two optics that are as likely the rounding of what they leave chooses one")
+def test_intervals_do_not_depend_on_the_digits_of_heights(measurements):
     known = ends(measured_surface(measurements))
     steps = [1e-4 * one.heights.std() for one in measurements]
     rounded = [
@@ -98,7 +96,7 @@ def test_mean_squares_of_draws_are_those_of_tables(rng):
     grid = np.geomspace(1e4, 1e7, 40)
     table = np.log(1e-26) - 3.2 * np.log(grid / 1e4) + 0.3 * rng.standard_normal((5, 40))
     end = np.exp(rng.uniform(np.log(1e6), np.log(1e7), 5))
-    found = mean_squares(grid, table, end)
+    [found] = mean_squares(grid, table, end)
     for number in range(5):
         inside = grid < end[number]
         last = np.interp(np.log(end[number]), np.log(grid), table[number])
