@@ -42,6 +42,10 @@ SHARPNESS = (1.0, 4.0)
 _SHORT, _LONG = 30, 400
 """Evaluations of fits from several starts, and of the best one."""
 
+_UNLIKELY, _DISTINCT = 6.0, 0.1
+"""What half of the deviance is more by at minima that do not matter, and how far those that are
+two lie apart in a parameter."""
+
 _GAIN = 9.0
 """What half of the deviance must fall by for an instrument to be seen in a density."""
 
@@ -131,11 +135,10 @@ def seen_instrument(density: Density) -> Instrument:
             continue
         models = DensityModels([density], nothing[None], np.array([varied]))
         starts = [np.array([*shape, *begin[varied]]) for begin in begins for shape in shapes]
-        cost, parameters = _likeliest(models, starts, limits[[True] * N_SHAPE + varied])
-        if not any(varied):
-            shapes = [parameters, shapes[-1]]
-        if cost < best - gain:
-            best, found = cost, models.instruments(parameters[None])[0, 0]
+        costs, minima = _minima(models, starts, limits[[True] * N_SHAPE + varied])
+        if np.min(costs) < best - gain:
+            best = float(np.min(costs))
+            found = models.instruments(_by_likelihood(costs, minima)[None])[0, 0]
     return Instrument(math.exp(found[0]), float(found[1]), math.exp(found[2]))
 
 
@@ -147,13 +150,14 @@ def shape_limits(low: float, high: float) -> tuple[tuple[float, float], ...]:
 def _first_shapes(
     densities: Sequence[tuple[Density, Array]], low: float, high: float
 ) -> list[Array]:
-    """Parameters of P from which fits begin, for three roll-offs, and one with a late bend."""
+    """Parameters of P from which fits begin: for three roll-offs, with a late and an early bend."""
     found, width = [], high - low
     for part, place, long, short in (
         (-0.1, 0.67, 0.7, 0.7),
         (0.15, 0.67, 0.7, 0.7),
         (0.45, 0.67, 0.7, 0.7),
         (0.15, 0.87, 0.2, 0.9),
+        (0.15, 0.1, 0.95, 0.8),
     ):
         shape = np.array([[0.0, long, short, low + place * width, low + part * width]])
         models = [_seen(_shape(shape, item), row[None], item)[0] for item, row in densities]
@@ -165,10 +169,11 @@ def _first_shapes(
     return found
 
 
-def _likeliest(
-    models: DensityModels, starts: Sequence[Array], limits: Array
-) -> tuple[float, Array]:
-    """Half of the least deviance from some starts, and the parameters that have it."""
+def _minima(models: DensityModels, starts: Sequence[Array], limits: Array) -> tuple[Array, Array]:
+    """Halves of the deviance at its minima, (n,), and their parameters, (n, n_parameter).
+
+    Several starts may have found the same one. Minima that are much less likely are left out.
+    """
 
     def residuals(trials: Array) -> Array:
         roots = [
@@ -192,10 +197,19 @@ def _likeliest(
             max_nfev=evaluations,
         )
 
-    # The best of some short fits, to its end: valleys of the deviance are flat.
-    best = min((fitted(start, _SHORT) for start in starts), key=lambda fit: float(fit.cost))
-    found = fitted(best.x, _LONG)
-    return float(found.cost), np.asarray(found.x)
+    # Short fits, and those that may matter to their ends: valleys of the deviance are flat.
+    short = [fitted(start, _SHORT) for start in starts]
+    worst = min(fit.cost for fit in short) + _UNLIKELY
+    found = [fitted(fit.x, _LONG) for fit in short if fit.cost < worst]
+    return np.array([fit.cost for fit in found]), np.array([fit.x for fit in found])
+
+
+def _by_likelihood(costs: Array, minima: Array) -> Array:
+    """Mean of minima, (n, n_parameter), by likelihood; those of one instrument count once."""
+    instruments = minima[:, N_SHAPE:]
+    apart = (instruments[:, None] - instruments[None]) / _DISTINCT
+    copies = np.exp(-0.5 * np.sum(np.square(apart), axis=2)).sum(axis=1)
+    return np.average(minima, axis=0, weights=np.exp(np.min(costs) - costs) / copies)
 
 
 def log_density(surface: Array, wavevector: Array) -> Array:
