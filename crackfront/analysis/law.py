@@ -20,7 +20,7 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields
 from importlib.resources import files
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -81,6 +81,42 @@ class Law:
     size: tuple[float, float]
     breadth: tuple[float, float]
     """Measured ranges of s, g and the breadth."""
+    departures: tuple[tuple[float, ...], ...]
+    """Departures of the measured k from the law as :class:`Departure`, a row a group."""
+
+    def departures_at(self, size: float, breadth: float | None = None) -> list[Departure]:
+        """Departures of the fronts of about a size g, and of a breadth where it is known."""
+        rows = [Departure(*row) for row in self.departures]
+        return [
+            row
+            for row in rows
+            if row.least_size <= size < row.largest_size
+            and (breadth is None or row.narrowest <= breadth < row.broadest)
+        ]
+
+
+class Departure(NamedTuple):
+    """How far the measured k of a group of straight fronts lie above the law, relative to it."""
+
+    narrowest: float
+    broadest: float
+    """Breadths of the spectra."""
+    least_size: float
+    largest_size: float
+    """Sizes g."""
+    mean: float
+    rms: float
+    count: int
+    """Spectra, amplitudes and springs."""
+
+    @property
+    def sentence(self) -> str:
+        """Where the measured k lie, and for which fronts."""
+        return (
+            f"{self.mean:+.1%} in the mean, {self.rms:.1%} rms ({self.count} fronts of g "
+            f"{self.least_size:.3g} to {self.largest_size:.3g}, breadth {self.narrowest:.3g} to "
+            f"{self.broadest:.3g})"
+        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -330,8 +366,8 @@ def _outside(law: Law, w_rms: float, size: float, breadth: float) -> tuple[float
         )
     if size < smallest:
         return 0.5, (
-            f"size g {size:.3g} is below the smallest of the law ({smallest:.3g}): hysteresis sets "
-            "in there, and the interval of k reaches down to zero"
+            f"size g {size:.3g} is below the smallest of the law ({smallest:.3g}), where "
+            "hysteresis begins: the interval of k reaches down to zero"
         )
     if breadth > _BROADER * broadest:
         return 0.1 * math.log2(breadth / broadest), (

@@ -67,7 +67,7 @@ def law(
     --contact-radius for a sphere, whose edge is held as such a front is. Works of adhesion are
     w_int - e_el -+ k e_el.
     """
-    from crackfront.analysis.law import pinning_factor, shipped_law
+    from crackfront.analysis.law import pinning_factor, shipped_law, spectral_breadth
     from crackfront.analysis.law_spheres import sphere_factors
 
     front, sphere = (w_rms, g), (spectrum, elastic_energy, contact_radius)
@@ -81,15 +81,21 @@ def law(
         # JSON has no infinity.
         place: dict[str, Any] = {"w_rms": w_rms, "g": g if math.isfinite(g) else "inf"}
         place |= {} if breadth is None else {"breadth": breadth}
+        size, shape = g, breadth
         entries = _entries(found.factor, found, found, place, found.warning)
     elif spectrum is not None and elastic_energy is not None and contact_radius is not None:
         known = sphere_factors(field, _shape(spectrum), elastic_energy, contact_radius)
+        size, shape = known.size, spectral_breadth(field, _shape(spectrum))
         place = {"w_rms": 2 * math.sqrt(elastic_energy), "l_kappa": known.spring}
         place |= {"larkin_length": known.larkin_length, "g": known.size}
         entries = _entries(known.both, known.approach, known.retraction, place, known.warning)
     else:
         raise ValueError(f"the options are incomplete; name {_FRONT}, or else {_SPHERE}")
-    entries |= {"measured": {"w_rms": shipped_law().disorder, "g": shipped_law().size}}
+    departures = [one.sentence for one in shipped_law().departures_at(size, shape)]
+    entries |= {
+        "departures": departures,
+        "measured": {"w_rms": shipped_law().disorder, "g": shipped_law().size},
+    }
     echo_answer(entries, _lines(entries), as_json=as_json)
 
 
@@ -134,6 +140,8 @@ def _lines(entries: dict[str, Any]) -> Iterator[str]:
         f"{name} {low:.3g} to {high:.3g}" for name, (low, high) in entries["measured"].items()
     )
     yield f"measured for   {', '.join(ranges)}"
+    for sentence in entries["departures"]:
+        yield f"measured k     above the law: {sentence}"
     yield f"negative w_loc {entries['negative_share']:.2%} of the surface"
     if entries["warning"]:
         yield f"beyond what was measured: {entries['warning']}"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from itertools import pairwise
 
 import numpy as np
 from scipy.optimize import least_squares
@@ -12,6 +13,8 @@ from crackfront.analysis.law import (
     COEFFICIENTS,
     FINITE_SIZE_EXPONENT,
     LEAST_SIZE,
+    TYPICAL_BREADTH,
+    Departure,
     Law,
     law_value,
     model_error,
@@ -20,6 +23,9 @@ from crackfront.core.arrays import Array
 from studies.law.cells import HELD_OUT, LawCell
 
 _START = (3.8, 0.55, 0.05, 0.1, 1.1, 1.35, 1.9, 1.3, 0.15, 0.0)
+
+_SIZES = (LEAST_SIZE, 0.5, 1.0, 2.0, 5.0)
+"""Least sizes g of the groups of fronts whose departures from the law are stated."""
 
 _NEAR = 0.8
 """Largest difference of ln g of cells whose scatter is pooled, as few tiles say little of it."""
@@ -68,7 +74,30 @@ def fitted_law(cells: Sequence[LawCell]) -> Law:
         disorder=ranges[0],
         size=(LEAST_SIZE, ranges[1][1]),
         breadth=ranges[2],
+        departures=_departures(cells, coefficients),
     )
+
+
+def _departures(cells: Sequence[LawCell], coefficients: Array) -> tuple[Departure, ...]:
+    """How far all measured cells lie above the law, those held out too, by breadth and size."""
+    found = []
+    last, broad = (
+        math.nextafter(max(getattr(cell, name) for cell in cells), math.inf)
+        for name in ("size", "breadth")
+    )
+    narrow = min(cell.breadth for cell in cells)
+    for narrowest, broadest in pairwise((narrow, TYPICAL_BREADTH, broad)):
+        for least, largest in pairwise((*_SIZES, last)):
+            group = [
+                cell.both / float(law_value(coefficients, cell.disorder, cell.size, cell.breadth))
+                for cell in cells
+                if least <= cell.size < largest and narrowest <= cell.breadth < broadest
+            ]
+            apart = np.array(group) - 1
+            mean, rms = float(np.mean(apart)), float(np.sqrt(np.mean(apart**2)))
+            row = Departure(narrowest, broadest, least, largest, mean, rms, len(group))
+            found.append(row)
+    return tuple(found)
 
 
 def _pooled_error(size: Array, error: Array) -> Array:

@@ -17,7 +17,14 @@ from crackfront.analysis.finding import (
     finding,
     stated_breadths,
 )
-from crackfront.analysis.law import COEFFICIENTS, WEAKEST, Law, pinning_factor, shipped_law
+from crackfront.analysis.law import (
+    COEFFICIENTS,
+    WEAKEST,
+    Departure,
+    Law,
+    pinning_factor,
+    shipped_law,
+)
 from studies.law.cells import HELD_OUT, LawCell, measured_cells
 from studies.law.spheres import SphereRow, departures, is_within, sphere_table
 from studies.pages import markdown_table
@@ -33,6 +40,7 @@ def law_parts(spheres: Sequence[SphereRow]) -> dict[str, str]:
     return {
         "coefficients": coefficients_part(shipped_law()),
         "limit": limit_part(),
+        "departures": departures_part(shipped_law()),
         "shapes": shapes_part(measured_cells()),
         "fronts": fronts_part(measured_cells()),
         "spheres": sphere_table(spheres),
@@ -58,6 +66,22 @@ def coefficients_part(law: Law) -> str:
     )
     table = markdown_table("coefficient | value | standard error", rows)
     return f"{table}\n\n{_wrapped(text)}"
+
+
+def departures_part(law: Law) -> str:
+    """Table of how far measured k lie above the law, by breadth and size."""
+    rows = [
+        (
+            f"{one.narrowest:.3g} to {one.broadest:.3g}",
+            f"{one.least_size:.3g} to {one.largest_size:.3g}",
+            str(one.count),
+            f"{one.mean:+.1%}",
+            f"{one.rms:.1%}",
+        )
+        for one in map(Departure._make, law.departures)
+    ]
+    header = "breadth | g | fronts | measured k above the law, mean | rms"
+    return markdown_table(header, rows)
 
 
 def limit_part() -> str:

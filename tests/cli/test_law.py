@@ -71,13 +71,21 @@ def test_what_makes_w_loc_vary_decides_how_much_of_it_is_negative():
 
 
 def test_the_text_says_the_same_in_a_few_lines():
-    for options in (FRONT, SPHERE):
+    for options, count in ((FRONT, 5), (SPHERE, 6)):
         lines = run(options).output.splitlines()
-        assert len(lines) == 5
+        assert len(lines) == count
         assert lines[3].startswith("measured for   w_rms ")
         assert lines[0].startswith(f"k              {answer(options)['k']:.3f} (95%: ")
     assert "g inf" in run(FRONT).output
     assert "L_kappa" in run(SPHERE).output
+
+
+def test_how_far_measured_fronts_of_that_size_lie_above_the_law_is_stated():
+    near = run(FRONT | {"--g": "1.5"}).output
+    assert near.count("measured k     above the law") == 2
+    one = run(FRONT | {"--g": "1.5", "--breadth": "0.92"}).output
+    assert one.count("measured k     above the law") == 1
+    assert "g 1 to 2" in one
 
 
 def test_what_was_not_measured_is_told():
@@ -85,7 +93,7 @@ def test_what_was_not_measured_is_told():
     result = run(FRONT | {"--w-rms": "1.9"})
     assert "beyond what was measured: w_rms 1.9 w_int is above" in result.output
     found = answer(FRONT | {"--g": "0.1"})
-    assert "hysteresis sets in there" in found["warning"]
+    assert "hysteresis begins" in found["warning"]
     assert found["k_low"] == 0
 
 

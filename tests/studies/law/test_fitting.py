@@ -50,3 +50,7 @@ def test_the_command_fits_the_law_of_the_package_to_the_kept_cells(tmp_path):
     np.testing.assert_allclose(again["coefficients"], known.coefficients, rtol=1e-6, atol=1e-6)
     assert again["rms"] == pytest.approx(known.rms, rel=1e-6)
     assert again["size"] == pytest.approx(known.size)
+    assert sum(row[-1] for row in again["departures"]) == sum(
+        cell.size >= known.size[0] for cell in measured_cells()
+    )
+    np.testing.assert_allclose(again["departures"], known.departures, rtol=1e-5, atol=1e-6)
