@@ -27,7 +27,9 @@ from crackfront.topography.options import (
     Length,
     Options,
     PredictionOptions,
+    PsdOptions,
     ReadingOptions,
+    SelfAffineOptions,
     checked_options,
     number,
     quantity,
@@ -39,6 +41,7 @@ if TYPE_CHECKING:
     from crackfront.topography.prediction.prediction import Prediction
     from crackfront.topography.prediction.simulated import Simulated
     from crackfront.topography.spectrum.measures import MeasuredSurface
+    from crackfront.topography.spectrum.stated import Surface
 
 Command = Callable[..., None]
 Say = Callable[[str], None]
@@ -93,25 +96,34 @@ def _listed(
     return scans
 
 
-def _scans(command: Command) -> Command:
+def _scans(*, required: bool) -> Callable[[Command], Command]:
     """Give a command its scans; eager, so that channels are listed without its other options."""
-    command = click.option(
-        "--list-channels", is_flag=True, is_eager=True, help="List the channels of SCANS alone."
-    )(command)
-    scans = click.argument(
-        "scans", type=FILE, nargs=-1, required=True, is_eager=True, callback=_listed
-    )
-    return scans(command)
+
+    def decorated(command: Command) -> Command:
+        command = click.option(
+            "--list-channels", is_flag=True, is_eager=True, help="List the channels of SCANS alone."
+        )(command)
+        scans = click.argument(
+            "scans", type=FILE, nargs=-1, required=required, is_eager=True, callback=_listed
+        )
+        return scans(command)
+
+    return decorated
 
 
 @click.command(
     epilog=examples(
         "crackfront predict examples/scans/nanodiamond-detail.al3d --modulus 0.7MPa \\",
         "    --poisson 0.5 --radius 1.25mm --work-of-adhesion 63mJ/m2 --json",
+        "crackfront predict --rms 60nm --correlation-length 1um --hurst 0.8 --modulus 0.7MPa \\",
+        "    --poisson 0.5 --radius 1.25mm --work-of-adhesion 63mJ/m2",
     )
 )
-@_scans
+@_scans(required=False)
 @_options_of(ReadingOptions)
+@click.option("--psd", type=FILE, help="Spectral density of a surface without scans, as text.")
+@_options_of(PsdOptions)
+@_options_of(SelfAffineOptions)
 @_options_of(SphereOptions, required=True)
 @_options_of(PredictionOptions)
 @as_json
@@ -142,6 +154,7 @@ def predict(
     context: click.Context,
     /,
     scans: tuple[Path, ...],
+    psd: Path | None,
     as_json: bool,
     simulate: bool,
     realisations: int,
@@ -157,8 +170,9 @@ def predict(
     """Predict how strongly a soft sphere sticks to a measured surface, from the fitted law.
 
     SCANS are files of instruments in any format that SurfaceTopography reads, one measurement of
-    the surface or several. Works of adhesion are w_int - e_el -+ k e_el, with k by the law of
-    `crackfront law`.
+    the surface or several. In their place --psd names the export of a spectral density, and --rms
+    with --hurst and --correlation-length or --roll-off the numbers of one. Works of adhesion are
+    w_int - e_el -+ k e_el, with k by the law of `crackfront law`.
 
     Exit code 0: a prediction, with reservations where there are any or where it cannot be decided
     whether the theory applies (3 with --strict). 4: the theory does not apply; nothing is
@@ -170,15 +184,18 @@ def predict(
 
     scales = _scales(options)
     given = checked_options(PredictionOptions, options, "--")
+    name = _origin(scans, psd, options)
     if table is not None:
+        if not scans:
+            raise ValueError("--csv writes a row for each scan; name scans")
         if as_json or simulate or is_long or panel or figure:
             raise ValueError("--csv writes rows alone; leave out what prints, draws or simulates")
         outcomes = _write_samples(table, scans, scales, options)
         context.exit(max(_exit_code(outcome, strict) for outcome in outcomes))
-    stem = Path("results/predict", scans[0].stem) if figure is None else figure
+    stem = Path("results/predict", name) if figure is None else figure
     if not no_figure:
         refuse_unwritable(stem.parent)
-    surface = _surface(scans, options)
+    surface: Surface = _surface(scans, options) if scans else _stated_surface(psd, options)
     (verdict, prediction), outcome = check_and_predict(surface, scales, given), None
     say: Say = (lambda _: None) if as_json else click.echo
     if prediction is not None:
@@ -197,6 +214,39 @@ def predict(
     if as_json:
         echo_json(machine_readable(surface, scales, verdict, prediction, outcome))
     context.exit(_exit_code(verdict.outcome, strict))
+
+
+def _origin(scans: tuple[Path, ...], psd: Path | None, options: Mapping[str, Any]) -> str:
+    """Name for the figure of a surface, which is refused unless it is given in one way."""
+    is_stated = any(options[name] is not None for name in SelfAffineOptions.model_fields)
+    ways = {"SCANS": bool(scans), "--psd": psd is not None, "--rms": is_stated}
+    named = [way for way, is_named in ways.items() if is_named]
+    if len(named) != 1:
+        raise ValueError(
+            f"the surface is given {'by ' + ' and '.join(named) if named else 'in no way'}; name "
+            "scans, or a spectral density with --psd, or numbers with --rms"
+        )
+    further = [name for name in PsdOptions.model_fields if options[name] is not None]
+    if psd is None and further:
+        raise ValueError(f"--{further[0].replace('_', '-')} is of a density; name it with --psd")
+    reading = [
+        name
+        for name, field in ReadingOptions.model_fields.items()
+        if options[name] and options[name] != field.default
+    ]
+    if not scans and reading:
+        raise ValueError(f"--{reading[0].replace('_', '-')} is of scans; leave it out")
+    return scans[0].stem if scans else "numbers" if psd is None else psd.stem
+
+
+def _stated_surface(psd: Path | None, options: Mapping[str, Any]) -> Surface:
+    """Surface of a density or of numbers that a command names."""
+    from crackfront.topography.scan.psd import read_psd_file
+    from crackfront.topography.spectrum.stated import density_surface, self_affine_surface_of
+
+    if psd is None:
+        return self_affine_surface_of(checked_options(SelfAffineOptions, options, "--"))
+    return density_surface(read_psd_file(psd, checked_options(PsdOptions, options, "--")))
 
 
 def _exit_code(outcome: str, strict: bool) -> int:
@@ -259,7 +309,7 @@ def _simulated(
         "    --work-of-adhesion 63mJ/m2 --field field.nc",
     )
 )
-@_scans
+@_scans(required=True)
 @_options_of(ReadingOptions)
 @_options_of(SphereOptions)
 @as_json

@@ -29,6 +29,9 @@ Detrend = DetrendName | int
 HIGHEST_ORDER = 9
 """Highest order of a polynomial; more would be a filter of waves, which its fit is not."""
 
+PsdKind = Literal["1d", "2d", "radial", "q2d"]
+PsdAbscissa = Literal["wavevector", "frequency", "wavelength"]
+
 Region = tuple[tuple[float, float], ...]
 """Ends of a part of a scan along every direction (Units: m)."""
 
@@ -291,3 +294,47 @@ class PredictionOptions(Options):
 
     range: Length | None = None
     """Range of the attraction, as in 0.3nm; by default 0.5nm, that of van der Waals forces."""
+
+
+class PsdOptions(Options):
+    """What a file of a spectral density does not say of its convention."""
+
+    psd_series: Text | None = None
+    """Series by name or number, for files with several."""
+
+    psd_units: Text | None = None
+    """Units of both columns, as in 1/um,um^3, where their heads have none."""
+
+    psd_kind: PsdKind | None = None
+    """What the density is of: 1d (profiles), 2d (isotropic), radial (its integral is the mean
+    square), q2d (q/pi times 2d); by default what its unit and head say."""
+
+    psd_abscissa: PsdAbscissa | None = None
+    """What the first column is: wavevector (2 pi / wavelength), frequency (1 / wavelength) or
+    wavelength; by default what its head says."""
+
+    psd_sides: Literal["one", "two"] | None = None
+    """Whether a 1d density counts every wave once (one) or with its negative (two)."""
+
+    psd_norm: Literal["2pi", "1"] | None = None
+    """Over what the density is integrated to the mean square: q/2pi (2pi) or q (1, as in
+    Gwyddion)."""
+
+
+class SelfAffineOptions(Options):
+    """Numbers of a self-affine surface: flat to the roll-off, a power law to the short cutoff."""
+
+    rms: Length | None = None
+    """Rms height of a surface without scans, as in 60nm."""
+
+    correlation_length: Length | None = None
+    """Distance at which the autocorrelation of its heights is 1/e, as in 1um."""
+
+    roll_off: Length | None = None
+    """Roll-off wavelength, in place of the correlation length."""
+
+    hurst: Annotated[float, number(Range(1e-3, 1.0))] | None = None
+    """Hurst exponent, as in 0.8."""
+
+    short_cutoff: Length | None = None
+    """Shortest wavelength of the roughness, as in 10nm; by default 1nm where H is above 0.5."""

@@ -19,6 +19,7 @@ from crackfront.topography.prediction.surface_remarks import surface_remarks
 from crackfront.topography.prediction.texts import ENERGY, estimate_text, wavelengths_text
 from crackfront.topography.spectrum.fit import Fit
 from crackfront.topography.spectrum.measures import MeasuredSurface
+from crackfront.topography.spectrum.stated import StatedSurface, Surface
 
 if TYPE_CHECKING:
     # Importing it compiles nothing, but takes a second that a prediction does not need.
@@ -33,7 +34,7 @@ _ADHESIONS = ("w_appr", "w_retr", "hysteresis")
 
 
 def report_text(
-    surface: MeasuredSurface,
+    surface: Surface,
     scales: Scales | None = None,
     verdict: Verdict | None = None,
     prediction: Prediction | None = None,
@@ -84,35 +85,25 @@ def simulation_text(found: Simulated, prediction: Prediction) -> str:
 
 
 def machine_readable(
-    surface: MeasuredSurface,
+    surface: Surface,
     scales: Scales | None = None,
     verdict: Verdict | None = None,
     prediction: Prediction | None = None,
     found: Simulated | None = None,
 ) -> dict[str, Any]:
     """What the texts say, for JSON, by the names of records and in their SI units."""
-    joint = surface.joint
+    is_stated = isinstance(surface, StatedSurface)
+    origin: dict[str, Any] = _stated_entries(surface) if is_stated else _measured_entries(surface)
+    origin["spectrum"] |= {
+        "wavelength": list(surface.spectrum.wavelengths),
+        "density": list(surface.spectrum.densities),
+        "share_of_e_el": to_jsonable(surface.shares),
+        "shortest": surface.shortest,
+        "longest": surface.longest,
+        "end": surface.spectrum.short_cutoff,
+    }
     return {
-        "measurements": list(_scan_entries(surface)),
-        "spectrum": {
-            "wavelength": list(joint.spectrum.wavelengths),
-            "density": list(joint.spectrum.densities),
-            "measured": to_jsonable(joint.density),
-            "share_of_e_el": to_jsonable(joint.shares),
-            "shortest": joint.shortest,
-            "longest": joint.longest,
-            "end": joint.spectrum.short_cutoff,
-            "draws": {
-                "number": len(joint.draws.weight),
-                "effective": joint.draws.effective,
-                "unsettled": joint.draws.unsettled,
-            },
-        },
-        "continuation": {
-            **{name: to_jsonable(number) for name, number, _ in _continuation(joint.fit)},
-            "deviance_per_freedom": joint.fit.misfit,
-            "has_roll_off": joint.fit.has_roll_off,
-        },
+        **origin,
         "measures": to_jsonable(surface.measures),
         "e_el": None if scales is None else _energy_entry(surface, scales.contact_modulus),
         "prediction": None if prediction is None else _prediction_entries(prediction),
@@ -128,13 +119,39 @@ def machine_readable(
     }
 
 
+def _stated_entries(surface: StatedSurface) -> dict[str, Any]:
+    """What a spectrum comes from that is stated."""
+    return {"measurements": [], "spectrum": {"origin": surface.origin}, "continuation": None}
+
+
+def _measured_entries(surface: MeasuredSurface) -> dict[str, Any]:
+    """Scans, their joint density and the model that continues it."""
+    joint = surface.joint
+    return {
+        "measurements": list(_scan_entries(surface)),
+        "spectrum": {
+            "measured": to_jsonable(joint.density),
+            "draws": {
+                "number": len(joint.draws.weight),
+                "effective": joint.draws.effective,
+                "unsettled": joint.draws.unsettled,
+            },
+        },
+        "continuation": {
+            **{name: to_jsonable(number) for name, number, _ in _continuation(joint.fit)},
+            "deviance_per_freedom": joint.fit.misfit,
+            "has_roll_off": joint.fit.has_roll_off,
+        },
+    }
+
+
 def _simulation(found: Simulated, prediction: Prediction) -> dict[str, Any]:
     """What simulations found: of the front itself, and corrected as the prediction is."""
     return to_jsonable(found) | {"corrected": to_jsonable(found.corrected(prediction))}
 
 
 def sample_row(
-    surface: MeasuredSurface, scales: Scales, verdict: Verdict, prediction: Prediction | None
+    surface: Surface, scales: Scales, verdict: Verdict, prediction: Prediction | None
 ) -> dict[str, Any]:
     """Row of a surface in a table: numbers and the ends of their 95% intervals, in SI units."""
     remarks = " ".join(map(remark_text, verdict.of("fails", "undecided", "reservation")))
@@ -162,8 +179,23 @@ def _continuation(fit: Fit) -> tuple[tuple[str, Number, str], ...]:
     )
 
 
-def _surface_lines(surface: MeasuredSurface) -> Iterator[str]:
-    """Lines on the measurements, the spectrum and the rms measures."""
+def _surface_lines(surface: Surface) -> Iterator[str]:
+    """Lines on what is known of a surface, and its rms measures."""
+    if isinstance(surface, StatedSurface):
+        yield surface.origin
+        yield f"  {'waves':22}{wavelengths_text(surface.shortest, surface.longest)}"
+    else:
+        yield from _measured_lines(surface)
+    yield ""
+    yield "Measures of the spectrum, and the scales of 80% of their mean squares"
+    for measure in surface.measures:
+        name, unit = _MEASURES[measure.order]
+        rms = estimate_text(unit, measure.rms)
+        yield f"  rms of {name:16}{rms:40}{wavelengths_text(measure.shortest, measure.longest)}"
+
+
+def _measured_lines(surface: MeasuredSurface) -> Iterator[str]:
+    """Lines on the measurements and their spectrum."""
     for one in surface.scans:
         item = one.measurement
         points = " x ".join(map(str, item.heights.shape))
@@ -197,12 +229,6 @@ def _surface_lines(surface: MeasuredSurface) -> Iterator[str]:
         f"  {'missing':22}two more decades of short waves would add {shares.missing_short:.0%} "
         f"to e_el; waves above {prefixed('m', joint.longest)} have {shares.continued_long:.0%}"
     )
-    yield ""
-    yield "Measures of the spectrum, and the scales of 80% of their mean squares"
-    for measure in surface.measures:
-        name, unit = _MEASURES[measure.order]
-        rms = estimate_text(unit, measure.rms)
-        yield f"  rms of {name:16}{rms:40}{wavelengths_text(measure.shortest, measure.longest)}"
 
 
 def _prediction_lines(item: Prediction) -> Iterator[str]:
@@ -260,7 +286,7 @@ def _scan_entries(surface: MeasuredSurface) -> Iterator[dict[str, Any]]:
         }
 
 
-def _energy_entry(surface: MeasuredSurface, contact_modulus: float) -> dict[str, Any]:
+def _energy_entry(surface: Surface, contact_modulus: float) -> dict[str, Any]:
     """e_el, and that of what is recorded (Units: J / m^2)."""
     return to_jsonable(surface.conformity_energy(contact_modulus)) | {
         "recorded": to_jsonable(surface.conformity_energy(contact_modulus, surface.recorded))

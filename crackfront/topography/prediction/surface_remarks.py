@@ -11,7 +11,7 @@ from crackfront.topography.density.bands import Scan
 from crackfront.topography.prediction.remarks import Remark
 from crackfront.topography.scan.instruments import is_doubtful
 from crackfront.topography.spectrum.joining import JointDensity, JointSpectrum
-from crackfront.topography.spectrum.measures import MeasuredSurface
+from crackfront.topography.spectrum.stated import StatedSurface, Surface
 
 _MOST_ANISOTROPY = 1.25
 """Largest ratio of the rms slopes along x and y without a reservation."""
@@ -35,7 +35,16 @@ _EDGE, _MATTERS = 0.05, 0.1
 """Distance of a Hurst exponent from 0 or 1, and continued part of e_el, that are a reservation."""
 
 
-def surface_remarks(surface: MeasuredSurface) -> list[Remark]:
+_NOT_CHECKED = (
+    "Without heights it cannot be checked whether the roughness is random (no wave that stands "
+    "out), isotropic and Gaussian, nor what instrument and noise did to the spectrum."
+)
+"""What only scans show."""
+
+_EXACT = "The spectrum is taken as exact: intervals hold the errors of the law of k alone."
+
+
+def surface_remarks(surface: Surface) -> list[Remark]:
     """All remarks on a surface that need no sphere."""
     return [
         *channel_remarks(surface),
@@ -101,12 +110,15 @@ def _treatments(one: Scan) -> Iterator[str]:
         )
 
 
-def measure_next(surface: MeasuredSurface) -> Remark:
+def measure_next(surface: Surface) -> Remark:
     """Note on what another scan would change."""
-    shares, joint = surface.joint.shares, surface.joint
-    short, long = prefixed("m", joint.shortest), prefixed("m", joint.longest)
+    shares = surface.shares
+    short, long = prefixed("m", surface.shortest), prefixed("m", surface.longest)
     shorter = max(shares.missing_short, shares.continued - shares.continued_long)
     unsure = surface.half_derivative.high / surface.half_derivative.value - 1
+    if isinstance(surface, StatedSurface) and max(shorter, shares.continued_long) < _MATTERS:
+        sentence = "Measure next: a scan, which gives e_el an interval and shows what else it has."
+        return Remark("next scan", "note", sentence)
     if max(shorter, shares.continued_long) < _MATTERS and unsure < _MOST_UNSURE:
         sentence = f"A finer or larger scan changes e_el by less than {_MATTERS:.0%}: not needed."
         return Remark("next scan", "note", sentence)
@@ -121,7 +133,7 @@ def measure_next(surface: MeasuredSurface) -> Remark:
     return Remark("next scan", "note", sentence)
 
 
-def channel_remarks(surface: MeasuredSurface) -> Iterator[Remark]:
+def channel_remarks(surface: Surface) -> Iterator[Remark]:
     """Reservations on scans whose channel may hold no heights."""
     for item in (one.measurement for one in surface.scans):
         if is_doubtful(item.channel):
@@ -133,8 +145,13 @@ def channel_remarks(surface: MeasuredSurface) -> Iterator[Remark]:
             )
 
 
-def spectrum_remarks(surface: MeasuredSurface) -> Iterator[Remark]:
-    """Reservations on the spectrum of a surface."""
+def spectrum_remarks(surface: Surface) -> Iterator[Remark]:
+    """Reservations on the spectrum of a surface, and on what cannot be checked without scans."""
+    if isinstance(surface, StatedSurface):
+        for sentence in (*surface.doubts, _NOT_CHECKED):
+            yield Remark("spectrum", "reservation", sentence)
+        yield Remark("spectrum", "note", _EXACT)
+        return
     for index, one in enumerate(surface.scans):
         for sentence in _scan_doubts(one, surface.joint.density, index):
             yield Remark(str(one.measurement.path), "reservation", sentence)

@@ -29,6 +29,7 @@ from crackfront.topography.scan.points import (
     read_points,
     refuse_positions,
 )
+from crackfront.topography.scan.psd import refuse_spectrum
 from crackfront.topography.scan.text import NumberText, number_text
 
 _LIBRARY = "SurfaceTopography"
@@ -291,6 +292,8 @@ def _text_reader(path: Path, text: NumberText) -> Any:
         refuse_positions(path, text)
         with _errors_as_sentences(path, "text"):
             return library_part("IO").AscReader(io.StringIO("\n".join([*text.lines, ""])))
+    if kind is None or kind == "comments":
+        refuse_spectrum(path, text)
     points = read_points(path, text, kind)
     heights = points.heights * (factor or 1.0)
     grid = Grid("default", Points(heights, points.size), None)
