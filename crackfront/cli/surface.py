@@ -31,6 +31,7 @@ from crackfront.topography.options import (
     ReadingOptions,
     SelfAffineOptions,
     checked_options,
+    for_files,
     number,
     quantity,
     reading_options,
@@ -267,7 +268,7 @@ def _write_samples(
 
     refuse_unwritable(path.parent)
     given, rows = checked_options(PredictionOptions, options, "--"), []
-    reading = reading_options(options, len(scans), "--")
+    reading = reading_options(for_files(options, scans), len(scans), "--")
     for scan, by in zip(scans, reading, strict=True):
         try:
             surface = read_surface([scan], [by])
@@ -331,6 +332,8 @@ def surface(scans: tuple[Path, ...], as_json: bool, field: Path | None, **option
     echo_answer(content, [report_text(found, scales)], as_json=as_json)
     if field is None or scales is None:
         return
+    if len(found.scans) > 1:
+        raise ValueError(f"--field takes one scan, and {scans[0]} holds {len(found.scans)}")
     from crackfront.simulate.files import save_result
     from crackfront.simulate.user_surface import surface_adhesion
     from crackfront.topography.tile import scan_surface
@@ -344,7 +347,7 @@ def surface(scans: tuple[Path, ...], as_json: bool, field: Path | None, **option
 
 def _surface(scans: tuple[Path, ...], options: Mapping[str, Any]) -> MeasuredSurface:
     """Surface of the files that a command names, read by its options."""
-    reading = reading_options(options, len(scans), "--")
+    reading = reading_options(for_files(options, scans), len(scans), "--")
     from crackfront.topography.spectrum.measures import read_surface
 
     return read_surface(scans, reading)

@@ -50,9 +50,9 @@ def read_scan(path: File, sphere: Scales, **options: Any) -> DataArray:
         What is pressed on it; it says what a reduced length is.
     **options
         Fields of :class:`~crackfront.topography.options.ReadingOptions`, as
-        ``crop="2um:8um,0um:5um"`` or ``shortest=4e-7``: channel, crop, detrend, mask, unit,
-        height_unit, size, tip_radius, shortest, longest. `crackfront surface --help` says what
-        each means.
+        ``crop="2um:8um,0um:5um"`` or ``shortest=4e-7``: channel, crop, detrend, mask, surface,
+        unit, height_unit, size, tip_radius, shortest, longest. `crackfront surface --help`
+        says what each means.
 
     Returns
     -------
@@ -74,7 +74,9 @@ def read_scan(path: File, sphere: Scales, **options: Any) -> DataArray:
     file = _path(path)
     [reading] = reading_options(options, 1)
     surface_library()  # All of it, as the user's program may import it too.
-    [measured] = read_measurements([file], reading)
+    measured, *others = read_measurements([file], reading)
+    if others:
+        raise ValueError(f"{file} holds {1 + len(others)} measurements; name the file of one")
     return scan_surface(scan(measured, reading.shortest, reading.longest), sphere)
 
 
@@ -168,7 +170,8 @@ def predict(
     **options
         Those of :func:`read_scan`, and fields of
         :class:`~crackfront.topography.options.PredictionOptions`, as ``range="0.3nm"``: pull_off,
-        range. A list gives every scan its own channel, crop or tip radius.
+        range. A list gives every scan its own channel, crop, surface, unit, height_unit, size or
+        tip_radius.
 
     Returns
     -------

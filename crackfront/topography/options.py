@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import difflib
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from numbers import Integral, Real
 from os import PathLike
 from pathlib import Path
@@ -35,7 +35,7 @@ PsdAbscissa = Literal["wavevector", "frequency", "wavelength"]
 Region = tuple[tuple[float, float], ...]
 """Ends of a part of a scan along every direction (Units: m)."""
 
-PER_SCAN = "One for all scans, or one for each."
+PER_SCAN = "One for all scans, one for each in order, or FILE=VALUE."
 """Marks a field for which every scan of a surface may have its own value."""
 
 REPEATED = "May be repeated."
@@ -104,8 +104,43 @@ def _values_per_scan(given: Mapping[str, Any]) -> list[tuple[str, Any]]:
     return [
         (name, given[name] or [None])
         for name, field in ReadingOptions.model_fields.items()
-        if PER_SCAN in field.metadata and isinstance(given.get(name), (list, tuple))
+        if PER_SCAN in field.metadata and _is_per_scan(name, given.get(name))
     ]
+
+
+def _is_per_scan(name: str, value: Any) -> bool:
+    """Whether a value has an entry for each scan, and is no pair of sides for all."""
+    if not isinstance(value, (list, tuple)):
+        return False
+    return not (name == "size" and value and all(isinstance(one, Real) for one in value))
+
+
+def for_files(given: Mapping[str, Any], files: Sequence[Path]) -> dict[str, Any]:
+    """Options of a command with FILE=VALUE, as lists with a value or None for every file.
+
+    ValueError, of one sentence, where a FILE is none of the files, or has two values.
+    """
+    found = dict(given)
+    for name, field in ReadingOptions.model_fields.items():
+        values = given.get(name)
+        if PER_SCAN not in field.metadata or not values or not any("=" in one for one in values):
+            continue
+        shown, own = _shown_name(name, "--"), dict[int, str]()
+        parts = [value.rpartition("=") for value in values]
+        named = [
+            [i for i, one in enumerate(files) if part[0] in (str(one), one.name)] for part in parts
+        ]
+        if name in ("channel", "surface") and not any(named):
+            continue  # A name with this sign in it.
+        for value, (_, sign, text), places in zip(values, parts, named, strict=True):
+            if not sign or len(places) != 1 or places[0] in own:
+                raise ValueError(
+                    f"{shown} is {value!r}; write FILE=VALUE once for each of some files, which "
+                    f"are {', '.join(map(str, files))}"
+                )
+            own[places[0]] = text
+        found[name] = [own.get(place) for place in range(len(files))]
+    return found
 
 
 def refuse_unknown(function: str, names: Iterable[str], *records: type[Options]) -> None:
@@ -264,13 +299,16 @@ class ReadingOptions(Options):
     """What the levelling leaves out and the map keeps: a part of the scan as in crop, or a file
     with a number for each point, not zero there."""
 
-    unit: Text | None = None
+    surface: Annotated[Text | None, PER_SCAN] = None
+    """Surface by name or number, for containers of contact.engineering with several."""
+
+    unit: Annotated[Text | None, PER_SCAN] = None
     """Unit of length of files that state none, as in um."""
 
-    height_unit: Text | None = None
+    height_unit: Annotated[Text | None, PER_SCAN] = None
     """Unit of the heights alone, as in nm, where a file states none or one that cannot be."""
 
-    size: Annotated[tuple[float, ...], BeforeValidator(_sides)] | None = None
+    size: Annotated[Annotated[tuple[float, ...], BeforeValidator(_sides)] | None, PER_SCAN] = None
     """Sides of scans that state none, in --unit, as in 50,40; 50 for a square or a line."""
 
     tip_radius: Annotated[Length | None, PER_SCAN] = None
