@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import csv
-import io
 from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
+from crackfront.cli.options import options_of
 from crackfront.cli.report import (
     FILE,
     announce_compilation,
@@ -20,21 +19,18 @@ from crackfront.cli.report import (
     refuse_unwritable,
     whole,
 )
+from crackfront.cli.samples import exit_code, write_samples
 from crackfront.data.bounds import SEED, Range, in_time
 from crackfront.topography.options import (
-    PER_SCAN,
-    REPEATED,
-    Length,
-    Options,
     PredictionOptions,
     PsdOptions,
     ReadingOptions,
     SelfAffineOptions,
+    SphereOptions,
     checked_options,
     for_files,
-    number,
-    quantity,
     reading_options,
+    sphere_scales,
 )
 
 if TYPE_CHECKING:
@@ -46,42 +42,6 @@ if TYPE_CHECKING:
 
 Command = Callable[..., None]
 Say = Callable[[str], None]
-
-
-class SphereOptions(Options):
-    """What is pressed on a surface; the library and configurations have its scales instead."""
-
-    modulus: Annotated[float, quantity("Pa", "pressure", "0.7MPa")] | None = None
-    """Young's modulus, as in 0.7MPa."""
-
-    poisson: Annotated[float, number(Range(-0.99, 0.5))] | None = None
-    """Poisson's ratio, as in 0.5."""
-
-    radius: Length | None = None
-    """Radius of the sphere, as in 1.25mm."""
-
-    work_of_adhesion: Annotated[float, quantity("J/m^2", "energy per area", "63mJ/m2")] | None = (
-        None
-    )
-    """w_int, as in 63mJ/m2."""
-
-
-def _options_of(record: type[Options], *, required: bool = False) -> Callable[[Command], Command]:
-    """Give a command an option for every field of a record."""
-
-    def decorated(command: Command) -> Command:
-        for name, field in reversed(record.model_fields.items()):
-            often = [mark for mark in (PER_SCAN, REPEATED) if mark in field.metadata]
-            command = click.option(
-                f"--{name.replace('_', '-')}",
-                required=required,
-                multiple=bool(often),
-                default=field.default or None,
-                help=" ".join([*str(field.description).split(), *often]),
-            )(command)
-        return command
-
-    return decorated
 
 
 def _listed(
@@ -121,12 +81,12 @@ def _scans(*, required: bool) -> Callable[[Command], Command]:
     )
 )
 @_scans(required=False)
-@_options_of(ReadingOptions)
+@options_of(ReadingOptions)
 @click.option("--psd", type=FILE, help="Spectral density of a surface without scans, as text.")
-@_options_of(PsdOptions)
-@_options_of(SelfAffineOptions)
-@_options_of(SphereOptions, required=True)
-@_options_of(PredictionOptions)
+@options_of(PsdOptions)
+@options_of(SelfAffineOptions)
+@options_of(SphereOptions, required=True)
+@options_of(PredictionOptions)
 @as_json
 @click.option(
     "--simulate", is_flag=True, help="Simulate surfaces of the measured spectrum as well."
@@ -191,8 +151,11 @@ def predict(
             raise ValueError("--csv writes a row for each scan; name scans")
         if as_json or simulate or is_long or panel or figure:
             raise ValueError("--csv writes rows alone; leave out what prints, draws or simulates")
-        outcomes = _write_samples(table, scans, scales, options)
-        context.exit(max(_exit_code(outcome, strict) for outcome in outcomes))
+        from crackfront.topography.samples import scans_as_samples
+
+        reading = reading_options(for_files(options, scans), len(scans), "--")
+        found = write_samples(table, scans_as_samples(scans, reading, scales, given), "scan")
+        context.exit(max(exit_code(one.outcome, strict) for one in found))
     stem = Path("results/predict", name) if figure is None else figure
     if not no_figure:
         refuse_unwritable(stem.parent)
@@ -214,7 +177,7 @@ def predict(
         outcome = _simulated(prediction, scales, realisations, seed, say)
     if as_json:
         echo_json(machine_readable(surface, scales, verdict, prediction, outcome))
-    context.exit(_exit_code(verdict.outcome, strict))
+    context.exit(exit_code(verdict.outcome, strict))
 
 
 def _origin(scans: tuple[Path, ...], psd: Path | None, options: Mapping[str, Any]) -> str:
@@ -250,43 +213,6 @@ def _stated_surface(psd: Path | None, options: Mapping[str, Any]) -> Surface:
     return density_surface(read_psd_file(psd, checked_options(PsdOptions, options, "--")))
 
 
-def _exit_code(outcome: str, strict: bool) -> int:
-    """Exit code of what came of a surface: 3 of reservations if strict, 4 without a prediction."""
-    if outcome in ("does not apply", "refused"):
-        return 4
-    return 3 if strict and outcome != "applies" else 0
-
-
-def _write_samples(
-    path: Path, scans: tuple[Path, ...], scales: Scales, options: Mapping[str, Any]
-) -> list[str]:
-    """Write a table with a row for each scan, and give the outcomes."""
-    from crackfront.data.files import write_text
-    from crackfront.topography.page.report import sample_row
-    from crackfront.topography.prediction.prediction import check_and_predict
-    from crackfront.topography.spectrum.measures import read_surface
-
-    refuse_unwritable(path.parent)
-    given, rows = checked_options(PredictionOptions, options, "--"), []
-    reading = reading_options(for_files(options, scans), len(scans), "--")
-    for scan, by in zip(scans, reading, strict=True):
-        try:
-            surface = read_surface([scan], [by])
-            row = sample_row(surface, scales, *check_and_predict(surface, scales, given))
-        except (ValueError, OSError) as error:
-            row = {"outcome": "refused", "remarks": str(error)}
-        click.echo(f"{scan}: {row['outcome']}")
-        rows.append({"scan": str(scan)} | row)
-        # After every scan, as each takes seconds: an interruption keeps what was read.
-        text = io.StringIO()
-        table = csv.DictWriter(text, dict.fromkeys(name for row in rows for name in row))
-        table.writeheader()
-        table.writerows(rows)
-        write_text(path, text.getvalue())
-    click.echo(f"table: {path}")
-    return [row["outcome"] for row in rows]
-
-
 def _simulated(
     prediction: Prediction, scales: Scales, realisations: int, seed: int, say: Say
 ) -> Simulated:
@@ -311,8 +237,8 @@ def _simulated(
     )
 )
 @_scans(required=True)
-@_options_of(ReadingOptions)
-@_options_of(SphereOptions)
+@options_of(ReadingOptions)
+@options_of(SphereOptions)
 @as_json
 @click.option("--field", type=FILE, help="Write the map as a field for crackfront cycle.")
 def surface(scans: tuple[Path, ...], as_json: bool, field: Path | None, **options: Any) -> None:
@@ -355,14 +281,4 @@ def _surface(scans: tuple[Path, ...], options: Mapping[str, Any]) -> MeasuredSur
 
 def _scales(options: Mapping[str, Any]) -> Scales:
     """Scene of the sphere of a command, in SI units."""
-    from crackfront.core.units import Scales
-
-    given = checked_options(SphereOptions, options, "--")
-    modulus, poisson, radius = given.modulus, given.poisson, given.radius
-    adhesion = given.work_of_adhesion
-    if modulus is None or poisson is None or radius is None or adhesion is None:
-        raise ValueError(
-            "the sphere is incomplete; name all of --modulus, --poisson, --radius and "
-            "--work-of-adhesion"
-        )
-    return Scales(radius, adhesion, modulus / (1 - poisson**2))
+    return sphere_scales(checked_options(SphereOptions, options, "--"), "--")

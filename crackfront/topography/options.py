@@ -17,6 +17,7 @@ from typing import Annotated, Any, Literal, TypeVar, get_args
 from pydantic import BaseModel, BeforeValidator, ConfigDict, ValidationError, ValidationInfo
 from pydantic_core import ErrorDetails
 
+from crackfront.core.units import Scales
 from crackfront.data.arguments import refuse_other_type
 from crackfront.data.bounds import SI, Range, refuse_outside
 from crackfront.data.written_units import is_unit, si_value
@@ -276,6 +277,8 @@ def _sides(value: Any, info: ValidationInfo) -> tuple[float, ...]:
 
 
 Length = Annotated[float, quantity("m", "length", "0.4um")]
+Energy = Annotated[float, quantity("J/m^2", "energy per area", "63mJ/m2")]
+Force = Annotated[float, quantity("N", "force", "0.4mN")]
 Text = Annotated[str, BeforeValidator(_text)]
 
 
@@ -327,7 +330,7 @@ class ReadingOptions(Options):
 class PredictionOptions(Options):
     """What a prediction takes into account beside the surface and the sphere."""
 
-    pull_off: Annotated[float, quantity("N", "force", "0.4mN")] | None = None
+    pull_off: Force | None = None
     """Measured pull-off force, as in 0.4mN; the w_int that it implies is stated."""
 
     range: Length | None = None
@@ -376,3 +379,31 @@ class SelfAffineOptions(Options):
 
     short_cutoff: Length | None = None
     """Shortest wavelength of the roughness, as in 10nm; by default 1nm where H is above 0.5."""
+
+
+class SphereOptions(Options):
+    """What is pressed on a surface; the library and configurations have its scales instead."""
+
+    modulus: Annotated[float, quantity("Pa", "pressure", "0.7MPa")] | None = None
+    """Young's modulus, as in 0.7MPa."""
+
+    poisson: Annotated[float, number(Range(-0.99, 0.5))] | None = None
+    """Poisson's ratio, as in 0.5."""
+
+    radius: Length | None = None
+    """Radius of the sphere, as in 1.25mm."""
+
+    work_of_adhesion: Energy | None = None
+    """w_int, as in 63mJ/m2."""
+
+
+def sphere_scales(given: SphereOptions, prefix: str = "") -> Scales:
+    """Scene of a sphere, in SI units; ValueError where a number of it is missing."""
+    modulus, poisson, radius = given.modulus, given.poisson, given.radius
+    adhesion = given.work_of_adhesion
+    if modulus is None or poisson is None or radius is None or adhesion is None:
+        names = [_shown_name(name, prefix) for name in SphereOptions.model_fields]
+        raise ValueError(
+            f"the sphere is incomplete; name all of {', '.join(names[:-1])} and {names[-1]}"
+        )
+    return Scales(radius, adhesion, modulus / (1 - poisson**2))

@@ -7,11 +7,12 @@ import numpy as np
 import pytest
 
 import crackfront as cf
-from crackfront.cli.surface import SphereOptions, predict, surface
+from crackfront.cli.surface import predict, surface
 from crackfront.sweep.sections import SurfaceSection
 from crackfront.topography.options import (
     PredictionOptions,
     ReadingOptions,
+    SphereOptions,
     checked_options,
     for_files,
     reading_options,

@@ -15,7 +15,7 @@ from crackfront.data.written_units import prefixed
 from crackfront.topography.density.bands import BandLimit
 from crackfront.topography.prediction.prediction import Prediction
 from crackfront.topography.prediction.remarks import Remark, Verdict, remark_lines, remark_text
-from crackfront.topography.prediction.surface_remarks import surface_remarks
+from crackfront.topography.prediction.surface_remarks import is_lower_bound, surface_remarks
 from crackfront.topography.prediction.texts import ENERGY, estimate_text, wavelengths_text
 from crackfront.topography.spectrum.fit import Fit
 from crackfront.topography.spectrum.measures import MeasuredSurface
@@ -155,6 +155,14 @@ def sample_row(
 ) -> dict[str, Any]:
     """Row of a surface in a table: numbers and the ends of their 95% intervals, in SI units."""
     remarks = " ".join(map(remark_text, verdict.of("fails", "undecided", "reservation")))
+    sentences = {
+        "outcome": verdict.outcome,
+        "failed": "; ".join(one.concerns for one in verdict.of("fails")),
+        "undecided": "; ".join(one.concerns for one in verdict.of("undecided")),
+        "at_least": is_lower_bound(surface),
+        "none_expected": None if prediction is None else prediction.none_is_expected,
+        "remarks": remarks,
+    }
     numbers = {
         f"rms_{_MEASURES[one.order][0].replace('-', '_')}": to_jsonable(one.rms)
         for one in surface.measures
@@ -162,7 +170,7 @@ def sample_row(
     numbers["e_el"] = to_jsonable(surface.conformity_energy(scales.contact_modulus))
     numbers |= {} if prediction is None else _prediction_entries(prediction)
     heads = {"value": "", "low": "_low", "high": "_high"}
-    return {"outcome": verdict.outcome, "remarks": remarks} | {
+    return sentences | {
         f"{name}{head}": entry[end]
         for name, entry in numbers.items()
         for end, head in heads.items()

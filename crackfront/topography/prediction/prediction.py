@@ -63,6 +63,11 @@ class Prediction:
         "w_int that a measured pull-off force implies", "J m-2"
     )
 
+    @property
+    def none_is_expected(self) -> bool:
+        """Whether the contact is too small for hysteresis, by the law of k."""
+        return self.size < shipped_law().size[0]
+
     def __repr__(self) -> str:
         """The page that the command `crackfront predict` prints."""
         return prediction_page(self)
@@ -71,9 +76,9 @@ class Prediction:
 def prediction_page(prediction: Prediction) -> str:
     """What an experimenter wants first: numbers, how far to trust them, what to measure next."""
     surface, e_el = prediction.surface, prediction.e_el
-    smallest = shipped_law().size[0]
     hysteresis = estimate_text(ENERGY, prediction.hysteresis)
-    if prediction.size < smallest:
+    if prediction.none_is_expected:
+        smallest = shipped_law().size[0]
         hysteresis += f"; none expected: g {prediction.size:.2g} is below {smallest:.2g}"
     pull_off = estimate_text("N", prediction.pull_off_force)
     smooth = prefixed("N", prediction.pull_off_force_smooth)

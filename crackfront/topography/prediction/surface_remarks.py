@@ -159,6 +159,11 @@ def spectrum_remarks(surface: Surface) -> Iterator[Remark]:
         yield Remark("spectrum", "reservation", sentence)
 
 
+def is_lower_bound(surface: Surface) -> bool:
+    """Whether e_el is a least one, as waves shorter than all that are known would add to it."""
+    return surface.shares.missing_short > _MOST_UNMEASURED
+
+
 def _scan_doubts(one: Scan, density: JointDensity, index: int) -> Iterator[str]:
     """Sentences on a scan that is not isotropic, or departs from the other scans."""
     path, ratio, level = one.measurement.path, one.band.anisotropy, density.levels[index]

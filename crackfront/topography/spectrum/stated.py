@@ -119,15 +119,14 @@ def self_affine_surface_of(given: SelfAffineOptions) -> StatedSurface:
         or (given.correlation_length is None) == (given.roll_off is None)
     ):
         raise ValueError(
-            "a surface of numbers needs --rms, --hurst, and one of --correlation-length and "
-            "--roll-off"
+            "a surface of numbers needs rms and hurst, and one of correlation length and roll-off"
         )
     cutoff, doubts = given.short_cutoff, []
     if cutoff is None:
         if hurst <= 0.5:
             raise ValueError(
                 f"the shortest waves decide e_el where the Hurst exponent is {hurst:g}, not above "
-                "0.5; name their wavelength, as in --short-cutoff 10nm"
+                "0.5; name their wavelength as short cutoff, as in 10nm"
             )
         cutoff = ATOMS
     length = given.correlation_length
@@ -136,7 +135,7 @@ def self_affine_surface_of(given: SelfAffineOptions) -> StatedSurface:
     if roll_off < cutoff:
         raise ValueError(
             f"the roll-off, {prefixed('m', roll_off)}, is shorter than the short cutoff, "
-            f"{prefixed('m', cutoff)}; name a shorter --short-cutoff"
+            f"{prefixed('m', cutoff)}; name a shorter short cutoff"
         )
     shape = SelfAffineSpectrum(cutoff, roll_off, hurst)
     shape = shape.amplified(rms**2 / shape.mean_square(0.0))
@@ -144,7 +143,7 @@ def self_affine_surface_of(given: SelfAffineOptions) -> StatedSurface:
         end = min(_RESOLVED * cutoff, roll_off)
         part = shape.mean_square_between(0.5, cutoff, end) / shape.mean_square(0.5)
         doubts.append(
-            f"No --short-cutoff is named: the power law is continued to {prefixed('m', cutoff)}, "
+            f"No short cutoff is named: the power law is continued to {prefixed('m', cutoff)}, "
             f"and waves shorter than {prefixed('m', end)} have {part:.0%} of e_el."
         )
     waves = (roll_off, cutoff) if roll_off > cutoff else (2 * cutoff, cutoff)
@@ -248,7 +247,7 @@ def _roll_off(length: float, hurst: float, cutoff: float) -> float:
     if excess(ends[0]) > 0:
         raise ValueError(
             f"waves longer than a cutoff of {prefixed('m', cutoff)} have no correlation length of "
-            f"{prefixed('m', length)}; name a shorter --short-cutoff"
+            f"{prefixed('m', length)}; name a shorter short cutoff"
         )
     return math.exp(brentq(excess, *ends, xtol=1e-10))
 

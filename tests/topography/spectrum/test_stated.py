@@ -84,18 +84,18 @@ def test_an_unnamed_cutoff_is_assumed_or_asked_for():
     [doubt] = found.doubts
     assert "continued to 1 nm" in doubt
     assert "8% of e_el" in doubt
-    with pytest.raises(ValueError, match=r"Hurst exponent is 0\.5.*--short-cutoff 10nm"):
+    with pytest.raises(ValueError, match=r"Hurst exponent is 0\.5.*as short cutoff, as in 10nm"):
         cf.self_affine_surface(rms="60nm", correlation_length="1um", hurst=0.5)
 
 
 @pytest.mark.parametrize(
     ("numbers", "sentence"),
     [
-        ({"rms": "60nm", "hurst": 0.8}, "needs --rms, --hurst, and one of"),
-        ({"rms": "60nm", "roll_off": "1um"}, "needs --rms, --hurst, and one of"),
+        ({"rms": "60nm", "hurst": 0.8}, "needs rms and hurst, and one of"),
+        ({"rms": "60nm", "roll_off": "1um"}, "needs rms and hurst, and one of"),
         (
             {"rms": "60nm", "roll_off": "1um", "correlation_length": "1um", "hurst": 0.8},
-            "one of --correlation-length and --roll-off",
+            "one of correlation length and roll-off",
         ),
         (
             {"rms": "60nm", "roll_off": "1um", "short_cutoff": "2um", "hurst": 0.8},
