@@ -106,7 +106,10 @@ def _scans(*, required: bool) -> Callable[[Command], Command]:
 @click.option("--panel", type=click.Choice("abcd"), help="Draw one panel of the figure alone.")
 @click.option("--no-figure", is_flag=True, help="Draw no figure, which saves most of the time.")
 @click.option(
-    "--csv", "table", type=FILE, help="Treat each scan as a sample, and write a row for each."
+    "--csv",
+    "table",
+    type=FILE,
+    help="Treat each scan as a sample, and write a row for each; - prints them.",
 )
 @click.option("--long", "is_long", is_flag=True, help="Print all that is known, not one page.")
 @click.option("--strict", is_flag=True, help="Exit with 3 where there are reservations.")

@@ -84,7 +84,7 @@ def test_an_interrupted_batch_of_scans_keeps_the_rows_of_those_before(tmp_path, 
             raise KeyboardInterrupt
         return read_surface(paths, options)
 
-    monkeypatch.setattr("crackfront.topography.spectrum.measures.read_surface", interrupted)
+    monkeypatch.setattr("crackfront.topography.samples.read_surface", interrupted)
     smooth, table = write_smooth(tmp_path / "smooth.al3d"), tmp_path / "samples.csv"
     assert run("predict", *sphere(), "--csv", table, smooth, OVERVIEW).exit_code != 0
     with table.open(encoding="utf-8", newline="") as file:

@@ -92,8 +92,10 @@ def machine_readable(
     found: Simulated | None = None,
 ) -> dict[str, Any]:
     """What the texts say, for JSON, by the names of records and in their SI units."""
-    is_stated = isinstance(surface, StatedSurface)
-    origin: dict[str, Any] = _stated_entries(surface) if is_stated else _measured_entries(surface)
+    if isinstance(surface, StatedSurface):
+        origin = _stated_entries(surface)
+    else:
+        origin = _measured_entries(surface)
     origin["spectrum"] |= {
         "wavelength": list(surface.spectrum.wavelengths),
         "density": list(surface.spectrum.densities),

@@ -168,7 +168,8 @@ def _looks_like_density(one: _Series) -> bool:
     if place.size < _FEWEST_ROWS or not np.all(value > 0) or np.any(one.numbers[:, 0] < 0):
         return False
     ranks = np.argsort(np.argsort([place, value], axis=1), axis=1)
-    falls = np.corrcoef(ranks)[0, 1] < _STEEP
+    correlation: Array = np.asarray(np.corrcoef(ranks))
+    falls = correlation[0, 1] < _STEEP
     return bool(falls) and float(np.max(value)) > _SPAN * float(np.min(value))
 
 
