@@ -32,7 +32,9 @@ if TYPE_CHECKING:
     from crackfront.simulate.user_surface import surface as surface
     from crackfront.sweep.library import run_sweep as run_sweep
     from crackfront.topography.library import predict as predict
+    from crackfront.topography.library import read_psd as read_psd
     from crackfront.topography.library import read_scan as read_scan
+    from crackfront.topography.library import self_affine_surface as self_affine_surface
     from crackfront.topography.options import PredictionOptions as PredictionOptions
     from crackfront.topography.options import ReadingOptions as ReadingOptions
     from crackfront.topography.scan.instruments import list_channels as list_channels

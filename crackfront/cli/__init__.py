@@ -15,6 +15,7 @@ from crackfront.cli.loop import loop
 from crackfront.cli.output import output_that_may_close
 from crackfront.cli.report import StoppedError, announce_compilation, examples
 from crackfront.cli.results import aggregate, archive, curves, figures, fit, summary
+from crackfront.cli.samples import samples
 from crackfront.cli.surface import predict, surface
 from crackfront.cli.sweep import plan, simulate, status
 from crackfront.sweep.parallel import stopping_as_ctrl_c
@@ -90,7 +91,7 @@ def compile_solvers() -> None:
 
 
 SECTIONS: dict[str, tuple[click.Command, ...]] = {
-    "Predictions": (predict, surface, law),
+    "Predictions": (predict, samples, surface, law),
     "One contact": (cycle, loop),
     "Sweeps, in this order": (plan, simulate, status, aggregate, fit, figures, summary, archive),
     "Stored results": (curves, verify, repair, checksums, compare),

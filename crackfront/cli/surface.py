@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import csv
-import io
 from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
+from crackfront.cli.options import options_of
 from crackfront.cli.report import (
     FILE,
     announce_compilation,
@@ -20,18 +19,18 @@ from crackfront.cli.report import (
     refuse_unwritable,
     whole,
 )
+from crackfront.cli.samples import exit_code, write_samples
 from crackfront.data.bounds import SEED, Range, in_time
 from crackfront.topography.options import (
-    PER_SCAN,
-    REPEATED,
-    Length,
-    Options,
     PredictionOptions,
+    PsdOptions,
     ReadingOptions,
+    SelfAffineOptions,
+    SphereOptions,
     checked_options,
-    number,
-    quantity,
+    for_files,
     reading_options,
+    sphere_scales,
 )
 
 if TYPE_CHECKING:
@@ -39,45 +38,10 @@ if TYPE_CHECKING:
     from crackfront.topography.prediction.prediction import Prediction
     from crackfront.topography.prediction.simulated import Simulated
     from crackfront.topography.spectrum.measures import MeasuredSurface
+    from crackfront.topography.spectrum.stated import Surface
 
 Command = Callable[..., None]
 Say = Callable[[str], None]
-
-
-class SphereOptions(Options):
-    """What is pressed on a surface; the library and configurations have its scales instead."""
-
-    modulus: Annotated[float, quantity("Pa", "pressure", "0.7MPa")] | None = None
-    """Young's modulus, as in 0.7MPa."""
-
-    poisson: Annotated[float, number(Range(-0.99, 0.5))] | None = None
-    """Poisson's ratio, as in 0.5."""
-
-    radius: Length | None = None
-    """Radius of the sphere, as in 1.25mm."""
-
-    work_of_adhesion: Annotated[float, quantity("J/m^2", "energy per area", "63mJ/m2")] | None = (
-        None
-    )
-    """w_int, as in 63mJ/m2."""
-
-
-def _options_of(record: type[Options], *, required: bool = False) -> Callable[[Command], Command]:
-    """Give a command an option for every field of a record."""
-
-    def decorated(command: Command) -> Command:
-        for name, field in reversed(record.model_fields.items()):
-            often = [mark for mark in (PER_SCAN, REPEATED) if mark in field.metadata]
-            command = click.option(
-                f"--{name.replace('_', '-')}",
-                required=required,
-                multiple=bool(often),
-                default=field.default or None,
-                help=" ".join([*str(field.description).split(), *often]),
-            )(command)
-        return command
-
-    return decorated
 
 
 def _listed(
@@ -93,27 +57,36 @@ def _listed(
     return scans
 
 
-def _scans(command: Command) -> Command:
+def _scans(*, required: bool) -> Callable[[Command], Command]:
     """Give a command its scans; eager, so that channels are listed without its other options."""
-    command = click.option(
-        "--list-channels", is_flag=True, is_eager=True, help="List the channels of SCANS alone."
-    )(command)
-    scans = click.argument(
-        "scans", type=FILE, nargs=-1, required=True, is_eager=True, callback=_listed
-    )
-    return scans(command)
+
+    def decorated(command: Command) -> Command:
+        command = click.option(
+            "--list-channels", is_flag=True, is_eager=True, help="List the channels of SCANS alone."
+        )(command)
+        scans = click.argument(
+            "scans", type=FILE, nargs=-1, required=required, is_eager=True, callback=_listed
+        )
+        return scans(command)
+
+    return decorated
 
 
 @click.command(
     epilog=examples(
         "crackfront predict examples/scans/nanodiamond-detail.al3d --modulus 0.7MPa \\",
         "    --poisson 0.5 --radius 1.25mm --work-of-adhesion 63mJ/m2 --json",
+        "crackfront predict --rms 60nm --correlation-length 1um --hurst 0.8 --modulus 0.7MPa \\",
+        "    --poisson 0.5 --radius 1.25mm --work-of-adhesion 63mJ/m2",
     )
 )
-@_scans
-@_options_of(ReadingOptions)
-@_options_of(SphereOptions, required=True)
-@_options_of(PredictionOptions)
+@_scans(required=False)
+@options_of(ReadingOptions)
+@click.option("--psd", type=FILE, help="Spectral density of a surface without scans, as text.")
+@options_of(PsdOptions)
+@options_of(SelfAffineOptions)
+@options_of(SphereOptions, required=True)
+@options_of(PredictionOptions)
 @as_json
 @click.option(
     "--simulate", is_flag=True, help="Simulate surfaces of the measured spectrum as well."
@@ -133,7 +106,10 @@ def _scans(command: Command) -> Command:
 @click.option("--panel", type=click.Choice("abcd"), help="Draw one panel of the figure alone.")
 @click.option("--no-figure", is_flag=True, help="Draw no figure, which saves most of the time.")
 @click.option(
-    "--csv", "table", type=FILE, help="Treat each scan as a sample, and write a row for each."
+    "--csv",
+    "table",
+    type=FILE,
+    help="Treat each scan as a sample, and write a row for each; - prints them.",
 )
 @click.option("--long", "is_long", is_flag=True, help="Print all that is known, not one page.")
 @click.option("--strict", is_flag=True, help="Exit with 3 where there are reservations.")
@@ -142,6 +118,7 @@ def predict(
     context: click.Context,
     /,
     scans: tuple[Path, ...],
+    psd: Path | None,
     as_json: bool,
     simulate: bool,
     realisations: int,
@@ -157,8 +134,9 @@ def predict(
     """Predict how strongly a soft sphere sticks to a measured surface, from the fitted law.
 
     SCANS are files of instruments in any format that SurfaceTopography reads, one measurement of
-    the surface or several. Works of adhesion are w_int - e_el -+ k e_el, with k by the law of
-    `crackfront law`.
+    the surface or several. In their place --psd names the export of a spectral density, and --rms
+    with --hurst and --correlation-length or --roll-off the numbers of one. Works of adhesion are
+    w_int - e_el -+ k e_el, with k by the law of `crackfront law`.
 
     Exit code 0: a prediction, with reservations where there are any or where it cannot be decided
     whether the theory applies (3 with --strict). 4: the theory does not apply; nothing is
@@ -170,15 +148,21 @@ def predict(
 
     scales = _scales(options)
     given = checked_options(PredictionOptions, options, "--")
+    name = _origin(scans, psd, options)
     if table is not None:
+        if not scans:
+            raise ValueError("--csv writes a row for each scan; name scans")
         if as_json or simulate or is_long or panel or figure:
             raise ValueError("--csv writes rows alone; leave out what prints, draws or simulates")
-        outcomes = _write_samples(table, scans, scales, options)
-        context.exit(max(_exit_code(outcome, strict) for outcome in outcomes))
-    stem = Path("results/predict", scans[0].stem) if figure is None else figure
+        from crackfront.topography.samples import scans_as_samples
+
+        reading = reading_options(for_files(options, scans), len(scans), "--")
+        found = write_samples(table, scans_as_samples(scans, reading, scales, given), "scan")
+        context.exit(max(exit_code(one.outcome, strict) for one in found))
+    stem = Path("results/predict", name) if figure is None else figure
     if not no_figure:
         refuse_unwritable(stem.parent)
-    surface = _surface(scans, options)
+    surface: Surface = _surface(scans, options) if scans else _stated_surface(psd, options)
     (verdict, prediction), outcome = check_and_predict(surface, scales, given), None
     say: Say = (lambda _: None) if as_json else click.echo
     if prediction is not None:
@@ -196,44 +180,40 @@ def predict(
         outcome = _simulated(prediction, scales, realisations, seed, say)
     if as_json:
         echo_json(machine_readable(surface, scales, verdict, prediction, outcome))
-    context.exit(_exit_code(verdict.outcome, strict))
+    context.exit(exit_code(verdict.outcome, strict))
 
 
-def _exit_code(outcome: str, strict: bool) -> int:
-    """Exit code of what came of a surface: 3 of reservations if strict, 4 without a prediction."""
-    if outcome in ("does not apply", "refused"):
-        return 4
-    return 3 if strict and outcome != "applies" else 0
+def _origin(scans: tuple[Path, ...], psd: Path | None, options: Mapping[str, Any]) -> str:
+    """Name for the figure of a surface, which is refused unless it is given in one way."""
+    is_stated = any(options[name] is not None for name in SelfAffineOptions.model_fields)
+    ways = {"SCANS": bool(scans), "--psd": psd is not None, "--rms": is_stated}
+    named = [way for way, is_named in ways.items() if is_named]
+    if len(named) != 1:
+        raise ValueError(
+            f"the surface is given {'by ' + ' and '.join(named) if named else 'in no way'}; name "
+            "scans, or a spectral density with --psd, or numbers with --rms"
+        )
+    further = [name for name in PsdOptions.model_fields if options[name] is not None]
+    if psd is None and further:
+        raise ValueError(f"--{further[0].replace('_', '-')} is of a density; name it with --psd")
+    reading = [
+        name
+        for name, field in ReadingOptions.model_fields.items()
+        if options[name] and options[name] != field.default
+    ]
+    if not scans and reading:
+        raise ValueError(f"--{reading[0].replace('_', '-')} is of scans; leave it out")
+    return scans[0].stem if scans else "numbers" if psd is None else psd.stem
 
 
-def _write_samples(
-    path: Path, scans: tuple[Path, ...], scales: Scales, options: Mapping[str, Any]
-) -> list[str]:
-    """Write a table with a row for each scan, and give the outcomes."""
-    from crackfront.data.files import write_text
-    from crackfront.topography.page.report import sample_row
-    from crackfront.topography.prediction.prediction import check_and_predict
-    from crackfront.topography.spectrum.measures import read_surface
+def _stated_surface(psd: Path | None, options: Mapping[str, Any]) -> Surface:
+    """Surface of a density or of numbers that a command names."""
+    from crackfront.topography.scan.psd import read_psd_file
+    from crackfront.topography.spectrum.stated import density_surface, self_affine_surface_of
 
-    refuse_unwritable(path.parent)
-    given, rows = checked_options(PredictionOptions, options, "--"), []
-    reading = reading_options(options, len(scans), "--")
-    for scan, by in zip(scans, reading, strict=True):
-        try:
-            surface = read_surface([scan], [by])
-            row = sample_row(surface, scales, *check_and_predict(surface, scales, given))
-        except (ValueError, OSError) as error:
-            row = {"outcome": "refused", "remarks": str(error)}
-        click.echo(f"{scan}: {row['outcome']}")
-        rows.append({"scan": str(scan)} | row)
-        # After every scan, as each takes seconds: an interruption keeps what was read.
-        text = io.StringIO()
-        table = csv.DictWriter(text, dict.fromkeys(name for row in rows for name in row))
-        table.writeheader()
-        table.writerows(rows)
-        write_text(path, text.getvalue())
-    click.echo(f"table: {path}")
-    return [row["outcome"] for row in rows]
+    if psd is None:
+        return self_affine_surface_of(checked_options(SelfAffineOptions, options, "--"))
+    return density_surface(read_psd_file(psd, checked_options(PsdOptions, options, "--")))
 
 
 def _simulated(
@@ -259,9 +239,9 @@ def _simulated(
         "    --work-of-adhesion 63mJ/m2 --field field.nc",
     )
 )
-@_scans
-@_options_of(ReadingOptions)
-@_options_of(SphereOptions)
+@_scans(required=True)
+@options_of(ReadingOptions)
+@options_of(SphereOptions)
 @as_json
 @click.option("--field", type=FILE, help="Write the map as a field for crackfront cycle.")
 def surface(scans: tuple[Path, ...], as_json: bool, field: Path | None, **options: Any) -> None:
@@ -281,6 +261,8 @@ def surface(scans: tuple[Path, ...], as_json: bool, field: Path | None, **option
     echo_answer(content, [report_text(found, scales)], as_json=as_json)
     if field is None or scales is None:
         return
+    if len(found.scans) > 1:
+        raise ValueError(f"--field takes one scan, and {scans[0]} holds {len(found.scans)}")
     from crackfront.simulate.files import save_result
     from crackfront.simulate.user_surface import surface_adhesion
     from crackfront.topography.tile import scan_surface
@@ -294,7 +276,7 @@ def surface(scans: tuple[Path, ...], as_json: bool, field: Path | None, **option
 
 def _surface(scans: tuple[Path, ...], options: Mapping[str, Any]) -> MeasuredSurface:
     """Surface of the files that a command names, read by its options."""
-    reading = reading_options(options, len(scans), "--")
+    reading = reading_options(for_files(options, scans), len(scans), "--")
     from crackfront.topography.spectrum.measures import read_surface
 
     return read_surface(scans, reading)
@@ -302,14 +284,4 @@ def _surface(scans: tuple[Path, ...], options: Mapping[str, Any]) -> MeasuredSur
 
 def _scales(options: Mapping[str, Any]) -> Scales:
     """Scene of the sphere of a command, in SI units."""
-    from crackfront.core.units import Scales
-
-    given = checked_options(SphereOptions, options, "--")
-    modulus, poisson, radius = given.modulus, given.poisson, given.radius
-    adhesion = given.work_of_adhesion
-    if modulus is None or poisson is None or radius is None or adhesion is None:
-        raise ValueError(
-            "the sphere is incomplete; name all of --modulus, --poisson, --radius and "
-            "--work-of-adhesion"
-        )
-    return Scales(radius, adhesion, modulus / (1 - poisson**2))
+    return sphere_scales(checked_options(SphereOptions, options, "--"), "--")

@@ -15,7 +15,9 @@ from crackfront.simulate.si_units import refuse_no_scales
 from crackfront.topography.density.bands import scan
 from crackfront.topography.options import (
     PredictionOptions,
+    PsdOptions,
     ReadingOptions,
+    SelfAffineOptions,
     checked_options,
     reading_options,
     refuse_unknown,
@@ -23,8 +25,15 @@ from crackfront.topography.options import (
 from crackfront.topography.prediction.prediction import Prediction, check_and_predict
 from crackfront.topography.prediction.remarks import remark_text
 from crackfront.topography.scan.instruments import surface_library
+from crackfront.topography.scan.psd import read_psd_file
 from crackfront.topography.scan.reading import read_measurements
-from crackfront.topography.spectrum.measures import read_surface
+from crackfront.topography.spectrum.measures import MeasuredSurface, read_surface
+from crackfront.topography.spectrum.stated import (
+    StatedSurface,
+    Surface,
+    density_surface,
+    self_affine_surface_of,
+)
 from crackfront.topography.tile import scan_surface
 
 File = str | PathLike[str]
@@ -41,9 +50,9 @@ def read_scan(path: File, sphere: Scales, **options: Any) -> DataArray:
         What is pressed on it; it says what a reduced length is.
     **options
         Fields of :class:`~crackfront.topography.options.ReadingOptions`, as
-        ``crop="2um:8um,0um:5um"`` or ``shortest=4e-7``: channel, crop, detrend, mask, unit,
-        height_unit, size, tip_radius, shortest, longest. `crackfront surface --help` says what
-        each means.
+        ``crop="2um:8um,0um:5um"`` or ``shortest=4e-7``: channel, crop, detrend, mask, surface,
+        unit, height_unit, size, tip_radius, shortest, longest. `crackfront surface --help`
+        says what each means.
 
     Returns
     -------
@@ -65,7 +74,9 @@ def read_scan(path: File, sphere: Scales, **options: Any) -> DataArray:
     file = _path(path)
     [reading] = reading_options(options, 1)
     surface_library()  # All of it, as the user's program may import it too.
-    [measured] = read_measurements([file], reading)
+    measured, *others = read_measurements([file], reading)
+    if others:
+        raise ValueError(f"{file} holds {1 + len(others)} measurements; name the file of one")
     return scan_surface(scan(measured, reading.shortest, reading.longest), sphere)
 
 
@@ -75,15 +86,83 @@ def _path(scan: File) -> Path:
     return Path(scan)
 
 
+def read_psd(path: File, **options: Any) -> StatedSurface:
+    """A surface by its spectral density, as another program has exported it.
+
+    Parameters
+    ----------
+    path : str or path
+        Text of two columns: exports of contact.engineering, Gwyddion, MountainsMap, or any other
+        whose heads say what the columns are.
+    **options
+        Fields of :class:`~crackfront.topography.options.PsdOptions`, where the file does not say
+        it, as ``psd_units="1/um,um^3"`` or ``psd_sides="one"``.
+
+    Returns
+    -------
+    StatedSurface
+        Isotropic spectrum in SI units, for :func:`predict`.
+
+    Raises
+    ------
+    ValueError
+        If the file holds no density, or its convention is not known.
+    TypeError
+        If an argument is of another type.
+    OSError
+        If the file cannot be opened.
+    """
+    refuse_unknown("read_psd", options, PsdOptions)
+    return density_surface(read_psd_file(_path(path), checked_options(PsdOptions, options)))
+
+
+def self_affine_surface(**numbers: Any) -> StatedSurface:
+    """A surface by the numbers of a self-affine spectrum, for :func:`predict`.
+
+    Parameters
+    ----------
+    **numbers
+        Fields of :class:`~crackfront.topography.options.SelfAffineOptions`: rms, hurst, and either
+        correlation_length (where the autocorrelation of the heights is 1/e) or roll_off; and
+        short_cutoff, which is needed for a Hurst exponent of 0.5 or less. Lengths are texts with a
+        unit, or numbers in metres.
+
+    Returns
+    -------
+    StatedSurface
+        Spectrum of :class:`~crackfront.core.spectrum.SelfAffineSpectrum`, in SI units.
+
+    Raises
+    ------
+    ValueError
+        If a number is missing, or they contradict each other.
+    TypeError
+        If an argument is of another type.
+
+    Examples
+    --------
+    >>> rough = self_affine_surface(rms="60nm", correlation_length="1um", hurst=0.8)
+    >>> f"{rough.measures[0].rms.value * 1e9:.4g} nm, {rough.longest * 1e6:.3g} um"
+    '60 nm, 4.11 um'
+    """
+    refuse_unknown("self_affine_surface", numbers, SelfAffineOptions)
+    return self_affine_surface_of(checked_options(SelfAffineOptions, numbers))
+
+
 def predict(
-    scans: File | Iterable[File], sphere: Scales, *, strict: bool = False, **options: Any
+    scans: File | Iterable[File] | StatedSurface,
+    sphere: Scales,
+    *,
+    strict: bool = False,
+    **options: Any,
 ) -> Prediction:
     """How strongly a sphere sticks to a measured surface, by the law of k.
 
     Parameters
     ----------
-    scans : path or list of paths
-        One measurement of the surface or several, maps or lines.
+    scans : path or list of paths, or StatedSurface
+        One measurement of the surface or several, maps or lines; or what :func:`read_psd` or
+        :func:`self_affine_surface` gives.
     sphere : Scales
         What is pressed on it.
     strict : bool, optional
@@ -91,7 +170,8 @@ def predict(
     **options
         Those of :func:`read_scan`, and fields of
         :class:`~crackfront.topography.options.PredictionOptions`, as ``range="0.3nm"``: pull_off,
-        range. A list gives every scan its own channel, crop or tip radius.
+        range. A list gives every scan its own channel, crop, surface, unit, height_unit, size or
+        tip_radius.
 
     Returns
     -------
@@ -108,14 +188,11 @@ def predict(
     OSError
         If a file cannot be opened.
     """
-    refuse_unknown("predict", options, ReadingOptions, PredictionOptions)
+    is_stated = isinstance(scans, StatedSurface)
+    refuse_unknown("predict", options, PredictionOptions, *(() if is_stated else (ReadingOptions,)))
     refuse_no_scales(sphere)
-    paths = [scans] if isinstance(scans, (str, PathLike)) else scans
-    refuse_other_type("scans", paths, Iterable, "the path of a file, or a list of such")
-    files = [_path(path) for path in paths]
     given = checked_options(PredictionOptions, options)
-    surface_library()  # All of it, as the user's program may import it too.
-    surface = read_surface(files, reading_options(options, len(files)))
+    surface: Surface = scans if isinstance(scans, StatedSurface) else _measured(scans, options)
     verdict, prediction = check_and_predict(surface, sphere, given)
     if prediction is None:
         failing = map(remark_text, verdict.of("fails", "undecided"))
@@ -124,3 +201,12 @@ def predict(
         sentences = " ".join(map(remark_text, found))
         raise ValueError(f"the theory applies with reservations: {sentences}")
     return prediction
+
+
+def _measured(scans: File | Iterable[File], options: dict[str, Any]) -> MeasuredSurface:
+    """Surface of one scan or several."""
+    paths = [scans] if isinstance(scans, (str, PathLike)) else scans
+    refuse_other_type("scans", paths, Iterable, "the path of a file, or a list of such")
+    files = [_path(path) for path in paths]
+    surface_library()  # All of it, as the user's program may import it too.
+    return read_surface(files, reading_options(options, len(files)))

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import difflib
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from numbers import Integral, Real
 from os import PathLike
 from pathlib import Path
@@ -17,6 +17,7 @@ from typing import Annotated, Any, Literal, TypeVar, get_args
 from pydantic import BaseModel, BeforeValidator, ConfigDict, ValidationError, ValidationInfo
 from pydantic_core import ErrorDetails
 
+from crackfront.core.units import Scales
 from crackfront.data.arguments import refuse_other_type
 from crackfront.data.bounds import SI, Range, refuse_outside
 from crackfront.data.written_units import is_unit, si_value
@@ -29,10 +30,13 @@ Detrend = DetrendName | int
 HIGHEST_ORDER = 9
 """Highest order of a polynomial; more would be a filter of waves, which its fit is not."""
 
+PsdKind = Literal["1d", "2d", "radial", "q2d"]
+PsdAbscissa = Literal["wavevector", "frequency", "wavelength"]
+
 Region = tuple[tuple[float, float], ...]
 """Ends of a part of a scan along every direction (Units: m)."""
 
-PER_SCAN = "One for all scans, or one for each."
+PER_SCAN = "One for all scans, one for each in order, or FILE=VALUE."
 """Marks a field for which every scan of a surface may have its own value."""
 
 REPEATED = "May be repeated."
@@ -101,8 +105,43 @@ def _values_per_scan(given: Mapping[str, Any]) -> list[tuple[str, Any]]:
     return [
         (name, given[name] or [None])
         for name, field in ReadingOptions.model_fields.items()
-        if PER_SCAN in field.metadata and isinstance(given.get(name), (list, tuple))
+        if PER_SCAN in field.metadata and _is_per_scan(name, given.get(name))
     ]
+
+
+def _is_per_scan(name: str, value: Any) -> bool:
+    """Whether a value has an entry for each scan, and is no pair of sides for all."""
+    if not isinstance(value, (list, tuple)):
+        return False
+    return not (name == "size" and value and all(isinstance(one, Real) for one in value))
+
+
+def for_files(given: Mapping[str, Any], files: Sequence[Path]) -> dict[str, Any]:
+    """Options of a command with FILE=VALUE, as lists with a value or None for every file.
+
+    ValueError, of one sentence, where a FILE is none of the files, or has two values.
+    """
+    found = dict(given)
+    for name, field in ReadingOptions.model_fields.items():
+        values = given.get(name)
+        if PER_SCAN not in field.metadata or not values or not any("=" in one for one in values):
+            continue
+        shown, own = _shown_name(name, "--"), dict[int, str]()
+        parts = [value.rpartition("=") for value in values]
+        named = [
+            [i for i, one in enumerate(files) if part[0] in (str(one), one.name)] for part in parts
+        ]
+        if name in ("channel", "surface") and not any(named):
+            continue  # A name with this sign in it.
+        for value, (_, sign, text), places in zip(values, parts, named, strict=True):
+            if not sign or len(places) != 1 or places[0] in own:
+                raise ValueError(
+                    f"{shown} is {value!r}; write FILE=VALUE once for each of some files, which "
+                    f"are {', '.join(map(str, files))}"
+                )
+            own[places[0]] = text
+        found[name] = [own.get(place) for place in range(len(files))]
+    return found
 
 
 def refuse_unknown(function: str, names: Iterable[str], *records: type[Options]) -> None:
@@ -238,6 +277,8 @@ def _sides(value: Any, info: ValidationInfo) -> tuple[float, ...]:
 
 
 Length = Annotated[float, quantity("m", "length", "0.4um")]
+Energy = Annotated[float, quantity("J/m^2", "energy per area", "63mJ/m2")]
+Force = Annotated[float, quantity("N", "force", "0.4mN")]
 Text = Annotated[str, BeforeValidator(_text)]
 
 
@@ -261,13 +302,16 @@ class ReadingOptions(Options):
     """What the levelling leaves out and the map keeps: a part of the scan as in crop, or a file
     with a number for each point, not zero there."""
 
-    unit: Text | None = None
+    surface: Annotated[Text | None, PER_SCAN] = None
+    """Surface by name or number, for containers of contact.engineering with several."""
+
+    unit: Annotated[Text | None, PER_SCAN] = None
     """Unit of length of files that state none, as in um."""
 
-    height_unit: Text | None = None
+    height_unit: Annotated[Text | None, PER_SCAN] = None
     """Unit of the heights alone, as in nm, where a file states none or one that cannot be."""
 
-    size: Annotated[tuple[float, ...], BeforeValidator(_sides)] | None = None
+    size: Annotated[Annotated[tuple[float, ...], BeforeValidator(_sides)] | None, PER_SCAN] = None
     """Sides of scans that state none, in --unit, as in 50,40; 50 for a square or a line."""
 
     tip_radius: Annotated[Length | None, PER_SCAN] = None
@@ -286,8 +330,80 @@ class ReadingOptions(Options):
 class PredictionOptions(Options):
     """What a prediction takes into account beside the surface and the sphere."""
 
-    pull_off: Annotated[float, quantity("N", "force", "0.4mN")] | None = None
+    pull_off: Force | None = None
     """Measured pull-off force, as in 0.4mN; the w_int that it implies is stated."""
 
     range: Length | None = None
     """Range of the attraction, as in 0.3nm; by default 0.5nm, that of van der Waals forces."""
+
+
+class PsdOptions(Options):
+    """What a file of a spectral density does not say of its convention."""
+
+    psd_series: Text | None = None
+    """Series by name or number, for files with several."""
+
+    psd_units: Text | None = None
+    """Units of both columns, as in 1/um,um^3, where their heads have none."""
+
+    psd_kind: PsdKind | None = None
+    """What the density is of: 1d (profiles), 2d (isotropic), radial (its integral is the mean
+    square), q2d (q/pi times 2d); by default what its unit and head say."""
+
+    psd_abscissa: PsdAbscissa | None = None
+    """What the first column is: wavevector (2 pi / wavelength), frequency (1 / wavelength) or
+    wavelength; by default what its head says."""
+
+    psd_sides: Literal["one", "two"] | None = None
+    """Whether a 1d density counts every wave once (one) or with its negative (two)."""
+
+    psd_norm: Literal["2pi", "1"] | None = None
+    """Over what the density is integrated to the mean square: q/2pi (2pi) or q (1, as in
+    Gwyddion)."""
+
+
+class SelfAffineOptions(Options):
+    """Numbers of a self-affine surface: flat to the roll-off, a power law to the short cutoff."""
+
+    rms: Length | None = None
+    """Rms height of a surface without scans, as in 60nm."""
+
+    correlation_length: Length | None = None
+    """Distance at which the autocorrelation of its heights is 1/e, as in 1um."""
+
+    roll_off: Length | None = None
+    """Roll-off wavelength, in place of the correlation length."""
+
+    hurst: Annotated[float, number(Range(1e-3, 1.0))] | None = None
+    """Hurst exponent, as in 0.8."""
+
+    short_cutoff: Length | None = None
+    """Shortest wavelength of the roughness, as in 10nm; by default 1nm where H is above 0.5."""
+
+
+class SphereOptions(Options):
+    """What is pressed on a surface; the library and configurations have its scales instead."""
+
+    modulus: Annotated[float, quantity("Pa", "pressure", "0.7MPa")] | None = None
+    """Young's modulus, as in 0.7MPa."""
+
+    poisson: Annotated[float, number(Range(-0.99, 0.5))] | None = None
+    """Poisson's ratio, as in 0.5."""
+
+    radius: Length | None = None
+    """Radius of the sphere, as in 1.25mm."""
+
+    work_of_adhesion: Energy | None = None
+    """w_int, as in 63mJ/m2."""
+
+
+def sphere_scales(given: SphereOptions, prefix: str = "") -> Scales:
+    """Scene of a sphere, in SI units; ValueError where a number of it is missing."""
+    modulus, poisson, radius = given.modulus, given.poisson, given.radius
+    adhesion = given.work_of_adhesion
+    if modulus is None or poisson is None or radius is None or adhesion is None:
+        names = [_shown_name(name, prefix) for name in SphereOptions.model_fields]
+        raise ValueError(
+            f"the sphere is incomplete; name all of {', '.join(names[:-1])} and {names[-1]}"
+        )
+    return Scales(radius, adhesion, modulus / (1 - poisson**2))

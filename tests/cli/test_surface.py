@@ -84,7 +84,7 @@ def test_an_interrupted_batch_of_scans_keeps_the_rows_of_those_before(tmp_path, 
             raise KeyboardInterrupt
         return read_surface(paths, options)
 
-    monkeypatch.setattr("crackfront.topography.spectrum.measures.read_surface", interrupted)
+    monkeypatch.setattr("crackfront.topography.samples.read_surface", interrupted)
     smooth, table = write_smooth(tmp_path / "smooth.al3d"), tmp_path / "samples.csv"
     assert run("predict", *sphere(), "--csv", table, smooth, OVERVIEW).exit_code != 0
     with table.open(encoding="utf-8", newline="") as file:
@@ -312,3 +312,50 @@ def test_the_documentation_states_the_range_of_the_law():
     smallest, largest = law.size
     assert f"w_rms/w_int from {weakest:.2g} to {strongest:.2g} and g from {smallest:.2g} " in page
     assert f"to {largest:.3g}" in page
+
+
+NUMBERS = ("--rms", "20nm", "--roll-off", "2um", "--hurst", "0.8", "--short-cutoff", "20nm")
+
+
+def test_a_surface_may_be_given_by_a_density_or_by_numbers(tmp_path):
+    spectrum = cf.SelfAffineSpectrum(20e-9, 2e-6, 0.8)
+    spectrum = spectrum.amplified(20e-9**2 / spectrum.mean_square(0.0))
+    q = 2 * np.pi / np.geomspace(8e-6, 20e-9, 50)
+    path = tmp_path / "psd.csv"
+    rows = zip(q, spectrum.density(q), strict=True)
+    path.write_text("q (1/m),C2D (m^4)\n" + "".join(f"{a},{b}\n" for a, b in rows))
+    surfaces = (("--psd", path), NUMBERS)
+    found = []
+    for surface in surfaces:
+        result = run("predict", *surface, *sphere(), "--no-figure", "--json")
+        assert result.exit_code == 0, result.output
+        found.append(json.loads(result.output))
+    energies = [content["prediction"]["e_el"]["value"] for content in found]
+    assert energies[0] == pytest.approx(energies[1], rel=0.01)
+    assert energies[1] == pytest.approx(SCENE.contact_modulus / 4 * spectrum.mean_square(0.5))
+    for content in found:
+        assert content["measurements"] == []
+        assert any("Without heights" in text for text in reservations(content))
+    page = run("predict", *NUMBERS, *sphere(), "--figure", tmp_path / "figure.png", "--long")
+    assert "rms height 20 nm, roll-off 2 um, H 0.8" in page.output
+    assert (tmp_path / "figure.png").stat().st_size > 10_000
+
+
+@pytest.mark.parametrize(
+    ("surface", "sentence"),
+    [
+        ((), "the surface is given in no way; name scans"),
+        ((DETAIL, *NUMBERS), "by SCANS and --rms"),
+        (("--psd", "psd.csv", *NUMBERS), "by --psd and --rms"),
+        ((DETAIL, "--psd-sides", "one"), "--psd-sides is of a density; name it with --psd"),
+        ((*NUMBERS, "--unit", "um"), "--unit is of scans; leave it out"),
+        ((*NUMBERS, "--csv", "out.csv"), "--csv writes a row for each scan"),
+        ((*NUMBERS, "--panel", "d"), "panel d shows scans, and there are none"),
+        (("--rms", "20nm"), "needs rms and hurst, and one of"),
+        (("--psd", "psd.csv", "--psd-kind", "3d"), "--psd-kind is '3d'; it must be '1d'"),
+    ],
+)
+def test_a_surface_is_given_in_one_way(tmp_path, monkeypatch, surface, sentence):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "psd.csv").write_text("q,PSD\n1,2\n2,1\n")
+    assert sentence in refused("predict", *surface, *sphere())

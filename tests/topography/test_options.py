@@ -1,17 +1,20 @@
 """Options of reading and predicting: the same in commands, library and configurations."""
 
 import re
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 import crackfront as cf
-from crackfront.cli.surface import SphereOptions, predict, surface
+from crackfront.cli.surface import predict, surface
 from crackfront.sweep.sections import SurfaceSection
 from crackfront.topography.options import (
     PredictionOptions,
     ReadingOptions,
+    SphereOptions,
     checked_options,
+    for_files,
     reading_options,
 )
 from tests.topography.made import DETAIL, OVERVIEW, SCENE
@@ -38,7 +41,7 @@ def test_every_option_has_a_meaning_that_the_commands_show():
             assert shown.startswith(" ".join(field.description.split()))
     for function, names in ((cf.read_scan, READING), (cf.predict, PREDICTION)):
         assert names <= set(re.findall(r"\w+", function.__doc__))
-    assert "One for all scans, or one for each." in help_of("tip_radius")
+    assert "One for all scans, one for each in order, or FILE=VALUE." in help_of("tip_radius")
     assert "May be repeated." in help_of("mask")
 
 
@@ -121,3 +124,18 @@ def test_reservations_fail_where_the_library_is_strict():
     assert cf.predict(OVERVIEW, SCENE).verdict.of("reservation")
     with pytest.raises(ValueError, match=r"^the theory applies with reservations: small slopes"):
         cf.predict(OVERVIEW, SCENE, strict=True)
+
+
+def test_a_unit_may_be_given_for_each_file():
+    files = [Path("a.txt"), Path("data/b.txt"), Path("c.txt")]
+    given = for_files({"unit": ("b.txt=um", "c.txt=nm"), "size": ("a.txt=5,4",)}, files)
+    found = reading_options(given, 3, "--")
+    assert [one.unit for one in found] == [None, "um", "nm"]
+    assert [one.size for one in found] == [(5, 4), None, None]
+    in_order = reading_options({"unit": ["um", "nm", None], "size": [50, 40]}, 3)
+    assert [one.unit for one in in_order] == ["um", "nm", None]
+    assert {one.size for one in in_order} == {(50, 40)}
+    assert for_files({"channel": ("x=1",)}, files) == {"channel": ("x=1",)}
+    for unit in (("d.txt=um",), ("a.txt=um", "a.txt=nm"), ("a.txt=um", "nm")):
+        with pytest.raises(ValueError, match=r"--unit is .*write FILE=VALUE once"):
+            for_files({"unit": unit}, files)

@@ -37,6 +37,7 @@ from crackfront.topography.prediction.prediction import Prediction
 from crackfront.topography.scan.levelling import Array
 from crackfront.topography.scan.reading import Measurement
 from crackfront.topography.spectrum.measures import MeasuredSurface
+from crackfront.topography.spectrum.stated import StatedSurface, Surface
 
 _MOST_MAPS, _FEWEST_PLACES = 4, 2
 """Scans that are shown as maps, and places for them."""
@@ -57,11 +58,14 @@ _ROOM = 3.0
 """How far beyond the longest trusted wavelength the spectrum is shown."""
 
 
-def prediction_figure(
-    surface: MeasuredSurface, prediction: Prediction, panel: str | None = None
-) -> Figure:
-    """Densities with the spectrum, forces of both branches and scans; or one panel, by letter."""
+def prediction_figure(surface: Surface, prediction: Prediction, panel: str | None = None) -> Figure:
+    """Densities with the spectrum, forces of both branches and scans; or one panel, by letter.
+
+    Of a spectrum alone there are panels a and c; ValueError of any other.
+    """
     with house_style():
+        if isinstance(surface, StatedSurface):
+            return _stated_figure(surface, prediction, panel)
         if panel == "d":
             figure = blank_figure(0.5 * PAGE * min(len(surface.scans), _MOST_MAPS), 0.4 * PAGE)
             _draw_scans(figure, surface)
@@ -84,6 +88,48 @@ def prediction_figure(
         return figure
 
 
+def _stated_figure(surface: StatedSurface, prediction: Prediction, panel: str | None) -> Figure:
+    """The spectrum and the forces of both branches, or one of them."""
+    names = ["a", "c"] if panel is None else [panel]
+    if not set(names) <= {"a", "c"}:
+        raise ValueError(f"panel {panel} shows scans, and there are none; choose a or c")
+    figure = blank_figure(PAGE if panel is None else 0.6 * PAGE, 0.45 * PAGE)
+    for name, axes in zip(names, figure.subplots(1, len(names), squeeze=False)[0], strict=True):
+        if name == "a":
+            _draw_stated(axes, surface)
+        else:
+            _draw_forces(axes, surface, prediction)
+        if panel is None:
+            label_panel(axes, name, _BESIDE_TICKS)
+    return figure
+
+
+def _draw_stated(axes: Axes, surface: StatedSurface) -> None:
+    """A spectrum that is stated, and the scales that dominate."""
+    spectrum = surface.spectrum
+    wavevector = _set_wavevectors(axes, surface)
+    shown = wavevector[wavevector <= 2 * np.pi / spectrum.short_cutoff]
+    axes.plot(shown, spectrum.density(shown), color=BLACK, label="spectrum", zorder=4)
+    axes.plot(
+        2 * np.pi / np.array(spectrum.wavelengths),
+        spectrum.densities,
+        linestyle="none",
+        marker="o",
+        markersize=2.8,
+        markerfacecolor="none",
+        markeredgewidth=0.6,
+        color=BLUE,
+        label="as given",
+        zorder=3,
+    )
+    axes.set_ylim(bottom=0.02 * min(spectrum.densities))
+    scales = [(item.rms.value**2, item.shortest, item.longest) for item in surface.measures]
+    draw_dominant_scales(axes, *np.transpose(scales))
+    axes.set_ylabel(ISOTROPIC_LABEL)
+    add_wavelengths(axes)
+    axes.legend(loc="lower left")
+
+
 def _draw_scans(figure: FigureBase, surface: MeasuredSurface, fewest: int = 1) -> None:
     """The scans as used, in a row of at least so many places."""
     shown = surface.scans[:_MOST_MAPS]
@@ -94,9 +140,9 @@ def _draw_scans(figure: FigureBase, surface: MeasuredSurface, fewest: int = 1) -
         axes.set_axis_off()
 
 
-def _set_wavevectors(axes: Axes, surface: MeasuredSurface) -> Array:
+def _set_wavevectors(axes: Axes, surface: Surface) -> Array:
     """Wavevectors at which the spectrum is drawn, for which axes are prepared (Units: 1 / m)."""
-    ends = surface.joint.longest * _ROOM, surface.joint.spectrum.short_cutoff / 1.5
+    ends = surface.longest * _ROOM, surface.spectrum.short_cutoff / 1.5
     wavevector = np.geomspace(2 * np.pi / ends[0], 2 * np.pi / ends[1], 400)
     set_density_scales(axes, wavevector)
     axes.set_xlabel(WAVEVECTOR_LABEL)
@@ -177,7 +223,7 @@ def _draw_density(axes: Axes, index: int, density: Density, name: str) -> None:
     )
 
 
-def _draw_forces(axes: Axes, _: MeasuredSurface, prediction: Prediction) -> None:
+def _draw_forces(axes: Axes, _: Surface, prediction: Prediction) -> None:
     """Force against contact radius of both branches with their intervals, and of a smooth one."""
     w_int = prediction.work_of_adhesion
     scales = Scales(prediction.radius, w_int, prediction.contact_modulus)

@@ -15,7 +15,7 @@ from crackfront.data.written_units import prefixed
 from crackfront.topography.density.bands import BandLimit
 from crackfront.topography.prediction.prediction import Prediction
 from crackfront.topography.prediction.remarks import Remark, Verdict, remark_lines, remark_text
-from crackfront.topography.prediction.surface_remarks import surface_remarks
+from crackfront.topography.prediction.surface_remarks import is_lower_bound, surface_remarks
 from crackfront.topography.prediction.texts import (
     ENERGY,
     estimate_text,
@@ -24,6 +24,7 @@ from crackfront.topography.prediction.texts import (
 )
 from crackfront.topography.spectrum.fit import Fit
 from crackfront.topography.spectrum.measures import MeasuredSurface
+from crackfront.topography.spectrum.stated import StatedSurface, Surface
 
 if TYPE_CHECKING:
     # Importing it compiles nothing, but takes a second that a prediction does not need.
@@ -38,7 +39,7 @@ _ADHESIONS = ("w_appr", "w_retr", "hysteresis")
 
 
 def report_text(
-    surface: MeasuredSurface,
+    surface: Surface,
     scales: Scales | None = None,
     verdict: Verdict | None = None,
     prediction: Prediction | None = None,
@@ -89,35 +90,27 @@ def simulation_text(found: Simulated, prediction: Prediction) -> str:
 
 
 def machine_readable(
-    surface: MeasuredSurface,
+    surface: Surface,
     scales: Scales | None = None,
     verdict: Verdict | None = None,
     prediction: Prediction | None = None,
     found: Simulated | None = None,
 ) -> dict[str, Any]:
     """What the texts say, for JSON, by the names of records and in their SI units."""
-    joint = surface.joint
+    if isinstance(surface, StatedSurface):
+        origin = _stated_entries(surface)
+    else:
+        origin = _measured_entries(surface)
+    origin["spectrum"] |= {
+        "wavelength": list(surface.spectrum.wavelengths),
+        "density": list(surface.spectrum.densities),
+        "share_of_e_el": to_jsonable(surface.shares),
+        "shortest": surface.shortest,
+        "longest": surface.longest,
+        "end": surface.spectrum.short_cutoff,
+    }
     return {
-        "measurements": list(_scan_entries(surface)),
-        "spectrum": {
-            "wavelength": list(joint.spectrum.wavelengths),
-            "density": list(joint.spectrum.densities),
-            "measured": to_jsonable(joint.density),
-            "share_of_e_el": to_jsonable(joint.shares),
-            "shortest": joint.shortest,
-            "longest": joint.longest,
-            "end": joint.spectrum.short_cutoff,
-            "draws": {
-                "number": len(joint.draws.weight),
-                "effective": joint.draws.effective,
-                "unsettled": joint.draws.unsettled,
-            },
-        },
-        "continuation": {
-            **{name: to_jsonable(number) for name, number, _ in _continuation(joint.fit)},
-            "deviance_per_freedom": joint.fit.misfit,
-            "has_roll_off": joint.fit.has_roll_off,
-        },
+        **origin,
         "measures": to_jsonable(surface.measures),
         "e_el": None if scales is None else _energy_entry(surface, scales.contact_modulus),
         "prediction": None if prediction is None else _prediction_entries(prediction),
@@ -133,16 +126,50 @@ def machine_readable(
     }
 
 
+def _stated_entries(surface: StatedSurface) -> dict[str, Any]:
+    """What a spectrum comes from that is stated."""
+    return {"measurements": [], "spectrum": {"origin": surface.origin}, "continuation": None}
+
+
+def _measured_entries(surface: MeasuredSurface) -> dict[str, Any]:
+    """Scans, their joint density and the model that continues it."""
+    joint = surface.joint
+    return {
+        "measurements": list(_scan_entries(surface)),
+        "spectrum": {
+            "measured": to_jsonable(joint.density),
+            "draws": {
+                "number": len(joint.draws.weight),
+                "effective": joint.draws.effective,
+                "unsettled": joint.draws.unsettled,
+            },
+        },
+        "continuation": {
+            **{name: to_jsonable(number) for name, number, _ in _continuation(joint.fit)},
+            "deviance_per_freedom": joint.fit.misfit,
+            "has_roll_off": joint.fit.has_roll_off,
+        },
+    }
+
+
 def _simulation(found: Simulated, prediction: Prediction) -> dict[str, Any]:
     """What simulations found: of the front itself, and corrected as the prediction is."""
     return to_jsonable(found) | {"corrected": to_jsonable(found.corrected(prediction))}
 
 
 def sample_row(
-    surface: MeasuredSurface, scales: Scales, verdict: Verdict, prediction: Prediction | None
+    surface: Surface, scales: Scales, verdict: Verdict, prediction: Prediction | None
 ) -> dict[str, Any]:
     """Row of a surface in a table: numbers and the ends of their 95% intervals, in SI units."""
     remarks = " ".join(map(remark_text, verdict.of("fails", "undecided", "reservation")))
+    sentences = {
+        "outcome": verdict.outcome,
+        "failed": "; ".join(one.concerns for one in verdict.of("fails")),
+        "undecided": "; ".join(one.concerns for one in verdict.of("undecided")),
+        "at_least": is_lower_bound(surface),
+        "none_expected": None if prediction is None else prediction.none_is_expected,
+        "remarks": remarks,
+    }
     numbers = {
         f"rms_{_MEASURES[one.order][0].replace('-', '_')}": to_jsonable(one.rms)
         for one in surface.measures
@@ -150,7 +177,7 @@ def sample_row(
     numbers["e_el"] = to_jsonable(surface.conformity_energy(scales.contact_modulus))
     numbers |= {} if prediction is None else _prediction_entries(prediction)
     heads = {"value": "", "low": "_low", "high": "_high"}
-    return {"outcome": verdict.outcome, "remarks": remarks} | {
+    return sentences | {
         f"{name}{head}": entry[end]
         for name, entry in numbers.items()
         for end, head in heads.items()
@@ -167,8 +194,23 @@ def _continuation(fit: Fit) -> tuple[tuple[str, Number, str], ...]:
     )
 
 
-def _surface_lines(surface: MeasuredSurface) -> Iterator[str]:
-    """Lines on the measurements, the spectrum and the rms measures."""
+def _surface_lines(surface: Surface) -> Iterator[str]:
+    """Lines on what is known of a surface, and its rms measures."""
+    if isinstance(surface, StatedSurface):
+        yield surface.origin
+        yield f"  {'waves':22}{wavelengths_text(surface.shortest, surface.longest)}"
+    else:
+        yield from _measured_lines(surface)
+    yield ""
+    yield "Measures of the spectrum, and the scales of 80% of their mean squares"
+    for measure in surface.measures:
+        name, unit = _MEASURES[measure.order]
+        rms = estimate_text(unit, measure.rms)
+        yield f"  rms of {name:16}{rms:40}{wavelengths_text(measure.shortest, measure.longest)}"
+
+
+def _measured_lines(surface: MeasuredSurface) -> Iterator[str]:
+    """Lines on the measurements and their spectrum."""
     for one in surface.scans:
         item = one.measurement
         points = " x ".join(map(str, item.heights.shape))
@@ -203,12 +245,6 @@ def _surface_lines(surface: MeasuredSurface) -> Iterator[str]:
         f"{part_of_energy(shares.missing_short)}; waves above {prefixed('m', joint.longest)} have "
         f"{shares.continued_long:.0%}"
     )
-    yield ""
-    yield "Measures of the spectrum, and the scales of 80% of their mean squares"
-    for measure in surface.measures:
-        name, unit = _MEASURES[measure.order]
-        rms = estimate_text(unit, measure.rms)
-        yield f"  rms of {name:16}{rms:40}{wavelengths_text(measure.shortest, measure.longest)}"
 
 
 def _prediction_lines(item: Prediction) -> Iterator[str]:
@@ -266,7 +302,7 @@ def _scan_entries(surface: MeasuredSurface) -> Iterator[dict[str, Any]]:
         }
 
 
-def _energy_entry(surface: MeasuredSurface, contact_modulus: float) -> dict[str, Any]:
+def _energy_entry(surface: Surface, contact_modulus: float) -> dict[str, Any]:
     """e_el, and that of what is recorded (Units: J / m^2)."""
     return to_jsonable(surface.conformity_energy(contact_modulus)) | {
         "recorded": to_jsonable(surface.conformity_energy(contact_modulus, surface.recorded))

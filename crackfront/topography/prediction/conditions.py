@@ -20,7 +20,8 @@ from crackfront.topography.prediction.surface_remarks import (
     scan_remarks,
     spectrum_remarks,
 )
-from crackfront.topography.spectrum.measures import MeasuredSurface, RmsMeasure
+from crackfront.topography.spectrum.measures import RmsMeasure
+from crackfront.topography.spectrum.stated import Surface
 
 ASSUMED_RANGE = 0.5e-9
 """Range of van der Waals attraction, where no other is named (Units: m)."""
@@ -58,7 +59,7 @@ def zero_load_radius(scales: Scales) -> float:
 
 
 def theory_verdict(
-    surface: MeasuredSurface,
+    surface: Surface,
     scales: Scales,
     attraction_range: float | None = None,
     further: Iterable[Remark] = (),
@@ -84,7 +85,7 @@ def theory_verdict(
 
 
 def condition_remarks(
-    surface: MeasuredSurface, scales: Scales, attraction_range: float
+    surface: Surface, scales: Scales, attraction_range: float
 ) -> Iterator[Remark]:
     """A remark on every condition of the theory, met or not."""
     yield from _energy_conditions(surface, scales)
@@ -135,7 +136,7 @@ def _shown(number: float, units: str, *, is_share: bool) -> str:
     return f"{number:.2%}" if is_share else f"{number:.3g}"
 
 
-def _energy_conditions(surface: MeasuredSurface, scales: Scales) -> Iterator[Remark]:
+def _energy_conditions(surface: Surface, scales: Scales) -> Iterator[Remark]:
     """Conditions on e_el against w_int."""
     w_int = scales.work_of_adhesion
     energy = surface.conformity_energy(scales.contact_modulus)
@@ -165,7 +166,7 @@ def _energy_conditions(surface: MeasuredSurface, scales: Scales) -> Iterator[Rem
     )
 
 
-def _contact_conditions(surface: MeasuredSurface, scales: Scales) -> Iterator[Remark]:
+def _contact_conditions(surface: Surface, scales: Scales) -> Iterator[Remark]:
     """Conditions on the contact at zero load, against the sphere and against the roughness."""
     modulus, radius, contact = scales.contact_modulus, scales.radius, zero_load_radius(scales)
     part = contact / radius / _CONTACT[1]
@@ -193,7 +194,7 @@ def _contact_conditions(surface: MeasuredSurface, scales: Scales) -> Iterator[Re
 
 
 def _range_conditions(
-    surface: MeasuredSurface, scales: Scales, attraction_range: float
+    surface: Surface, scales: Scales, attraction_range: float
 ) -> Iterator[Remark]:
     """Conditions on the range of attraction (Units: m)."""
     w_int, modulus, radius = scales.work_of_adhesion, scales.contact_modulus, scales.radius
@@ -218,13 +219,13 @@ def _range_conditions(
     )
 
 
-def _dominant_waves(surface: MeasuredSurface) -> tuple[RmsMeasure, str]:
+def _dominant_waves(surface: Surface) -> tuple[RmsMeasure, str]:
     """Measure of the half-derivative, and the waves that dominate it as a text."""
     half = surface.measures[1]
     return half, f"{prefixed('m', half.shortest)} to {prefixed('m', half.longest)}"
 
 
-def _roughness_conditions(surface: MeasuredSurface) -> Iterator[Remark]:
+def _roughness_conditions(surface: Surface) -> Iterator[Remark]:
     """Conditions on the rms slope, and on waves that stand out, as grooves do."""
     rms = surface.measures[2].rms
     slope = rms.value
@@ -235,6 +236,8 @@ def _roughness_conditions(surface: MeasuredSurface) -> Iterator[Remark]:
         Comparison(slope, *_SLOPES, "1", best_case=slope / rms.low),
         (f"slopes lower by a factor of {slope / _SLOPES[1]:.3g}",),
     )
+    if not surface.scans:
+        return
     part, wavelength = max(one.band.periodic for one in surface.scans)
     found = f"the wave of {prefixed('m', wavelength)} alone has {part:.0%} of e_el"
     yield _condition(
@@ -274,7 +277,7 @@ def _negative_share(energy: float) -> float:
     return float(ndtr((energy - 1) / (2 * math.sqrt(energy))))
 
 
-def _energy_remarks(surface: MeasuredSurface, scales: Scales) -> Iterator[Remark]:
+def _energy_remarks(surface: Surface, scales: Scales) -> Iterator[Remark]:
     """Reservation on a wide interval of e_el."""
     energy = surface.conformity_energy(scales.contact_modulus)
     shown = prefixed("J/m2", energy.value, energy.low, energy.high)

@@ -20,7 +20,7 @@ from crackfront.topography.prediction.remarks import Remark, Verdict, remark_tex
 from crackfront.topography.prediction.surface_remarks import disagreements, measure_next
 from crackfront.topography.prediction.texts import ENERGY, estimate_text, wavelengths_text
 from crackfront.topography.prediction.works import Works, implied_work_of_adhesion, inverse, works
-from crackfront.topography.spectrum.measures import MeasuredSurface
+from crackfront.topography.spectrum.stated import StatedSurface, Surface
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,7 +31,7 @@ class Prediction:
     hysteresis is divided by.
     """
 
-    surface: MeasuredSurface
+    surface: Surface
     verdict: Verdict
     factors: SphereFactors
     excess: Excess
@@ -60,6 +60,11 @@ class Prediction:
         "w_int that a measured pull-off force implies", "J m-2"
     )
 
+    @property
+    def none_is_expected(self) -> bool:
+        """Whether the contact is too small for hysteresis, by the law of k."""
+        return self.size < shipped_law().size[0]
+
     def __repr__(self) -> str:
         """The page that the command `crackfront predict` prints."""
         return prediction_page(self)
@@ -68,15 +73,15 @@ class Prediction:
 def prediction_page(prediction: Prediction) -> str:
     """What an experimenter wants first: numbers, how far to trust them, what to measure next."""
     surface, e_el = prediction.surface, prediction.e_el
-    joint, smallest = surface.joint, shipped_law().size[0]
     hysteresis = estimate_text(ENERGY, prediction.hysteresis)
-    if prediction.size < smallest:
+    if prediction.none_is_expected:
+        smallest = shipped_law().size[0]
         hysteresis += f"; none expected: g {prediction.size:.2g} is below {smallest:.2g}"
     pull_off = estimate_text("N", prediction.pull_off_force)
     smooth = prefixed("N", prediction.pull_off_force_smooth)
     relative = e_el.value / prediction.work_of_adhesion
     recorded = surface.conformity_energy(prediction.contact_modulus, surface.recorded)
-    waves = wavelengths_text(joint.shortest, joint.longest)
+    waves = wavelengths_text(surface.shortest, surface.longest)
     rows = [
         ("hysteresis", hysteresis),
         ("w_appr", estimate_text(ENERGY, prediction.w_appr)),
@@ -88,7 +93,9 @@ def prediction_page(prediction: Prediction) -> str:
         rows.append(("w_int by pull-off", implied))
     rows += [
         ("e_el", f"{estimate_text(ENERGY, e_el)} = {relative:.3g} w_int"),
-        ("as recorded", f"{prefixed(ENERGY, recorded.value)}; trusted waves from {waves}"),
+        ("as recorded", f"{prefixed(ENERGY, recorded.value)}; trusted waves from {waves}")
+        if not isinstance(surface, StatedSurface)
+        else ("rms height", f"{prefixed('m', surface.measures[0].rms.value)}; waves from {waves}"),
     ]
     apart = [*disagreements(surface)]
     others = [one for one in prediction.verdict.of("undecided", "reservation") if one not in apart]
@@ -143,7 +150,7 @@ def _repelled_remarks(w_appr: Estimate[float]) -> Iterator[Remark]:
 
 
 def check_and_predict(
-    surface: MeasuredSurface, scales: Scales, given: PredictionOptions
+    surface: Surface, scales: Scales, given: PredictionOptions
 ) -> tuple[Verdict, Prediction | None]:
     """Whether the theory applies under a sphere, and the prediction where it does."""
     verdict = theory_verdict(surface, scales, given.range)
@@ -154,7 +161,7 @@ def check_and_predict(
 
 
 def predicted(
-    surface: MeasuredSurface,
+    surface: Surface,
     scales: Scales,
     attraction_range: float | None = None,
     pull_off: float | None = None,
@@ -188,7 +195,7 @@ def predicted(
         contact_radius=radius,
         e_el=energy,
         w_rms=2 * math.sqrt(energy.value * adhesion),
-        correlation_length=surface.joint.spectrum.correlation_length,
+        correlation_length=surface.spectrum.correlation_length,
         l_kappa=factors.spring * scales.lateral,
         larkin_length=factors.larkin_length * scales.lateral,
         size=factors.size,

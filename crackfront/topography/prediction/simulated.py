@@ -26,7 +26,7 @@ from crackfront.simulate.sphere.steady import SteadySchedule
 from crackfront.topography.prediction.conditions import zero_load_radius
 from crackfront.topography.prediction.prediction import Prediction
 from crackfront.topography.prediction.works import surface_spectrum
-from crackfront.topography.spectrum.measures import MeasuredSurface
+from crackfront.topography.spectrum.stated import Surface
 
 _ERROR = 0.03
 """Standard error of k that the numerics may leave."""
@@ -101,7 +101,7 @@ class Simulated:
 
 
 def prediction_plan(
-    surface: MeasuredSurface, scales: Scales, realisations: int, seed: int
+    surface: Surface, scales: Scales, realisations: int, seed: int
 ) -> SimulationPlan:
     """Simulations of surfaces with the fitted spectrum and its amplitude, and noise of a seed."""
     spectrum = surface_spectrum(surface, scales)

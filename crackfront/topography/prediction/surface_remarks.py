@@ -14,6 +14,7 @@ from crackfront.topography.prediction.texts import part_of_energy
 from crackfront.topography.scan.instruments import is_doubtful
 from crackfront.topography.spectrum.joining import JointSpectrum
 from crackfront.topography.spectrum.measures import MeasuredSurface
+from crackfront.topography.spectrum.stated import StatedSurface, Surface
 
 _MOST_ANISOTROPY = 1.25
 """Largest ratio of the rms slopes along x and y without a reservation."""
@@ -44,7 +45,16 @@ _EDGE, _MATTERS = 0.05, 0.1
 """Distance of a Hurst exponent from 0 or 1, and continued part of e_el, that are a reservation."""
 
 
-def surface_remarks(surface: MeasuredSurface) -> list[Remark]:
+_NOT_CHECKED = (
+    "Without heights it cannot be checked whether the roughness is random (no wave that stands "
+    "out), isotropic and Gaussian, nor what instrument and noise did to the spectrum."
+)
+"""What only scans show."""
+
+_EXACT = "The spectrum is taken as exact: intervals hold the errors of the law of k alone."
+
+
+def surface_remarks(surface: Surface) -> list[Remark]:
     """All remarks on a surface that need no sphere."""
     return [
         *channel_remarks(surface),
@@ -110,8 +120,11 @@ def _treatments(one: Scan) -> Iterator[str]:
         )
 
 
-def measure_next(surface: MeasuredSurface) -> Remark:
+def measure_next(surface: Surface) -> Remark:
     """Note on which scan would narrow the interval of e_el, and by how much."""
+    if isinstance(surface, StatedSurface):
+        sentence = "Measure next: a scan, which gives e_el an interval and shows what else it has."
+        return Remark("next scan", "note", sentence)
     joint = surface.joint
     known, (longer, shorter) = joint.draws.factor, joint.draws.factors_with
     advice = []
@@ -163,7 +176,7 @@ def _rounded(length: float) -> str:
     return prefixed("m", float(f"{length:.2g}"))
 
 
-def channel_remarks(surface: MeasuredSurface) -> Iterator[Remark]:
+def channel_remarks(surface: Surface) -> Iterator[Remark]:
     """Reservations on scans whose channel may hold no heights."""
     for item in (one.measurement for one in surface.scans):
         if is_doubtful(item.channel):
@@ -175,8 +188,16 @@ def channel_remarks(surface: MeasuredSurface) -> Iterator[Remark]:
             )
 
 
-def spectrum_remarks(surface: MeasuredSurface) -> Iterator[Remark]:
-    """Reservations on the spectrum of a surface, scans that disagree first."""
+def spectrum_remarks(surface: Surface) -> Iterator[Remark]:
+    """Reservations on the spectrum of a surface, scans that disagree first.
+
+    Without scans they say what cannot be checked.
+    """
+    if isinstance(surface, StatedSurface):
+        for sentence in (*surface.doubts, _NOT_CHECKED):
+            yield Remark("spectrum", "reservation", sentence)
+        yield Remark("spectrum", "note", _EXACT)
+        return
     yield from disagreements(surface)
     for one in surface.scans:
         if max(ratio := one.band.anisotropy, 1 / ratio) > _MOST_ANISOTROPY:
@@ -191,8 +212,15 @@ def spectrum_remarks(surface: MeasuredSurface) -> Iterator[Remark]:
         yield Remark("spectrum", "reservation", sentence)
 
 
-def disagreements(surface: MeasuredSurface) -> Iterator[Remark]:
+def is_lower_bound(surface: Surface) -> bool:
+    """Whether e_el is a least one, as waves shorter than all that are known would add to it."""
+    return surface.shares.missing_short > _MOST_UNMEASURED
+
+
+def disagreements(surface: Surface) -> Iterator[Remark]:
     """Reservations on scans whose density departs from that of the others."""
+    if isinstance(surface, StatedSurface):
+        return
     density = surface.joint.density
     for index, one in enumerate(surface.scans):
         if density.disagrees(index):

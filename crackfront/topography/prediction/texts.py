@@ -16,9 +16,10 @@ _WITH_PREFIXES = ("m", "N", "Pa", ENERGY)
 def estimate_text(unit: str, found: Estimate[float]) -> str:
     """A number with its interval, if it has one; powers of lengths have no prefix."""
     unit = unit.replace("J m-2", ENERGY)
+    has_interval = math.isfinite(found.low) and found.low < found.high
     if unit in _WITH_PREFIXES:
-        return prefixed(unit, found.value, found.low, found.high)
-    interval = f" ({found.low:.3g} to {found.high:.3g})" if math.isfinite(found.low) else ""
+        return prefixed(unit, found.value, *((found.low, found.high) if has_interval else ()))
+    interval = f" ({found.low:.3g} to {found.high:.3g})" if has_interval else ""
     return f"{found.value:.3g}{interval} {unit}".removesuffix(" 1")
 
 

@@ -14,7 +14,7 @@ from crackfront.analysis.validity import Excess, front_excess
 from crackfront.core.spectrum import TabulatedSpectrum
 from crackfront.core.units import Scales
 from crackfront.topography.prediction.conditions import LARGEST_ENERGY, zero_load_radius
-from crackfront.topography.spectrum.measures import MeasuredSurface
+from crackfront.topography.spectrum.stated import Surface
 
 
 class Works(NamedTuple):
@@ -27,14 +27,14 @@ class Works(NamedTuple):
     w_retr: Estimate[float]
 
 
-def surface_spectrum(surface: MeasuredSurface, scales: Scales) -> TabulatedSpectrum:
+def surface_spectrum(surface: Surface, scales: Scales) -> TabulatedSpectrum:
     """The spectrum of a surface in reduced units, with the e_el of :func:`energy_of_theory`."""
-    shape = reduced_spectrum(surface.joint.spectrum, scales)
+    shape = reduced_spectrum(surface.spectrum, scales)
     energy = energy_of_theory(surface, scales).value / scales.work_of_adhesion
     return shape.amplified(energy / shape.elastic_energy)
 
 
-def energy_of_theory(surface: MeasuredSurface, scales: Scales) -> Estimate[float]:
+def energy_of_theory(surface: Surface, scales: Scales) -> Estimate[float]:
     """The e_el of a surface where the theory applies, at most the largest for which it does.
 
     Units: J / m^2, as scales in SI units. ValueError if even the least is larger than w_int.
@@ -56,7 +56,7 @@ def reduced_spectrum(spectrum: TabulatedSpectrum, scales: Scales) -> TabulatedSp
     return spectrum.in_units(scales.lateral).amplified(1 / unit)
 
 
-def works(surface: MeasuredSurface, scales: Scales) -> Works:
+def works(surface: Surface, scales: Scales) -> Works:
     """Works of adhesion by the law of k, divided by what the front has more than others."""
     adhesion, energy = scales.work_of_adhesion, energy_of_theory(surface, scales)
     relative = energy.value / adhesion
@@ -70,9 +70,7 @@ def works(surface: MeasuredSurface, scales: Scales) -> Works:
     return Works(energy, factors, excess, w_appr, w_retr)
 
 
-def implied_work_of_adhesion(
-    surface: MeasuredSurface, scales: Scales, measured: float
-) -> Estimate[float]:
+def implied_work_of_adhesion(surface: Surface, scales: Scales, measured: float) -> Estimate[float]:
     """The w_int at which the predicted w_retr is the measured one; NaN if none (Units: J / m^2)."""
     energy = surface.conformity_energy(scales.contact_modulus)
     least = 1.001 * max(energy.low, energy.value * LARGEST_ENERGY)

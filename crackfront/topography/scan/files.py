@@ -12,13 +12,13 @@ from crackfront.data.bounds import memory_at_hand, refuse_beyond_memory, regular
 _BYTES_PER_POINT = 100
 """Memory that the analysis of a map takes for a point: heights, transforms, wavevectors."""
 
-_LARGEST_FILE = 0.125
+LARGEST_FILE = 0.125
 """Largest file in parts of the memory: its points need several times what they take there."""
 
 
 def refuse_unreadable(path: Path) -> None:
     """Raise where a path is no regular file, or one that is empty or larger than the memory."""
-    if not regular_file(path, _LARGEST_FILE * memory_at_hand()).stat().st_size:
+    if not regular_file(path, LARGEST_FILE * memory_at_hand()).stat().st_size:
         raise ValueError(f"{path} is empty; export it from the instrument again")
 
 

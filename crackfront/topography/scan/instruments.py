@@ -19,6 +19,7 @@ import numpy as np
 from crackfront.data.optional_libraries import MissingExtraError
 from crackfront.data.written_units import prefixed, unit_value
 from crackfront.topography.options import ReadingOptions
+from crackfront.topography.scan.containers import contained_surfaces
 from crackfront.topography.scan.deferred_import import import_without_executing, import_without_mpi
 from crackfront.topography.scan.files import refuse_too_many_points, refuse_unreadable
 from crackfront.topography.scan.netcdf import Grid, netcdf_grids
@@ -29,6 +30,7 @@ from crackfront.topography.scan.points import (
     read_points,
     refuse_positions,
 )
+from crackfront.topography.scan.psd import refuse_spectrum
 from crackfront.topography.scan.text import NumberText, number_text
 
 _LIBRARY = "SurfaceTopography"
@@ -142,8 +144,8 @@ def _silenced() -> Iterator[None]:
 
 
 @_silenced()
-def raw_scan(path: Path, options: ReadingOptions) -> RawScan:
-    """The heights of a file in metres."""
+def raw_scan(path: Path, options: ReadingOptions, height_scale: float = 1.0) -> RawScan:
+    """The heights of a file in metres, multiplied by a scale that others state."""
     reader = _reader(path)
     channel, name = _channel(path, reader, options.channel)
     if channel.nb_grid_pts is not None:
@@ -170,7 +172,19 @@ def raw_scan(path: Path, options: ReadingOptions) -> RawScan:
         [factor] = in_metres(height_unit, 1.0)
         heights = factor * raw.heights()
         level = library_scan(heights, sides, periodic=bool(level.is_periodic), info=raw.info)
+    if height_scale != 1:
+        sides = tuple(map(float, level.physical_sizes))
+        heights = height_scale * level.heights()
+        level = library_scan(heights, sides, periodic=bool(level.is_periodic), info=raw.info)
     return RawScan(level, reader.format(), name)
+
+
+@_silenced()
+def is_stated(path: Path, channel: str | None) -> tuple[bool, bool]:
+    """Whether a file states the unit and the sides of a channel."""
+    found, _ = _channel(path, _reader(path), channel)
+    size = found.physical_sizes
+    return found.unit is not None, size is not None and None not in size
 
 
 @_silenced()
@@ -291,6 +305,8 @@ def _text_reader(path: Path, text: NumberText) -> Any:
         refuse_positions(path, text)
         with _errors_as_sentences(path, "text"):
             return library_part("IO").AscReader(io.StringIO("\n".join([*text.lines, ""])))
+    if kind is None or kind == "comments":
+        refuse_spectrum(path, text)
     points = read_points(path, text, kind)
     heights = points.heights * (factor or 1.0)
     grid = Grid("default", Points(heights, points.size), None)
@@ -382,6 +398,16 @@ def list_channels(path: str | PathLike[str]) -> tuple[Channel, ...]:
     OSError
         If it cannot be opened.
     """
+    refuse_unreadable(Path(path))
+    members = [
+        f"{surface.name}: {one.shown}"
+        for surface in contained_surfaces(Path(path))
+        for one in surface.topographies
+    ]
+    if members:
+        return tuple(
+            Channel(number, name, "height", (), True) for number, name in enumerate(members)
+        )
     return _channels(Path(path), _reader(Path(path)))
 
 

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -12,12 +12,14 @@ import numpy as np
 
 from crackfront.data.written_units import prefixed
 from crackfront.topography.options import ReadingOptions, Region
-from crackfront.topography.scan.files import checksum
+from crackfront.topography.scan.containers import Member, contained_surfaces, surface_of, unpacked
+from crackfront.topography.scan.files import checksum, refuse_unreadable
 from crackfront.topography.scan.instruments import (
     RawScan,
     are_possible_heights,
     array_of,
     in_metres,
+    is_stated,
     library_part,
     library_scan,
     raw_scan,
@@ -128,12 +130,52 @@ def read_measurements(
         raise ValueError(f"{repeated[0]} is named twice; a measurement counts once")
     if options is None or isinstance(options, ReadingOptions):
         options = [options or ReadingOptions()] * len(paths)
-    return tuple(_measurement(*both) for both in zip(paths, options, strict=True))
+    pairs = zip(paths, options, strict=True)
+    return tuple(one for path, given in pairs for one in _measurements(path, given))
 
 
-def _measurement(path: Path, options: ReadingOptions) -> Measurement:
+def _measurements(path: Path, options: ReadingOptions) -> Iterator[Measurement]:
+    """Measurement of one file, or all of a surface in a container."""
+    refuse_unreadable(path)
+    surfaces = contained_surfaces(path)
+    if not surfaces:
+        if options.surface is not None:
+            raise ValueError(f"{path} is no container of surfaces; leave --surface out")
+        yield _measurement(path, options)
+        return
+    members = surface_of(path, surfaces, options.surface).topographies
+    with unpacked(path, members) as files:
+        for member, file in zip(members, files, strict=True):
+            shown = path / member.shown
+            try:
+                scale = member.height_scale if member.is_original else 1.0
+                found = _measurement(file, _member_options(file, member, options), scale)
+            except ValueError as error:
+                raise ValueError(str(error).replace(str(file), str(shown))) from error
+            yield replace(found, path=shown)
+
+
+def _member_options(file: Path, member: Member, options: ReadingOptions) -> ReadingOptions:
+    """Options of a measurement in a container, with what this states and the data file does not."""
+    changes: dict[str, Any] = {}
+    if options.channel is None and member.is_original and member.data_source is not None:
+        changes["channel"] = str(member.data_source)
+    has_unit, has_size = is_stated(file, changes.get("channel", options.channel))
+    if not has_unit and member.unit is not None:
+        if options.unit is not None:
+            raise ValueError(
+                f"{file} has the unit {member.unit} in its container; leave --unit {options.unit} "
+                "out"
+            )
+        changes["unit"] = member.unit
+    if not has_size and member.size is not None:
+        changes["size"] = member.size
+    return options.model_copy(update=changes)
+
+
+def _measurement(path: Path, options: ReadingOptions, height_scale: float = 1.0) -> Measurement:
     """Measurement of one file."""
-    scan = raw_scan(path, options)
+    scan = raw_scan(path, options, height_scale)
     raw = scan.topography
     heights, fitted, size, sentences = _used_part(path, raw, options)
     gaps = np.ma.getmaskarray(heights)

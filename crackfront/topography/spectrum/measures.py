@@ -10,16 +10,17 @@ from pathlib import Path
 import numpy as np
 
 from crackfront.analysis.estimate import Estimate
+from crackfront.core.spectrum import TabulatedSpectrum
 from crackfront.topography.density.bands import Scan, scan
 from crackfront.topography.options import ReadingOptions
 from crackfront.topography.scan.reading import Measurement, read_measurements
 from crackfront.topography.spectrum.draws import ORDERS
-from crackfront.topography.spectrum.joining import JointSpectrum, joint_spectrum
+from crackfront.topography.spectrum.joining import JointSpectrum, Shares, joint_spectrum
 
 _UNDETERMINED = 1e4
 """Upper over lower end of the interval of e_el from which on scans determine no spectrum."""
 
-_SHARE = 0.8
+DOMINANT_SHARE = 0.8
 """Part of a mean square that lies within the scales that dominate it."""
 
 
@@ -36,25 +37,15 @@ class RmsMeasure:
 
 
 @dataclass(frozen=True, slots=True)
-class MeasuredSurface:
-    """What was measured of a surface, and what follows from it."""
+class RoughSurface:
+    """Rms measures of a surface, and its energy of full conformity."""
 
-    scans: tuple[Scan, ...]
-    """The measurements with their trusted bands."""
-    joint: JointSpectrum
-    """Their spectrum; maps enter by their isotropic density, lines by that of profiles."""
     measures: tuple[RmsMeasure, ...]
     """Of the heights, their half-derivative and their slopes."""
     half_derivative: Estimate[float]
-    """Mean square of the half-derivative of the joint spectrum. (Units: m)"""
+    """Mean square of the half-derivative of the spectrum. (Units: m)"""
     recorded: Estimate[float]
-    """That of what the scans hold. (Units: m)"""
-
-    @property
-    def checksum(self) -> str:
-        """Eight hexadecimal digits of the content of all files, in their order."""
-        text = "".join(one.measurement.checksum for one in self.scans)
-        return hashlib.sha256(text.encode()).hexdigest()[:8]
+    """That of what was measured. (Units: m)"""
 
     def conformity_energy(
         self, contact_modulus: float, half_derivative: Estimate[float] | None = None
@@ -65,6 +56,42 @@ class MeasuredSurface:
         """
         square = half_derivative or self.half_derivative
         return square.each(lambda number: contact_modulus / 4 * number)
+
+
+@dataclass(frozen=True, slots=True)
+class MeasuredSurface(RoughSurface):
+    """What was measured of a surface, and what follows from it."""
+
+    scans: tuple[Scan, ...]
+    """The measurements with their trusted bands."""
+    joint: JointSpectrum
+    """Their spectrum; maps enter by their isotropic density, lines by that of profiles."""
+
+    @property
+    def spectrum(self) -> TabulatedSpectrum:
+        """Spectrum that predictions take (Units: m)."""
+        return self.joint.spectrum
+
+    @property
+    def shares(self) -> Shares:
+        """Where e_el comes from."""
+        return self.joint.shares
+
+    @property
+    def shortest(self) -> float:
+        """Shortest wavelength that is measured (Units: m)."""
+        return self.joint.shortest
+
+    @property
+    def longest(self) -> float:
+        """Longest wavelength that is measured (Units: m)."""
+        return self.joint.longest
+
+    @property
+    def checksum(self) -> str:
+        """Eight hexadecimal digits of the content of all files, in their order."""
+        text = "".join(one.measurement.checksum for one in self.scans)
+        return hashlib.sha256(text.encode()).hexdigest()[:8]
 
 
 def measured_surface(
@@ -119,4 +146,4 @@ def _rms_measure(order: float, joint: JointSpectrum) -> RmsMeasure:
     """Measure of one order."""
     draws = joint.draws
     rms = draws.estimate(np.sqrt(draws.estimated[ORDERS.index(order)]))
-    return RmsMeasure(order, rms, *joint.spectrum.dominant_wavelengths(order, _SHARE))
+    return RmsMeasure(order, rms, *joint.spectrum.dominant_wavelengths(order, DOMINANT_SHARE))

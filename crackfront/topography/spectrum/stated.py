@@ -1,0 +1,290 @@
+"""Surfaces of which no heights are given, but a spectral density or the numbers of one."""
+
+from __future__ import annotations
+
+import hashlib
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import brentq
+from scipy.special import j0, j1
+
+from crackfront.analysis.estimate import Estimate
+from crackfront.core.arrays import Array
+from crackfront.core.spectrum import SelfAffineSpectrum, TabulatedSpectrum
+from crackfront.data.written_units import prefixed
+from crackfront.topography.options import SelfAffineOptions
+from crackfront.topography.scan.psd import Psd
+from crackfront.topography.spectrum.draws import ORDERS
+from crackfront.topography.spectrum.joining import Shares
+from crackfront.topography.spectrum.measures import (
+    DOMINANT_SHARE,
+    MeasuredSurface,
+    RmsMeasure,
+    RoughSurface,
+)
+
+_MATTERS = 0.1
+"""Part of e_el in waves that the table lacks from which on it is a reservation."""
+
+_STEPS, _DIRECTIONS, _FURTHEST = 3, 200, 8.0
+"""Steps to the isotropic density, quadrature of a projection, and its end in arccosh(k / q)."""
+
+_DECADES, _LONGER = 100.0, 4.0
+"""How far a table is continued to see what it lacks: to shorter and to longer waves."""
+
+_SLOPE_OVER = 4.0
+"""Factor in wavelength over which the power law at an end of a table is taken."""
+
+_RISING = -1.0
+"""Power of the wavevector from which on a density has no plateau at its longest waves."""
+
+ATOMS = 1e-9
+"""Shortest wavelength where none is named (Units: m)."""
+
+_RESOLVED = 100.0
+"""How much longer the waves are whose part of e_el is stated where no cutoff is named."""
+
+_LAST_WAVE, _POINTS = 300.0, 20_001
+"""Wavevector times distance where the integral of an autocorrelation ends, and its points."""
+
+
+@dataclass(frozen=True, slots=True)
+class StatedSurface(RoughSurface):
+    """A surface by its spectrum alone, which is taken as exact."""
+
+    origin: str
+    """What the spectrum comes from, in words."""
+    spectrum: TabulatedSpectrum
+    """Isotropic density. (Units: m)"""
+    shares: Shares
+    """Where e_el comes from."""
+    doubts: tuple[str, ...]
+    """Sentences on what is assumed or missing."""
+
+    @property
+    def scans(self) -> tuple[()]:
+        """There are none."""
+        return ()
+
+    @property
+    def shortest(self) -> float:
+        """Shortest wavelength of the spectrum (Units: m)."""
+        return self.spectrum.short_cutoff
+
+    @property
+    def longest(self) -> float:
+        """Longest wavelength before the spectrum is flat (Units: m)."""
+        return self.spectrum.wavelengths[0]
+
+    @property
+    def checksum(self) -> str:
+        """Eight hexadecimal digits of the spectrum."""
+        text = repr((self.spectrum.wavelengths, self.spectrum.densities))
+        return hashlib.sha256(text.encode()).hexdigest()[:8]
+
+
+Surface = MeasuredSurface | StatedSurface
+"""What predictions are made for."""
+
+
+def density_surface(psd: Psd) -> StatedSurface:
+    """Surface of a density that another program has made of its heights.
+
+    That of profiles becomes the isotropic density whose projection it is.
+    """
+    value = _unprojected(psd.wavevector, psd.value) if psd.is_profile else psd.value
+    wavelengths = 2 * np.pi / psd.wavevector
+    spectrum = TabulatedSpectrum(tuple(wavelengths.tolist()), tuple(value.tolist()))
+    total = spectrum.mean_square(0.5)
+    long = spectrum.longer_than(spectrum.wavelengths[0] * (1 - 1e-12)).mean_square(0.5) / total
+    missing = _shorter(spectrum) / total
+    doubts = [*psd.assumptions, *_missing_waves(spectrum, total, missing, long)]
+    return _stated(
+        f"{psd.path}: {psd.convention}", spectrum, Shares(1 - long, long, missing, long), doubts
+    )
+
+
+def self_affine_surface_of(given: SelfAffineOptions) -> StatedSurface:
+    """Surface of numbers of a self-affine spectrum, as of :class:`SelfAffineSpectrum`.
+
+    ValueError, of one sentence, where a number is missing or they contradict each other.
+    """
+    rms, hurst = given.rms, given.hurst
+    if (
+        rms is None
+        or hurst is None
+        or (given.correlation_length is None) == (given.roll_off is None)
+    ):
+        raise ValueError(
+            "a surface of numbers needs rms and hurst, and one of correlation length and roll-off"
+        )
+    cutoff, doubts = given.short_cutoff, []
+    if cutoff is None:
+        if hurst <= 0.5:
+            raise ValueError(
+                f"the shortest waves decide e_el where the Hurst exponent is {hurst:g}, not above "
+                "0.5; name their wavelength as short cutoff, as in 10nm"
+            )
+        cutoff = ATOMS
+    length = given.correlation_length
+    roll_off = given.roll_off if length is None else _roll_off(length, hurst, cutoff)
+    assert roll_off is not None
+    if roll_off < cutoff:
+        raise ValueError(
+            f"the roll-off, {prefixed('m', roll_off)}, is shorter than the short cutoff, "
+            f"{prefixed('m', cutoff)}; name a shorter short cutoff"
+        )
+    shape = SelfAffineSpectrum(cutoff, roll_off, hurst)
+    shape = shape.amplified(rms**2 / shape.mean_square(0.0))
+    if given.short_cutoff is None:
+        end = min(_RESOLVED * cutoff, roll_off)
+        part = shape.mean_square_between(0.5, cutoff, end) / shape.mean_square(0.5)
+        doubts.append(
+            f"No short cutoff is named: the power law is continued to {prefixed('m', cutoff)}, "
+            f"and waves shorter than {prefixed('m', end)} have {part:.0%} of e_el."
+        )
+    waves = (roll_off, cutoff) if roll_off > cutoff else (2 * cutoff, cutoff)
+    densities = shape.density(2 * np.pi / np.array(waves)).tolist()
+    by_length = "" if length is None else f", of a correlation length of {prefixed('m', length)}"
+    return _stated(
+        f"rms height {prefixed('m', rms)}, roll-off {prefixed('m', roll_off)}{by_length}, H "
+        f"{hurst:g}",
+        TabulatedSpectrum(waves, tuple(densities)),
+        Shares(1.0, 0.0, 0.0, 0.0),
+        doubts,
+    )
+
+
+def _projection(wavevector: Array, density: Callable[[Array], Array]) -> Array:
+    """Integral of an isotropic density along lines, over k = q cosh(t)."""
+    node, weight = np.polynomial.legendre.leggauss(_DIRECTIONS)
+    way = _FURTHEST * (1 + node) / 2
+    k = wavevector[:, None] * np.cosh(way)
+    return np.asarray((density(k) * k) @ (weight * _FURTHEST / 2) / np.pi)
+
+
+def _unprojected(wavevector: Array, profile: Array) -> Array:
+    """Isotropic density of which a density of profiles is the projection.
+
+    By the ratio of a density to its projection, in few steps, as more would amplify its noise: e_el
+    is right to 2%. Behind its last value the density goes on as a power law.
+    """
+    places = np.log(wavevector)
+    falling = np.flatnonzero(np.gradient(np.log(profile), places) < _RISING)
+    knee = wavevector[falling[0]] if falling.size else wavevector[-1]
+    found = np.pi * profile / np.hypot(wavevector, knee)
+    for _ in range(_STEPS):
+        logarithms = np.log(found)
+        slope = min(_end_slope(places, logarithms, last=True), -1.5)
+
+        def density(k: Array, logarithms: Array = logarithms, slope: float = slope) -> Array:
+            beyond = np.maximum(np.log(k) - places[-1], 0.0)
+            return np.exp(np.interp(np.log(k), places, logarithms) + slope * beyond)
+
+        found = found * profile / _projection(wavevector, density)
+    return found
+
+
+def _end_slope(places: Array, logarithms: Array, *, last: bool) -> float:
+    """Power law of a density over its shortest or its longest waves."""
+    far = math.log(_SLOPE_OVER)
+    near = places > places[-1] - far if last else places < places[0] + far
+    if np.count_nonzero(near) < 2:
+        near = np.arange(places.size) >= places.size - 2 if last else np.arange(places.size) < 2
+    return float(np.polyfit(places[near], logarithms[near], 1)[0])
+
+
+def _logarithms(spectrum: TabulatedSpectrum) -> tuple[Array, Array]:
+    """Logarithms of wavevectors and densities."""
+    return np.log(2 * np.pi / np.array(spectrum.wavelengths)), np.log(spectrum.densities)
+
+
+def _shorter(spectrum: TabulatedSpectrum) -> float:
+    """Mean square of the half-derivative of shorter waves, by the power law at the end."""
+    last = spectrum.short_cutoff
+    slope = _end_slope(*_logarithms(spectrum), last=True)
+    end = spectrum.densities[-1]
+    tail = TabulatedSpectrum((last, last / _DECADES), (end, end * _DECADES**slope))
+    return tail.mean_square_between(0.5, last / _DECADES, last * (1 - 1e-12))
+
+
+def _missing_waves(
+    spectrum: TabulatedSpectrum, total: float, missing: float, long: float
+) -> Iterator[str]:
+    """Sentences on waves that a table lacks and that matter."""
+    first = spectrum.wavelengths[0]
+    short, longest = (prefixed("m", end) for end in (spectrum.short_cutoff, first))
+    slope = _end_slope(*_logarithms(spectrum), last=False)
+    if slope < _RISING:
+        longer = TabulatedSpectrum(
+            (_LONGER * first, first),
+            (spectrum.densities[0] * _LONGER**-slope, spectrum.densities[0]),
+        )
+        more = longer.mean_square(0.5) / total - long
+        if more > _MATTERS:
+            yield (
+                f"The density rises up to its longest wave, {longest}, and is taken as flat above; "
+                f"with a roll-off at {_LONGER:g} times that e_el would be {more:.0%} larger; add "
+                "longer waves."
+            )
+    if missing > _MATTERS:
+        yield (
+            f"Waves shorter than {short} are left out: two more decades of the power law would "
+            f"add {missing:.0%} to e_el; add shorter waves."
+        )
+
+
+def _roll_off(length: float, hurst: float, cutoff: float) -> float:
+    """Roll-off wavelength of a spectrum of a correlation length, all in metres."""
+
+    def excess(logarithm: float) -> float:
+        return _autocorrelation(length, math.exp(logarithm), hurst, cutoff) - math.exp(-1)
+
+    ends = math.log(max(cutoff, length / 2)), math.log(100 * max(cutoff, length))
+    if excess(ends[0]) > 0:
+        raise ValueError(
+            f"waves longer than a cutoff of {prefixed('m', cutoff)} have no correlation length of "
+            f"{prefixed('m', length)}; name a shorter short cutoff"
+        )
+    return math.exp(brentq(excess, *ends, xtol=1e-10))
+
+
+def _autocorrelation(distance: float, roll_off: float, hurst: float, cutoff: float) -> float:
+    """Autocorrelation of the heights of a self-affine surface over their mean square."""
+    knee, end = 2 * math.pi * distance / roll_off, 2 * math.pi * distance / cutoff
+    found = knee * float(j1(knee))
+    if (last := min(end, knee + _LAST_WAVE)) > knee:
+        x = np.linspace(knee, last, _POINTS)
+        found += float(np.trapezoid(knee * (x / knee) ** (-1 - 2 * hurst) * j0(x), x))
+    shape = SelfAffineSpectrum(cutoff, roll_off, hurst)
+    return found / (2 * math.pi * distance**2 * shape.mean_square(0.0))
+
+
+def _stated(
+    origin: str, spectrum: TabulatedSpectrum, shares: Shares, doubts: list[str]
+) -> StatedSurface:
+    """Surface of a spectrum, whose measures have no interval."""
+
+    def exact(number: float) -> Estimate[float]:
+        return Estimate(number, 0.0, number, number)
+
+    half = exact(spectrum.mean_square(0.5))
+    return StatedSurface(
+        measures=tuple(
+            RmsMeasure(
+                order,
+                exact(math.sqrt(spectrum.mean_square(order))),
+                *spectrum.dominant_wavelengths(order, DOMINANT_SHARE),
+            )
+            for order in ORDERS
+        ),
+        half_derivative=half,
+        recorded=half,
+        origin=origin,
+        spectrum=spectrum,
+        shares=shares,
+        doubts=tuple(doubts),
+    )

@@ -1,0 +1,59 @@
+"""`crackfront samples`: a table of results and one figure of a series."""
+
+import csv
+import io
+
+import pytest
+
+from tests.commands import refused, run
+
+SPHERE = ["--modulus", "0.7MPa", "--poisson", "0.5", "--work-of-adhesion", "63mJ/m2"]
+TABLE = """\
+sample,group,rms,roll_off,hurst,short_cutoff,radius,measured_hysteresis
+A,polished,20nm,2um,0.8,20nm,1.25mm,2mJ/m2
+B,rough,40nm,2um,0.8,20nm,1.25mm,
+C,rough,20um,2um,0.8,20nm,1.25mm,
+"""
+
+
+@pytest.fixture
+def table(tmp_path, monkeypatch):
+    """A table of three samples, the last of which no theory applies to."""
+    monkeypatch.chdir(tmp_path)
+    path = tmp_path / "series.csv"
+    path.write_text(TABLE)
+    return path
+
+
+def test_a_series_has_a_row_for_each_sample_and_a_figure(table):
+    result = run("samples", table, *SPHERE)
+    assert result.exit_code == 4, result.output
+    folder = table.parent / "results/samples"
+    with (folder / "series.csv").open(encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert [row["sample"] for row in rows] == ["A", "B", "C"]
+    assert [row["group"] for row in rows] == ["polished", "rough", "rough"]
+    assert 0 < float(rows[0]["hysteresis"]) < float(rows[1]["hysteresis"])
+    assert float(rows[0]["measured_hysteresis"]) == pytest.approx(2e-3)
+    assert (rows[2]["outcome"], rows[2]["hysteresis"]) == ("does not apply", "")
+    assert {path.name for path in folder.iterdir()} == {"series.csv", "series.pdf", "series.png"}
+    assert "A: hysteresis 2" in result.output
+    assert "samples" in run("--help").output
+
+
+def test_a_table_may_be_printed_and_the_figure_show_another_number(table):
+    figure = table.parent / "pull-off.svg"
+    printed = run("samples", table, *SPHERE, "--csv", "-", "--figure", figure, "--quantity", "e_el")
+    rows = list(csv.DictReader(io.StringIO(printed.stdout)))
+    assert [row["sample"] for row in rows] == ["A", "B", "C"]
+    assert "figure: " in printed.stderr
+    assert figure.stat().st_size > 1000
+    assert not (table.parent / "results").exists()
+
+
+def test_nothing_is_computed_for_a_table_with_a_bad_row(table, monkeypatch):
+    monkeypatch.setattr("crackfront.topography.samples.check_and_predict", None)
+    table.write_text(TABLE.replace("40nm", "40"))
+    told = refused("samples", table, *SPHERE)
+    assert "series.csv, line 3: rms is '40', without a unit" in told
+    assert not (table.parent / "results").exists()

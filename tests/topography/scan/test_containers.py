@@ -1,0 +1,134 @@
+"""Containers of contact.engineering: all measurements of a surface, with their units and sizes."""
+
+import io
+import json
+import zipfile
+
+import numpy as np
+import pytest
+from ruamel.yaml import YAML
+from SurfaceTopography import Topography
+from SurfaceTopography.Container.IO.CE import write_containers
+from SurfaceTopography.Container.SurfaceContainer import InMemorySurfaceContainer
+
+import crackfront as cf
+from crackfront.topography.options import ReadingOptions
+from crackfront.topography.scan.reading import read_measurements
+
+SIDE = 10e-6
+CENTER = ReadingOptions(detrend="center")
+
+
+def maps(rng, number=2):
+    """Heights of maps without correlation."""
+    return [1e-8 * rng.standard_normal((48, 48)) for _ in range(number)]
+
+
+def texts(heights, factor):
+    """Rows of a map, which states neither unit nor size."""
+    file = io.BytesIO()
+    np.savetxt(file, factor * heights.T, fmt="%.12e")
+    return file.getvalue()
+
+
+def entry(name, **more):
+    """Metadata of a measurement whose text is in nanometres, of a side in micrometres."""
+    return {
+        "name": name,
+        "datafile": {"original": f"{name}.txt"},
+        "size": [10.0, 10.0],
+        "unit": "µm",
+        "height_scale": 1e-3,
+        **more,
+    }
+
+
+def container(path, surfaces, files, metadata="meta.yml"):
+    """A ZIP file of surfaces, named by the entries of their measurements."""
+    content = {"surfaces": [{"name": n, "topographies": t} for n, t in surfaces.items()]}
+    with zipfile.ZipFile(path, "w") as archive:
+        text = io.StringIO()
+        if metadata.endswith("json"):
+            json.dump(content, text)
+        else:
+            YAML(typ="safe").dump(content, text)
+        archive.writestr(metadata, text.getvalue())
+        for name, data in files.items():
+            archive.writestr(name, data)
+    return path
+
+
+@pytest.mark.parametrize("metadata", ["meta.yml", "index.json"])
+def test_all_measurements_of_a_surface_have_the_units_and_sizes_of_the_container(
+    tmp_path, rng, metadata
+):
+    heights = maps(rng)
+    files = {f"{name}.txt": texts(one, 1e9) for name, one in zip("ab", heights, strict=True)}
+    entries = [entry("a"), entry("b", size=[5.0, 5.0])]
+    path = container(tmp_path / "film.zip", {"film": entries}, files, metadata)
+    found = read_measurements([path], CENTER)
+    assert [str(one.path) for one in found] == [f"{path}/a", f"{path}/b"]
+    assert [one.size[0] for one in found] == pytest.approx([SIDE, SIDE / 2])
+    for one, expected in zip(found, heights, strict=True):
+        np.testing.assert_allclose(one.heights, expected - expected.mean(), atol=1e-17)
+    assert "film: b" in str(cf.list_channels(path)[1])
+
+
+def test_a_container_of_the_library_is_read(tmp_path, rng):
+    heights = maps(rng)
+    scans = [
+        Topography(one, (SIDE, SIDE), unit="m", info={"name": name})
+        for name, one in zip("ab", heights, strict=True)
+    ]
+    path = tmp_path / "film.zip"
+    write_containers([InMemorySurfaceContainer(scans)], str(path))
+    found = read_measurements([path], CENTER)
+    for one, expected in zip(found, heights, strict=True):
+        assert one.size == pytest.approx((SIDE, SIDE))
+        np.testing.assert_allclose(one.heights, expected - expected.mean(), atol=1e-17)
+
+
+def test_one_of_several_surfaces_is_chosen_by_name_or_number(tmp_path, rng):
+    heights = maps(rng)
+    files = {f"{name}.txt": texts(one, 1e9) for name, one in zip("ab", heights, strict=True)}
+    surfaces = {"smooth": [entry("a")], "rough": [entry("b")]}
+    path = container(tmp_path / "films.zip", surfaces, files)
+    with pytest.raises(ValueError, match=r"2 surfaces; .*--surface: 0 'smooth' \(1.*; 1 'rough'"):
+        read_measurements([path])
+    for wanted in ("rough", "1"):
+        [found] = read_measurements([path], ReadingOptions(surface=wanted))
+        assert found.path.name == "b"
+    with pytest.raises(ValueError, match="no surface '2'; choose"):
+        read_measurements([path], ReadingOptions(surface="2"))
+
+
+def test_options_hold_where_the_container_says_nothing(tmp_path, rng):
+    [heights] = maps(rng, 1)
+    bare = entry("a")
+    del bare["unit"], bare["height_scale"]
+    path = container(tmp_path / "film.zip", {"film": [bare]}, {"a.txt": texts(heights, 1e6)})
+    with pytest.raises(ValueError, match=r"film.zip/a, read as \w+, states no unit of length"):
+        read_measurements([path])
+    [found] = read_measurements([path], ReadingOptions(unit="um"))
+    assert found.size[0] == pytest.approx(SIDE)
+    stated = container(tmp_path / "other.zip", {"film": [entry("a")]}, {"a.txt": b"1 2\n"})
+    with pytest.raises(ValueError, match=r"other.zip/a.*"):
+        read_measurements([stated], ReadingOptions(unit="um"))
+
+
+def test_what_is_no_container_or_a_damaged_one_is_refused_with_a_sentence(tmp_path, rng, scan):
+    with pytest.raises(ValueError, match="no container of surfaces; leave --surface out"):
+        read_measurements([scan], ReadingOptions(surface="0"))
+    lacking = container(tmp_path / "lacking.zip", {"film": [entry("a")]}, {})
+    with pytest.raises(ValueError, match=r"lacks 'a.txt', which it says that it holds"):
+        read_measurements([lacking])
+    empty = container(tmp_path / "empty.zip", {"film": []}, {})
+    with pytest.raises(ValueError, match=r"meta.yml does not say .*: surfaces.0.topographies"):
+        read_measurements([empty])
+    locked = container(tmp_path / "locked.zip", {"film": [entry("a")]}, {"a.txt": b"1"})
+    content = bytearray(locked.read_bytes())
+    place = content.rindex(b"PK\x01\x02")
+    content[place + 8] |= 1
+    locked.write_bytes(content)
+    with pytest.raises(ValueError, match="is encrypted; unpack it with its password"):
+        read_measurements([locked])

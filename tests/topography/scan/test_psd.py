@@ -1,0 +1,148 @@
+"""Spectral densities as other programs export them: one surface in the convention of each."""
+
+import numpy as np
+import pytest
+
+from crackfront.core.spectrum import SelfAffineSpectrum
+from crackfront.topography.options import PsdOptions
+from crackfront.topography.scan.psd import read_psd_file
+from tests.topography.made import read, write_line
+
+SURFACE = SelfAffineSpectrum(50e-9, 2e-6, hurst=0.8, plateau=1e-26)
+Q = 2 * np.pi / np.geomspace(10e-6, 60e-9, 40)
+"""Wavevectors of less than one value a bin, so that none are averaged."""
+
+
+def columns(first, second, between=",", form="{:.9e}"):
+    """Rows of two columns."""
+    return "".join(
+        between.join((form.format(a), form.format(b))) + "\n"
+        for a, b in zip(first, second, strict=True)
+    )
+
+
+def profile(q=Q):
+    """C_1D of the surface."""
+    return SURFACE.profile_density(q)
+
+
+def isotropic(q=Q):
+    """C of the surface."""
+    return SURFACE.density(q)
+
+
+def contact_engineering():
+    """Its text of several series, each with a standard error."""
+    series = {"1D PSD along x": profile(), "q/π × 2D PSD": Q / np.pi * isotropic()}
+    text = "# Power-spectral density (PSD)\n# ============\n# IF YOU USE THIS DATA, CITE IT\n#\n"
+    for name, value in series.items():
+        head = "# Columns: Wavevector (µm⁻¹), PSD (µm³), standard error of average PSD (µm³)"
+        text += f"# {name}\n# {'-' * len(name)}\n{head}\n"
+        rows = zip(Q * 1e-6, value * 1e18, strict=True)
+        text += "".join(f"{a:.9e} {b:.9e} nan\n" for a, b in rows) + "\n"
+    return text
+
+
+EXPORTS = {
+    "contact.engineering, profiles": (contact_engineering(), {"psd_series": "1D PSD along x"}),
+    "contact.engineering, radial": (contact_engineering(), {"psd_series": "2"}),
+    "Gwyddion, profiles": (
+        "PSDF\nk       W_1\n[1/m]     [m<sup>3</sup>]\n"
+        + columns([0, *Q], [0, *profile() / (2 * np.pi)], "  "),
+        {},
+    ),
+    "Gwyddion, radial": (
+        "Radial PSDF;\nk;W_r;\n[1/µm];[µm^3];\n"
+        + columns(Q * 1e-6, 1e18 * Q * isotropic() / (2 * np.pi), ";"),
+        {},
+    ),
+    "MountainsMap": (
+        "Power spectral density\nFrequency (1/µm);PSD (nm²·µm)\n"
+        + columns(Q * 1e-6 / (2 * np.pi), 1e24 * profile(), ";").replace(".", ","),
+        {"psd_sides": "two"},
+    ),
+    "one-sided": (
+        "wavevector [1/m],one-sided PSD [m^3]\n" + columns(Q, 2 * profile()),
+        {},
+    ),
+    "wavelengths": (
+        "wavelength (nm)\tC2D (um^4)\n" + columns(2e9 * np.pi / Q, 1e24 * isotropic(), "\t"),
+        {},
+    ),
+    "without heads": (
+        columns(Q * 1e-6, 1e24 * isotropic(), " "),
+        {"psd_units": "1/um,um^4", "psd_abscissa": "wavevector"},
+    ),
+}
+
+
+@pytest.mark.parametrize("name", EXPORTS)
+def test_the_exports_of_programs_give_the_same_density(tmp_path, name):
+    text, options = EXPORTS[name]
+    path = tmp_path / "psd.txt"
+    path.write_text(text, encoding="utf-8")
+    found = read_psd_file(path, PsdOptions(**options))
+    np.testing.assert_allclose(found.wavevector, Q, rtol=1e-6)
+    expected = profile() if found.is_profile else isotropic()
+    np.testing.assert_allclose(found.value, expected, rtol=1e-6)
+    assert found.assumptions == ()
+
+
+def test_a_density_that_does_not_say_its_sides_is_taken_as_two_sided_with_a_sentence(tmp_path):
+    path = tmp_path / "psd.csv"
+    path.write_text("q (1/m),PSD (m^3)\n" + columns(Q, profile()))
+    found = read_psd_file(path, PsdOptions())
+    [sentence] = found.assumptions
+    assert "one-sided" in sentence
+    half = read_psd_file(path, PsdOptions(psd_sides="one"))
+    np.testing.assert_allclose(half.value, found.value / 2)
+
+
+@pytest.mark.parametrize(
+    ("text", "options", "sentence"),
+    [
+        ("x,y\n" + columns(Q, profile()), {}, "whether its first column is a wavevector"),
+        ("q,PSD\n" + columns(Q, profile()), {}, "no unit of its first column; name both"),
+        ("q (m),PSD (m^3)\n" + columns(Q, profile()), {}, "'m', none of a wavevector"),
+        ("q (1/m),PSD (dB)\n" + columns(Q, profile()), {}, "'dB', neither a length"),
+        ("q (1/m),PSD (m^3)\n" + columns(Q, profile()), {"psd_kind": "2d"}, "has no unit m"),
+        ("q (1/m),PSD (m^3)\n" + columns(Q, -profile()), {}, "line 2: the density is -"),
+        ("q (1/m),PSD (m^3)\n" + columns(Q[:2], profile(Q[:2])), {}, "2 values of the density"),
+        (contact_engineering(), {}, "2 series; choose one .*1 '1D PSD along x'; 2 'q/π"),
+        (contact_engineering(), {"psd_series": "3"}, "no series '3'"),
+        ("q (1/m),PSD (m^3)\n" + columns(Q, profile()), {"psd_units": "1/m"}, "both columns"),
+        ("nothing\n", {}, "no rows of numbers"),
+    ],
+)
+def test_what_is_no_density_is_refused_with_a_sentence(tmp_path, text, options, sentence):
+    path = tmp_path / "psd.csv"
+    path.write_text(text, encoding="utf-8")
+    with pytest.raises(ValueError, match=sentence):
+        read_psd_file(path, PsdOptions(**options))
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        contact_engineering(),
+        "q,C2D\n" + columns(Q, isotropic()),
+        "1/m  m^3\n" + columns(Q, profile(), " "),
+        columns(Q, profile(), " "),
+        columns(Q[0] * np.arange(200), 1e-20 / (1 + np.arange(200)) ** 2.6, " "),
+    ],
+)
+def test_a_density_is_never_taken_for_a_line_scan(tmp_path, text):
+    path = tmp_path / "psd.csv"
+    path.write_text(text, encoding="utf-8")
+    with pytest.raises(ValueError, match=r"holds a spectral density, no line scan: .* --psd"):
+        read(path, unit="um")
+
+
+def test_lines_of_heights_stay_scans(tmp_path, rng):
+    heights = np.cumsum(1e-9 * rng.standard_normal(300))
+    line = write_line(tmp_path / "line.txt", heights - heights.min() + 1e-9, 1e-8)
+    assert read(line, unit="m").is_line
+    steep = tmp_path / "steep.txt"
+    places = np.arange(1, 200)
+    steep.write_text("x z\n" + columns(places, 1e2 * np.exp(-places / 9), " "))
+    assert read(steep, unit="nm").is_line

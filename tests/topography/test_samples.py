@@ -1,0 +1,147 @@
+"""Series of samples: what a row of a table or of YAML says, and what comes of it."""
+
+import numpy as np
+import pytest
+
+from crackfront.topography.samples import predicted_samples, read_samples
+from tests.topography.made import SCENE
+
+SPHERE = {
+    "modulus": "0.7MPa",
+    "poisson": "0.5",
+    "radius": "1.25mm",
+    "work_of_adhesion": "63mJ/m2",
+}
+
+CSV = """\
+# a series of films
+sample,group,rms (nm),roll-off (um),hurst,short_cutoff,radius (mm),measured hysteresis (mJ/m2)
+A,polished,20,2,0.8,20nm,1.25,2
+B,rough,40,2,0.8,20nm,,
+"""
+
+YAML = """\
+samples:
+  - sample: A
+    group: polished
+    rms (nm): 20
+    roll_off: 2um
+    hurst: 0.8
+    short_cutoff: 2e-8
+    radius: 1.25e-3
+    measured_hysteresis: 2mJ/m2
+  - {sample: B, group: rough, rms: 40nm, roll_off: 2um, hurst: 0.8, short_cutoff: 20nm}
+"""
+
+TABLES = {
+    "samples.csv": CSV,
+    "samples.tsv": CSV.replace(",", "\t"),
+    "excel.csv": CSV.replace(",", ";").replace(".", ","),
+    "samples.yaml": YAML,
+    "list.yml": YAML.removeprefix("samples:\n"),
+}
+
+
+@pytest.mark.parametrize("name", TABLES)
+def test_a_row_means_the_same_in_every_form(tmp_path, name):
+    path = tmp_path / name
+    path.write_text(TABLES[name], encoding="utf-8")
+    first, second = read_samples(path, SPHERE)
+    assert (first.name, first.group, second.group) == ("A", "polished", "rough")
+    assert first.numbers.rms == pytest.approx(20e-9)
+    assert first.numbers.roll_off == pytest.approx(2e-6)
+    assert first.numbers.short_cutoff == pytest.approx(20e-9)
+    assert first.measured["hysteresis"].value == pytest.approx(2e-3)
+    assert second.measured == {}
+    for one in (first, second):
+        assert one.scales.radius == pytest.approx(SCENE.radius)
+        assert one.scales.contact_modulus == pytest.approx(SCENE.contact_modulus)
+
+
+def test_a_sample_may_have_several_scans_psds_and_units(tmp_path):
+    for name in ("a-1.txt", "a-2.txt", "b.txt", "psd.csv"):
+        (tmp_path / name).write_text("1 2\n")
+    path = tmp_path / "samples.csv"
+    path.write_text(
+        "sample,scans,psd,unit,psd_sides,tip radius (nm)\n"
+        "A,a-*.txt,,um,,20\nB,b.txt | a-1.txt,,,,\nC,,psd.csv,,one,\n"
+    )
+    one, two, three = read_samples(path, SPHERE | {"detrend": "slope"})
+    assert [file.name for file in one.scans] == ["a-1.txt", "a-2.txt"]
+    assert [file.name for file in two.scans] == ["b.txt", "a-1.txt"]
+    assert {by.unit for by in one.reading} == {"um"}
+    assert {by.detrend for by in (*one.reading, *two.reading)} == {"slope"}
+    assert one.reading[0].tip_radius == pytest.approx(20e-9)
+    assert (three.psd, three.density.psd_sides) == (tmp_path / "psd.csv", "one")
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "sentence"),
+    [
+        ("A,polished,20", "A,polished,20kg", "line 3: rms is '20kg', which is no length"),
+        ("B,rough,40", "B,rough,", "line 4: a surface of numbers needs rms and hurst, and one"),
+        ("B,rough", "A,rough", "line 4: the sample 'A' stands in line 3 as well"),
+        ("B,rough", ",rough", "line 4: there is no name; write it in the column 'sample'"),
+        ("0.8,20nm,,", "1.8,20nm,,", "line 4: hurst is 1.8; it must lie between"),
+        ("hurst", "hurts", "line 3: there is no column 'hurts'; was hurst meant"),
+        ("group", "scans", "line 3: the surface is given by scans and rms; name"),
+        ("B,rough,40,2,0.8,20nm,,", "B,,,,,,,", "line 4: the surface is given by nothing"),
+        ("20nm,,", "20nm,,,,5", "line 4: the row has 10 cells and the heads are 8"),
+        ("group", "rms", "line 2: two columns are called 'rms'"),
+        ("A,polished,20,2", "A,polished,20,0.001", "line 3: the roll-off, 1 nm, is shorter"),
+    ],
+)
+def test_a_row_that_cannot_be_used_is_refused_with_its_line(tmp_path, old, new, sentence):
+    path = tmp_path / "samples.csv"
+    assert old in CSV
+    path.write_text(CSV.replace(old, new, 1))
+    with pytest.raises(ValueError, match=r"samples.csv, line \d+: ") as caught:
+        read_samples(path, SPHERE)
+    assert sentence in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+def test_what_a_row_lacks_is_refused_before_any_work(tmp_path):
+    path = tmp_path / "samples.csv"
+    path.write_text("sample,scans\nA,absent.al3d\n")
+    with pytest.raises(ValueError, match=r"line 2: there is no file .*absent.al3d; correct"):
+        read_samples(path, SPHERE)
+    path.write_text(CSV)
+    with pytest.raises(ValueError, match=r"line 4: the sphere is incomplete; name all of modulus"):
+        read_samples(path, {name: one for name, one in SPHERE.items() if name != "radius"})
+    path.write_text("sample,rms\n")
+    with pytest.raises(ValueError, match="has 0 samples; write a row for each"):
+        read_samples(path, SPHERE)
+    other = tmp_path / "samples.yaml"
+    other.write_text("samples: {A: 1}\n")
+    with pytest.raises(ValueError, match="has no list of samples; write 'samples:'"):
+        read_samples(other, SPHERE)
+    other.write_text("samples:\n  - {sample: A, rms: 20nm, hurst: 0.8}\n")
+    with pytest.raises(ValueError, match=r"samples.yaml, line 2: a surface of numbers needs"):
+        read_samples(other, SPHERE)
+
+
+def test_a_sample_that_fails_later_keeps_the_rows_of_the_others(tmp_path):
+    (tmp_path / "bad.txt").write_text("no scan\n")
+    path = tmp_path / "samples.csv"
+    path.write_text(
+        "sample,scans,rms,roll_off,hurst,short_cutoff,measured_w_retr,measured_w_retr_error\n"
+        "bad,bad.txt,,,,,,\ngood,,20nm,2um,0.8,20nm,65mJ/m2,1mJ/m2\n"
+        "rough,,20um,2um,0.8,20nm,,\n"
+    )
+    bad, good, rough = predicted_samples(read_samples(path, SPHERE))
+    assert (bad.outcome, bad.prediction) == ("refused", None)
+    assert "bad.txt" in bad.row["remarks"]
+    assert good.row["hysteresis_low"] < good.row["hysteresis"] < good.row["hysteresis_high"]
+    assert (good.row["at_least"], good.row["none_expected"], good.row["failed"]) == (
+        False,
+        False,
+        "",
+    )
+    assert good.row["measured_w_retr"] == pytest.approx(65e-3)
+    point = good.point("w_retr")
+    assert (point.measured.low, point.measured.high) == pytest.approx((63e-3, 67e-3))
+    assert point.predicted.value == good.prediction.w_retr.value
+    assert rough.outcome == "does not apply"
+    assert "full conformity" in rough.row["failed"]
+    assert np.isnan(rough.point("w_retr").predicted.value)
