@@ -27,8 +27,12 @@ Rows = NDArray[np.int64]
 _BLOCKS = 10
 """Parts of a branch, each of which is left out once to find the errors of noise."""
 
-_TRANSIENT = 0.05
-"""Part of the largest radius that the edge travels before a branch counts as steady."""
+_AFTER_JUMP, _AFTER_TURN = 0.02, 0.1
+"""Parts of the largest radius that the edge travels before a branch counts as steady.
+
+A jump into contact leaves nothing behind. After the turn the edge has to leave what pinned it in
+approach; `python -m studies accuracy loops` holds the intervals against simulated spheres.
+"""
 
 _ZEROS = 151
 """Displacements among which the zero is looked for first."""
@@ -359,11 +363,11 @@ def _averaged(
     if min(rows.size for rows in branches) == 0:
         raise ValueError("the loop has no approach or no retraction in contact; record both")
     if window is None:
-        travel = _TRANSIENT * max(float(radius[rows].max()) for rows in branches)
         appr, retr = branches
+        largest = max(float(radius[rows].max()) for rows in branches)
         steady = (
-            appr[radius[appr] >= radius[appr].min() + travel],
-            retr[radius[retr] <= radius[retr].max() - travel],
+            appr[radius[appr] >= radius[appr].min() + _AFTER_JUMP * largest],
+            retr[radius[retr] <= radius[retr].max() - _AFTER_TURN * largest],
         )
         if min(rows.size for rows in steady) == 0:
             averaged, window = steady, (math.nan, math.nan)
