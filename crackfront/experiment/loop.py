@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -162,7 +162,14 @@ def analyse_loop(recording: Recording, rig: Rig) -> MeasuredLoop:
         return np.array([appr, retr, retr - appr, modulus])
 
     shifted = [replace(recording, force=np.asarray(recording.force) + one) for one in zero_errors]
-    estimates = _estimates(found, averaged, first.radius, rig, shifted)
+    alone = []
+    if zero != 0.0:
+        # A true trend of either branch moves the zero; one branch alone says by how much.
+        for rows in averaged:
+            place = _zero_displacement(recording, rig, known, [rows])
+            appr, retr = branch_means(_contact(recording, rig, known, place).work, averaged)
+            alone.append(np.array([appr, retr, retr - appr, known]))
+    estimates = _estimates(found, averaged, first.radius, rig, shifted, alone)
     fitted = _NOTHING
     if recording.force is not None and recording.radius is not None:
         free = Rig(rig.radius, None, 0.0, rig.radius_error)
@@ -240,7 +247,7 @@ def _zero_displacement(
     recording: Recording,
     rig: Rig,
     modulus: float,
-    branches: Branches,
+    branches: Sequence[Rows],
     near: float | None = None,
 ) -> float:
     """Displacement of no penetration, at which each branch is nearest to one work of adhesion.
@@ -418,10 +425,12 @@ def _estimates(
     radius: Array,
     rig: Rig,
     shifted: Iterable[Recording],
+    apart: Iterable[Array] = (),
 ) -> list[Estimate[float]]:
     """Numbers that are found from the rows of both branches, with their 95% intervals.
 
-    The shifted recordings are off by a standard error of the force's zero each.
+    The shifted recordings are off by a standard error of the force's zero each. Apart are numbers
+    that are off by a standard error for another reason.
     """
     value = found(averaged, rig)
     count = min(_BLOCKS, min(rows.size for rows in averaged) // 2)
@@ -436,6 +445,8 @@ def _estimates(
     others = np.zeros_like(value)
     for recording in shifted:
         others += (found(averaged, rig, recording) - value) ** 2
+    for numbers in apart:
+        others += (numbers - value) ** 2
     for error, changed in _scene_errors(rig):
         others += (error * (found(averaged, changed) - value) / 1e-4) ** 2
     middle = float(np.median(radius[np.concatenate(averaged)]))
@@ -443,7 +454,7 @@ def _estimates(
     if min(rows.size for half in halves for rows in half) >= FEWEST_STATES:
         low, high = (found(half, rig) for half in halves)
         # A trend along the window, beyond what noise makes of two halves.
-        others += np.maximum(((high - low) / 2) ** 2 - noise**2, 0.0) / 3
+        others += np.maximum(((high - low) / 2) ** 2 - noise**2, 0.0)
     reach = np.sqrt((float(stdtrit(count - 1, 0.975)) * noise) ** 2 + REACH**2 * others)
     error = np.sqrt(noise**2 + others)
     return [

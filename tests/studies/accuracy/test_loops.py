@@ -7,6 +7,7 @@ import pytest
 from click.testing import CliRunner
 
 import crackfront as cf
+from crackfront.experiment.loop import Rig, analyse_loop
 from crackfront.experiment.simulated import simulated_loop
 from studies.__main__ import main
 from studies.accuracy import loops
@@ -50,6 +51,22 @@ def test_a_part_of_the_retraction_ends_in_contact(cycle, rng):
     assert part.radius[-1] > 0
     way = [np.max(one.displacement) - one.displacement[one.radius > 0][-1] for one in (whole, part)]
     assert 0.5 < way[1] / way[0] <= 0.6
+
+
+def test_intervals_hold_what_an_unknown_zero_of_the_displacement_leaves(rng):
+    """Works of rough spheres change along the contact radius, which a wrong zero imitates."""
+    rig = Rig(loops.SPHERE.radius, loops.SPHERE.contact_modulus, stiffness=1e3)
+    held = []
+    for seed in range(4):
+        surface = cf.random_surface(0.1, 0.02, side=4.0, seed=seed)
+        cycle = cf.run_loop(surface, max_penetration=1.5, step=0.03, fronts=False)
+        cycle = cf.in_si_units(cycle, loops.SPHERE)
+        instrument = replace(PERFECT, stiffness=1e3, sees_contact=False)
+        found, truth = analyse_loop(recording(cycle, instrument, rng), rig), simulated_loop(cycle)
+        for name in loops.WORKS:
+            estimate = getattr(found, name)
+            held.append(estimate.low <= getattr(truth, name).value <= estimate.high)
+    assert np.mean(held) >= 0.9
 
 
 def test_offsets_and_intervals_are_told_in_parts_of_the_true_hysteresis(cycle):
