@@ -17,6 +17,9 @@ from crackfront.core.geometry.line import LineState
 from crackfront.core.geometry.sphere import ContactState
 from crackfront.core.variables import ADHESION, LATERAL, variable
 
+Branches = tuple[NDArray[np.int64], NDArray[np.int64]]
+"""Places in a record of states of the approach, and of the retraction."""
+
 _ROUND_OFF = 1e-5
 """Part of a period within which places are equal."""
 
@@ -93,7 +96,7 @@ def steady_adhesion(record: CycleRecord, correlation_length: float) -> SteadyAdh
             f"correlation length is {correlation_length}; it must be positive and finite"
         )
     states, radius = record.states, record.states.mean_radius
-    branches, window, sentence = _steady_branches(states, radius, "radii", correlation_length)
+    branches, window, sentence = steady_branches(states, radius, "radii", correlation_length)
     if sentence:
         return _no_value((branches[0].size, branches[1].size), sentence)
     from_force = [_adhesion_from_force(radius[branch], states.force[branch]) for branch in branches]
@@ -106,32 +109,64 @@ def steady_adhesion(record: CycleRecord, correlation_length: float) -> SteadyAdh
     )
 
 
-def _steady_branches(
+def steady_branches(
     states: ContactState[Array] | LineState[Array],
     place: Array,
     name: str,
     correlation_length: float,
     period: float = math.inf,
-) -> tuple[list[NDArray[np.int64]], tuple[float, float], str]:
+) -> tuple[Branches, tuple[float, float], str]:
     """Steady states of both branches, the mean places that they share, and why they are too few."""
     steady = states.least_travel >= correlation_length
-    branches = [np.flatnonzero(steady & (sign * states.direction > 0)) for sign in (1, -1)]
+    approach, retraction = (
+        np.flatnonzero(steady & (sign * states.direction > 0)) for sign in (1, -1)
+    )
+    branches = approach, retraction
     deeper = "penetrate deeper" if isinstance(states, ContactState) else "load further"
     needed = f"{FEWEST_STATES} each are needed, so {deeper} or use a smaller load step"
-    if min(branch.size for branch in branches) < FEWEST_STATES:
-        counts = f"{branches[0].size} steady states in approach and {branches[1].size}"
+    if min(approach.size, retraction.size) < FEWEST_STATES:
+        counts = f"{approach.size} steady states in approach and {retraction.size}"
         return branches, (math.nan, math.nan), f"{counts} in retraction; {needed}"
-    highest = float(min(place[branch].max() for branch in branches))
-    lowest = float(max(place[branch].min() for branch in branches))
-    # The last places of at most one period, which holds each state once.
-    lowest = max(lowest, highest - (1 - _ROUND_OFF) * period)
-    shared = (place >= lowest) & (place <= highest)
-    branches = [branch[shared[branch]] for branch in branches]
+    branches, window = shared_window(place, branches, period)
     if min(branch.size for branch in branches) < FEWEST_STATES:
         counts = f"{branches[0].size} states of approach and {branches[1].size} of retraction"
         sentence = f"the steady branches share {counts} at equal mean {name}; {needed}"
-        return branches, (lowest, highest), sentence
-    return branches, (lowest, highest), ""
+        return branches, window, sentence
+    return branches, window, ""
+
+
+def shared_window(
+    place: Array, steady: Branches, period: float = math.inf
+) -> tuple[Branches, tuple[float, float]]:
+    """States of both branches in the overlap of their steady ranges, and the ends of the overlap.
+
+    Parameters
+    ----------
+    place : (n_state,) array
+        Mean radius or place of the front. (Units: length)
+    steady : two arrays of int
+        Steady states of approach and of retraction, one or more each.
+    period : float, optional
+        Largest width of the overlap, of which the end at larger places stays. (Units: as place)
+    """
+    highest = float(min(place[branch].max() for branch in steady))
+    lowest = float(max(place[branch].min() for branch in steady))
+    # The last places of at most one period, which holds each state once.
+    lowest = max(lowest, highest - (1 - _ROUND_OFF) * period)
+    return within(place, steady, (lowest, highest)), (lowest, highest)
+
+
+def within(place: Array, branches: Branches, window: tuple[float, float]) -> Branches:
+    """States of both branches whose place lies in a window, its ends included."""
+    inside = (place >= window[0]) & (place <= window[1])
+    approach, retraction = branches
+    return approach[inside[approach]], retraction[inside[retraction]]
+
+
+def branch_means(values: Array, branches: Branches) -> tuple[float, float]:
+    """Means of both branches, one state one vote: w_appr and w_retr of works of adhesion."""
+    approach, retraction = branches
+    return float(np.mean(values[approach])), float(np.mean(values[retraction]))
 
 
 def passing_adhesion(
@@ -142,7 +177,7 @@ def passing_adhesion(
     The mean of w_loc is in w_int, the period that of the tile along the motion.
     """
     states = record.states
-    branches, _, sentence = _steady_branches(
+    branches, _, sentence = steady_branches(
         states, states.mean_position, "places", correlation_length, period
     )
     if sentence:
@@ -160,9 +195,12 @@ def period_adhesion(
     correlation length in reduced lateral lengths.
     """
     states = record.states
-    branches = [np.flatnonzero(sign * states.direction > 0)[-n_period:] for sign in (1, -1)]
-    if min(branch.size for branch in branches) < n_period:
-        counts = branches[0].size, branches[1].size
+    approach, retraction = (
+        np.flatnonzero(sign * states.direction > 0)[-n_period:] for sign in (1, -1)
+    )
+    branches = approach, retraction
+    if min(approach.size, retraction.size) < n_period:
+        counts = approach.size, retraction.size
         return _no_value(counts, f"the front was left before it had passed the tile: {counts}")
     columns = mean - states.pinning_force, states.mean_position, states.rms_position
     return _measures(columns, branches, correlation_length)
@@ -170,13 +208,13 @@ def period_adhesion(
 
 def _measures(
     columns: tuple[Array, Array, Array],
-    branches: Sequence[NDArray[np.int64]],
+    branches: Branches,
     correlation_length: float,
     from_force: Sequence[float] | None = None,
 ) -> SteadyAdhesion:
     """Means of work of adhesion, place and rms of the front over the states of both branches."""
     values, place, roughness = columns
-    works = [float(np.mean(values[branch])) for branch in branches]
+    works = branch_means(values, branches)
     errors = [
         standard_error(values[branch], place[branch], roughness[branch], correlation_length)
         for branch in branches
@@ -203,7 +241,7 @@ def _measures(
 
 
 def _error_of_difference(
-    states: ContactState[Array], branches: Sequence[NDArray[np.int64]], correlation_length: float
+    states: ContactState[Array], branches: Branches, correlation_length: float
 ) -> float:
     """Standard error of the hysteresis, from states of both branches that are closest."""
     radii = [states.mean_radius[branch] for branch in branches]

@@ -1,4 +1,4 @@
-"""`crackfront loop`: works of adhesion of a measured loop, beside what is predicted for scans."""
+"""`crackfront loop`: works of adhesion of a loop, beside what is predicted for scans."""
 
 from __future__ import annotations
 
@@ -43,10 +43,11 @@ def _columns(command: Any) -> Any:
         "crackfront loop rig.csv --radius 1.25mm --modulus 0.7MPa",
         "crackfront loop rig.csv --radius 1.25mm --modulus 0.7MPa --scans surface.al3d \\",
         "    --work-of-adhesion 63mJ/m2",
+        "crackfront loop cycle.nc",
     )
 )
-@click.argument("path", type=FILE, metavar="TABLE")
-@click.option("--radius", "sphere", required=True, help="Radius of the sphere, as in 1.25mm.")
+@click.argument("path", type=FILE, metavar="FILE")
+@click.option("--radius", "sphere", help="Radius of the sphere, as in 1.25mm.")
 @click.option("--modulus", help="Young's modulus, as in 0.7MPa; fitted where it is left out.")
 @click.option(
     "--poisson",
@@ -66,44 +67,43 @@ def _columns(command: Any) -> Any:
 @as_json
 def loop(
     path: Path,
-    sphere: str,
+    sphere: str | None,
     modulus: str | None,
     poisson: float,
-    modulus_error: float,
-    radius_error: float,
-    stiffness: str | None,
-    window: str | None,
     scans: tuple[Path, ...],
     work_of_adhesion: str | None,
     figure: Path | None,
     as_json: bool,
-    **columns: Any,
+    **of_rig: Any,
 ) -> None:
-    """Evaluate a measured loop of force, contact radius and displacement.
+    """Evaluate a measured or simulated loop of force, contact radius and displacement.
 
-    TABLE is a text with heads, two of the three columns or all. Both branches have a mean work of
-    adhesion over the same contact radii, as simulations have.
+    FILE is a text with heads, two of the three columns or all. Both branches have a mean work of
+    adhesion over the same contact radii, as simulations have. Or it is a cycle in netCDF, which
+    `crackfront cycle` wrote or a sweep stored: its works of adhesion are those of the simulation,
+    in reduced units unless it states a sphere or --radius, --modulus and --work-of-adhesion do.
     """
-    from crackfront.experiment.loop import Rig, analyse_loop
-    from crackfront.experiment.recording import read_recording
+    from crackfront.experiment.simulated import is_netcdf
 
     if scans and work_of_adhesion is None:
         raise ValueError("a prediction for --scans needs w_int; give --work-of-adhesion")
-    young = None if modulus is None else si_value(modulus, "Pa", what="--modulus")
-    rig = Rig(
-        radius=si_value(sphere, "m", what="--radius"),
-        contact_modulus=None if young is None else young / (1 - poisson**2),
-        modulus_error=modulus_error,
-        radius_error=radius_error,
-        stiffness=None if stiffness is None else si_value(stiffness, "N/m", what="--stiffness"),
-        window=None if window is None else _window(window),
-    )
-    named = {name: columns[name] for name, _ in _COLUMNS if columns[name]}
-    units = {name: columns[f"{name}_unit"] for name, _ in _COLUMNS if columns[f"{name}_unit"]}
     if figure is not None:
         refuse_unwritable(figure.parent)
-    found = analyse_loop(read_recording(path, named, units), rig)
-    predicted = _predicted(scans, found, rig.radius, work_of_adhesion) if scans else None
+    radius = None if sphere is None else si_value(sphere, "m", what="--radius")
+    young = None if modulus is None else si_value(modulus, "Pa", what="--modulus")
+    contact_modulus = None if young is None else young / (1 - poisson**2)
+    if is_netcdf(path):
+        if given := [name for name, value in of_rig.items() if value]:
+            option = {"radius": "contact-radius"}.get(given[0], given[0].replace("_", "-"))
+            raise ValueError(f"{path} is a simulated cycle without a rig; leave out --{option}")
+        found = _simulated(path, radius, contact_modulus, work_of_adhesion)
+        if scans and found.reduced:
+            raise ValueError(
+                f"{path} is in reduced units, and predictions are not; give --radius and --modulus"
+            )
+    else:
+        found = _measured(path, radius, contact_modulus, of_rig)
+    predicted = _predicted(scans, found, work_of_adhesion) if scans else None
     if as_json:
         from crackfront.experiment.comparison import machine_readable
 
@@ -118,8 +118,55 @@ def loop(
         from crackfront.experiment.drawing import loop_figure
         from crackfront.plots.style import save_figure
 
-        for file in save_figure(loop_figure(found, rig.radius, predicted), figure):
+        for file in save_figure(loop_figure(found, predicted), figure):
             click.echo(f"figure: {file}", err=as_json)
+
+
+def _measured(
+    path: Path, radius: float | None, contact_modulus: float | None, of_rig: dict[str, Any]
+) -> MeasuredLoop:
+    """Loop of a table, with the options of the rig and of the columns."""
+    from crackfront.experiment.loop import Rig, analyse_loop
+    from crackfront.experiment.recording import read_recording
+
+    if radius is None:
+        raise ValueError(f"{path} does not state the sphere; give its --radius, as in 1.25mm")
+    stiffness, window = of_rig["stiffness"], of_rig["window"]
+    rig = Rig(
+        radius=radius,
+        contact_modulus=contact_modulus,
+        modulus_error=of_rig["modulus_error"],
+        radius_error=of_rig["radius_error"],
+        stiffness=None if stiffness is None else si_value(stiffness, "N/m", what="--stiffness"),
+        window=None if window is None else _window(window),
+    )
+    named = {name: of_rig[name] for name, _ in _COLUMNS if of_rig[name]}
+    units = {name: of_rig[f"{name}_unit"] for name, _ in _COLUMNS if of_rig[f"{name}_unit"]}
+    return analyse_loop(read_recording(path, named, units), rig)
+
+
+def _simulated(
+    path: Path, radius: float | None, contact_modulus: float | None, work_of_adhesion: str | None
+) -> MeasuredLoop:
+    """Loop of a simulated cycle, in SI units if its file or all three options state a sphere."""
+    from crackfront.core.units import Scales
+    from crackfront.data.files import read_dataset
+    from crackfront.experiment.simulated import simulated_loop
+    from crackfront.simulate.si_units import in_si_units, stated_scales
+
+    cycle = read_dataset(path)
+    if radius is None and contact_modulus is None:
+        return simulated_loop(cycle, str(path))
+    if stated_scales(cycle) is not None:
+        raise ValueError(f"{path} states its sphere; leave out --radius and --modulus")
+    if radius is None or contact_modulus is None or work_of_adhesion is None:
+        raise ValueError(
+            f"{path} is in reduced units; give --radius, --modulus and --work-of-adhesion for "
+            "those of SI, or none of them"
+        )
+    adhesion = si_value(work_of_adhesion, "J/m^2", what="--work-of-adhesion")
+    scales = Scales(radius, adhesion, contact_modulus)
+    return simulated_loop(in_si_units(cycle, scales), str(path))
 
 
 def _window(text: str) -> tuple[float, float]:
@@ -132,11 +179,12 @@ def _window(text: str) -> tuple[float, float]:
 
 
 def _predicted(
-    scans: tuple[Path, ...], found: MeasuredLoop, radius: float, work_of_adhesion: str | None
+    scans: tuple[Path, ...], found: MeasuredLoop, work_of_adhesion: str | None
 ) -> Prediction:
     """What is predicted for the sphere on a surface of scans, by the modulus of the loop."""
     from crackfront.core.units import Scales
     from crackfront.topography.library import predict
 
     adhesion = si_value(str(work_of_adhesion), "J/m^2", what="--work-of-adhesion")
-    return predict(scans, Scales(radius, adhesion, found.contact_modulus.value))
+    scales = Scales(found.sphere_radius, adhesion, found.contact_modulus.value)
+    return predict(scans, scales)

@@ -14,11 +14,15 @@ from crackfront.experiment.loop import MeasuredLoop
 from crackfront.topography.prediction.prediction import Prediction
 
 _WHAT_IS_LEFT = (
-    "Neither interval holds what the model leaves out: roughness that is finer than the scans and "
-    "areas that they do not show, dissipation at the moving edge (viscoelasticity: repeat at a "
-    "tenth of the speed), changes with time in contact (ageing, chemistry: repeat with a longer "
-    "rest), and a w_int other than the one given (measure it on a smooth sphere)."
+    "Predicted is a quasi-static loop: no viscoelasticity, no ageing, and the preload does not "
+    "enter. Neither interval holds what the model leaves out: roughness that is finer than the "
+    "scans and areas that they do not show, dissipation at the moving edge (viscoelasticity: "
+    "repeat at a tenth of the speed), changes with time in contact (ageing, chemistry: repeat with "
+    "a longer rest), and a w_int other than the one given (measure it on a smooth surface)."
 )
+
+_FAR = 2.0
+"""Ratio of measured to predicted from which a page on the reasons is named."""
 
 
 def hysteresis_ratio(found: MeasuredLoop, predicted: Prediction) -> Estimate[float]:
@@ -49,17 +53,23 @@ def comparison_lines(found: MeasuredLoop, predicted: Prediction) -> Iterator[str
     ratio = hysteresis_ratio(found, predicted)
     if math.isfinite(ratio.value):
         yield f"  {'ratio':16}{ratio.value:.3g} ({ratio.low:.2g} to {ratio.high:.2g})"
+    if ratio.value > _FAR:
+        yield (
+            f"The measured hysteresis is {ratio.value:.2g} times the predicted one; "
+            "docs/questions.md says which measurements tell the reasons apart."
+        )
     yield _WHAT_IS_LEFT
 
 
 def machine_readable(found: MeasuredLoop, predicted: Prediction | None) -> dict[str, Any]:
-    """Numbers of a loop, and of its prediction where there is one, in SI units."""
+    """Numbers of a loop, and of its prediction where there is one, in the units of the loop."""
     numbers = {
         item.name: to_jsonable(getattr(found, item.name))
         for item in variables(MeasuredLoop)
         if not item.dims
     }
-    numbers |= {"window": list(found.window), "remarks": list(found.remarks)}
+    units = "reduced" if found.reduced else "SI"
+    numbers |= {"units": units, "window": list(found.window), "remarks": list(found.remarks)}
     if predicted is None:
         return numbers
     names = ("e_el", "w_appr", "w_retr", "hysteresis")

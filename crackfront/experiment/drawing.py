@@ -7,9 +7,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from crackfront.core import jkr
-from crackfront.core.units import Scales
+from crackfront.core.units import WORK_OF_ADHESION, Scales
 from crackfront.core.variables import FORCE, LATERAL
-from crackfront.data.written_units import prefixed
 from crackfront.experiment.loop import MeasuredLoop
 from crackfront.plots.style import BLUE, COLUMN, VERMILION, blank_figure, house_style
 from crackfront.plots.units import AxisUnits
@@ -19,12 +18,15 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-def loop_figure(found: MeasuredLoop, radius: float, predicted: Prediction | None = None) -> Figure:
+def loop_figure(found: MeasuredLoop, predicted: Prediction | None = None) -> Figure:
     """Force against contact radius, the JKR curve of each branch, and those that are predicted.
 
-    The radius is that of the sphere. (Units: m)
+    It is in the units of the loop, SI or reduced.
     """
-    scales = Scales(radius, 1.0, found.contact_modulus.value)
+    # Works of adhesion are in J/m^2 or w_int.
+    unit = WORK_OF_ADHESION if found.reduced else 1.0
+    scales = Scales(found.sphere_radius, unit, found.contact_modulus.value)
+    units = AxisUnits() if found.reduced else AxisUnits(scales)
     reach = np.linspace(0.0, 1.05 * float(np.nanmax(found.contact_radius)), 300) / scales.lateral
     with house_style():
         figure = blank_figure(COLUMN, 0.9 * COLUMN)
@@ -50,7 +52,7 @@ def loop_figure(found: MeasuredLoop, radius: float, predicted: Prediction | None
                 reach * scales.lateral,
                 scales.force * jkr.equilibrium_force(reach, work.value),
                 color=colour,
-                label=f"JKR, {prefixed('J/m²', work.value)}",
+                label=f"JKR, ${units.adhesion_text(work.value)}$",
             )
             if predicted is not None:
                 band = predicted.w_appr if sign > 0 else predicted.w_retr
@@ -64,7 +66,6 @@ def loop_figure(found: MeasuredLoop, radius: float, predicted: Prediction | None
         low, high = float(np.nanmin(found.force)), float(np.nanmax(found.force))
         axes.set_ylim(low - 0.1 * (high - low), high + 0.1 * (high - low))
         axes.axvspan(*found.window, color="0.93", linewidth=0, zorder=0, label="averaged")
-        units = AxisUnits(scales)
         units.name(axes.xaxis, "contact radius", LATERAL)
         units.name(axes.yaxis, "normal force", FORCE)
         figure.legend(loc="outside upper center", ncols=2)

@@ -8,31 +8,35 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import ArrayLike
+from xarray import Dataset
 
 from crackfront.data.arguments import refuse_other_type
+from crackfront.data.files import read_dataset
 from crackfront.experiment.loop import MeasuredLoop, Rig, analyse_loop
 from crackfront.experiment.recording import UNITS, Recording, read_recording
+from crackfront.experiment.simulated import is_netcdf, simulated_loop
 
 
 def measured_loop(
-    loop: str | PathLike[str] | Mapping[str, ArrayLike],
+    loop: str | PathLike[str] | Mapping[str, ArrayLike] | Dataset,
     *,
-    radius: float,
+    radius: float | None = None,
     contact_modulus: float | None = None,
     modulus_error: float = 0.0,
     radius_error: float = 0.0,
     stiffness: float | None = None,
     window: tuple[float, float] | None = None,
 ) -> MeasuredLoop:
-    """Works of adhesion of a loop that a rig measured, with intervals.
+    """Works of adhesion of a loop that a rig measured, or of a simulated one, with intervals.
 
     Parameters
     ----------
-    loop : path or mapping
+    loop : path, mapping or xarray.Dataset
         A table whose heads name force, contact radius and displacement with their units, or arrays
         by these names in SI units: `force`, `radius` (0 or NaN out of contact), `displacement`. Two
-        of them suffice.
-    radius : float
+        of them suffice. Or a simulated cycle, the result of :func:`run_loop` or the file of one; it
+        states its sphere, and all other arguments are left out.
+    radius : float, optional
         Radius of the sphere. (Units: m)
     contact_modulus : float, optional
         E' = E / (1 - nu^2); fitted to force and contact radius if it is not given. (Units: Pa)
@@ -46,14 +50,15 @@ def measured_loop(
     Returns
     -------
     MeasuredLoop
-        w_appr, w_retr, hysteresis and more in SI units; printed, it is a page.
+        w_appr, w_retr, hysteresis and more in SI units; printed, it is a page. Those of a simulated
+        cycle are what the simulation has, and in its units.
 
     Raises
     ------
     ValueError
         If the loop cannot be used; the sentence says what to do.
     TypeError
-        If it is neither a path nor a mapping.
+        If it is neither a path, nor a mapping, nor a dataset.
     OSError
         If the file cannot be opened.
 
@@ -66,6 +71,25 @@ def measured_loop(
     >>> round(loop.w_appr.value, 6), round(loop.w_retr.value, 6)
     (0.03, 0.06)
     """
+    given = {
+        "radius": radius,
+        "contact_modulus": contact_modulus,
+        "modulus_error": modulus_error or None,
+        "radius_error": radius_error or None,
+        "stiffness": stiffness,
+        "window": window,
+    }
+    if isinstance(loop, (str, PathLike)) and is_netcdf(Path(loop)):
+        loop = read_dataset(Path(loop))
+    if isinstance(loop, Dataset):
+        if named := [name for name, value in given.items() if value is not None]:
+            raise ValueError(
+                f"a simulated cycle states its sphere and has no rig; leave out {', '.join(named)} "
+                "(crackfront.in_si_units gives a cycle in reduced units a sphere)"
+            )
+        return simulated_loop(loop)
+    if radius is None:
+        raise ValueError("a measured loop does not state its sphere; give its radius in metres")
     rig = Rig(radius, contact_modulus, modulus_error, radius_error, stiffness, window)
     if isinstance(loop, Mapping):
         if unknown := set(loop) - set(UNITS):

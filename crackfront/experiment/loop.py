@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -13,6 +13,7 @@ from scipy.special import stdtrit
 
 from crackfront.analysis.estimate import REACH, Estimate
 from crackfront.analysis.standard_error import FEWEST_STATES
+from crackfront.analysis.steady import Branches, branch_means, shared_window, within
 from crackfront.core import jkr
 from crackfront.core.arrays import Array
 from crackfront.core.units import Scales
@@ -26,8 +27,12 @@ Rows = NDArray[np.int64]
 _BLOCKS = 10
 """Parts of a branch, each of which is left out once to find the errors of noise."""
 
-_TRANSIENT = 0.05
-"""Part of the largest radius that the edge travels before a branch counts as steady."""
+_AFTER_JUMP, _AFTER_TURN = 0.02, 0.1
+"""Parts of the largest radius that the edge travels before a branch counts as steady.
+
+A jump into contact leaves nothing behind. After the turn the edge has to leave what pinned it in
+approach; `python -m studies accuracy loops` holds the intervals against simulated spheres.
+"""
 
 _ZEROS = 151
 """Displacements among which the zero is looked for first."""
@@ -75,7 +80,8 @@ class Rig:
 class MeasuredLoop:
     """What a loop measures, in SI units; printed, it is a page.
 
-    Arrays have an entry for each row of the recording.
+    Arrays have an entry for each row of the recording. A simulated cycle in reduced units stays in
+    them, its works of adhesion in w_int.
     """
 
     force: Array = variable("normal force, its zero corrected", "N", "row")
@@ -91,10 +97,13 @@ class MeasuredLoop:
     stiffness: Estimate[float] = variable("stiffness of the machine", "N m-1")
     lost_energy: float = variable("energy lost in the loop per largest contact area", "J m-2")
     pull_off_force: float = variable("largest pulling force", "N")
+    sphere_radius: float = variable("radius of the sphere", "m")
     window: tuple[float, float] = (math.nan, math.nan)
     """Contact radii that both works are averaged over (Units: m)."""
     remarks: tuple[str, ...] = ()
     """What was corrected or taken for granted, and what could not be found."""
+    reduced: bool = False
+    """Whether the numbers are in reduced units instead of SI."""
 
     def __repr__(self) -> str:
         """The page that the command `crackfront loop` prints."""
@@ -141,27 +150,26 @@ def analyse_loop(recording: Recording, rig: Rig) -> MeasuredLoop:
         remarks.append(
             "The zero of the displacement is where each branch is nearest to one work of adhesion."
         )
-    branches = [rows[np.isfinite(first.work[rows])] for rows in branches]
-    window = rig.window or _window(first.radius, branches)
-    averaged = [_within(first.radius, rows, window) for rows in branches]
-    if min(rows.size for rows in averaged) < 2 * FEWEST_STATES:
-        counts = " and ".join(str(rows.size) for rows in averaged)
-        raise ValueError(
-            f"approach and retraction have {counts} rows within contact radii of "
-            f"{prefixed('m', window[0])} to {prefixed('m', window[1])}; {2 * FEWEST_STATES} each "
-            "are needed, so retract further, record more rows, or name a --window"
-        )
+    appr, retr = (rows[np.isfinite(first.work[rows])] for rows in branches)
+    branches = appr, retr
+    averaged, window = _averaged(first.radius, branches, rig.window)
 
-    def found(rows: list[Rows], rig: Rig, recording: Recording = recording) -> Array:
+    def found(rows: Branches, rig: Rig, recording: Recording = recording) -> Array:
         """Both works, the hysteresis and the modulus from some rows of each branch."""
         modulus = rig.contact_modulus or _fit(recording, rig, rows)
         place = _zero_displacement(recording, rig, modulus, rows, near=zero)
-        work = _contact(recording, rig, modulus, place).work
-        appr, retr = (float(np.mean(work[one])) for one in rows)
+        appr, retr = branch_means(_contact(recording, rig, modulus, place).work, rows)
         return np.array([appr, retr, retr - appr, modulus])
 
     shifted = [replace(recording, force=np.asarray(recording.force) + one) for one in zero_errors]
-    estimates = _estimates(found, averaged, first.radius, rig, shifted)
+    alone = []
+    if zero != 0.0:
+        # A true trend of either branch moves the zero; one branch alone says by how much.
+        for rows in averaged:
+            place = _zero_displacement(recording, rig, known, [rows])
+            appr, retr = branch_means(_contact(recording, rig, known, place).work, averaged)
+            alone.append(np.array([appr, retr, retr - appr, known]))
+    estimates = _estimates(found, averaged, first.radius, rig, shifted, alone)
     fitted = _NOTHING
     if recording.force is not None and recording.radius is not None:
         free = Rig(rig.radius, None, 0.0, rig.radius_error)
@@ -189,6 +197,7 @@ def analyse_loop(recording: Recording, rig: Rig) -> MeasuredLoop:
         stiffness=_stiffness(recording, rig, estimates[3], averaged),
         lost_energy=lost,
         pull_off_force=-float(np.nanmin(first.force)),
+        sphere_radius=rig.radius,
         window=window,
         remarks=tuple(remarks),
     )
@@ -238,7 +247,7 @@ def _zero_displacement(
     recording: Recording,
     rig: Rig,
     modulus: float,
-    branches: list[Rows],
+    branches: Sequence[Rows],
     near: float | None = None,
 ) -> float:
     """Displacement of no penetration, at which each branch is nearest to one work of adhesion.
@@ -329,14 +338,14 @@ def _touches(recording: Recording) -> NDArray[np.bool_]:
     return touches
 
 
-def _branches(recording: Recording) -> list[Rows]:
+def _branches(recording: Recording) -> Branches:
     """Rows of approach and of retraction: before and after the largest displacement, or force."""
     driven = recording.displacement if recording.displacement is not None else recording.force
     if driven is None:
         raise ValueError("a loop needs two of force, radius and displacement")
     rows = np.flatnonzero(_touches(recording) & np.isfinite(driven))
     turn = int(np.argmax(driven[rows]))
-    branches = [rows[: turn + 1], rows[turn:]]
+    branches = rows[: turn + 1], rows[turn:]
     span = float(np.ptp(driven[rows]))
     for sign, one in zip((1, -1), branches, strict=True):
         way = sign * driven[one]
@@ -350,22 +359,40 @@ def _branches(recording: Recording) -> list[Rows]:
     return branches
 
 
-def _window(radius: Array, branches: list[Rows]) -> tuple[float, float]:
-    """Contact radii that both branches pass when the edge has travelled since each began."""
-    appr, retr = (radius[rows] for rows in branches)
-    if min(appr.size, retr.size) == 0:
+def _averaged(
+    radius: Array, branches: Branches, window: tuple[float, float] | None
+) -> tuple[Branches, tuple[float, float]]:
+    """Rows of either branch that are averaged, and their contact radii.
+
+    These are a given window, or what both branches pass when the edge has travelled since each
+    began.
+    """
+    if min(rows.size for rows in branches) == 0:
         raise ValueError("the loop has no approach or no retraction in contact; record both")
-    travel = _TRANSIENT * float(max(appr.max(), retr.max()))
-    highest = min(float(appr.max()), float(retr.max()) - travel)
-    return max(float(appr.min()) + travel, float(retr.min())), highest
+    if window is None:
+        appr, retr = branches
+        largest = max(float(radius[rows].max()) for rows in branches)
+        steady = (
+            appr[radius[appr] >= radius[appr].min() + _AFTER_JUMP * largest],
+            retr[radius[retr] <= radius[retr].max() - _AFTER_TURN * largest],
+        )
+        if min(rows.size for rows in steady) == 0:
+            averaged, window = steady, (math.nan, math.nan)
+        else:
+            averaged, window = shared_window(radius, steady)
+    else:
+        averaged = within(radius, branches, window)
+    if min(rows.size for rows in averaged) < 2 * FEWEST_STATES:
+        counts = " and ".join(str(rows.size) for rows in averaged)
+        raise ValueError(
+            f"approach and retraction have {counts} rows at contact radii that both pass after the "
+            f"edge has travelled; {2 * FEWEST_STATES} each are needed, so retract further, record "
+            "more rows, or name a --window"
+        )
+    return averaged, window
 
 
-def _within(radius: Array, rows: Rows, window: tuple[float, float]) -> Rows:
-    """Rows whose contact radius lies within a window."""
-    return rows[(radius[rows] >= window[0]) & (radius[rows] <= window[1])]
-
-
-def _fit(recording: Recording, rig: Rig, branches: list[Rows]) -> float:
+def _fit(recording: Recording, rig: Rig, branches: Branches) -> float:
     """Contact modulus of the JKR curves, one work of adhesion a branch, that fit the force best.
 
     The force is linear in E' and in the roots of E' w: F = 4/3 E' a^3 / R - sqrt(8 pi E' w a^3).
@@ -394,21 +421,23 @@ _NOTHING = Estimate(math.nan, math.nan, math.nan, math.nan)
 
 def _estimates(
     found: Callable[..., Array],
-    averaged: list[Rows],
+    averaged: Branches,
     radius: Array,
     rig: Rig,
     shifted: Iterable[Recording],
+    apart: Iterable[Array] = (),
 ) -> list[Estimate[float]]:
     """Numbers that are found from the rows of both branches, with their 95% intervals.
 
-    The shifted recordings are off by a standard error of the force's zero each.
+    The shifted recordings are off by a standard error of the force's zero each. Apart are numbers
+    that are off by a standard error for another reason.
     """
     value = found(averaged, rig)
     count = min(_BLOCKS, min(rows.size for rows in averaged) // 2)
     parts = [np.array_split(rows, count) for rows in averaged]
     left_out = np.array(
         [
-            found([np.concatenate(part[:i] + part[i + 1 :]) for part in parts], rig)
+            found(tuple(np.concatenate(part[:i] + part[i + 1 :]) for part in parts), rig)
             for i in range(count)
         ]
     )
@@ -416,17 +445,16 @@ def _estimates(
     others = np.zeros_like(value)
     for recording in shifted:
         others += (found(averaged, rig, recording) - value) ** 2
+    for numbers in apart:
+        others += (numbers - value) ** 2
     for error, changed in _scene_errors(rig):
         others += (error * (found(averaged, changed) - value) / 1e-4) ** 2
     middle = float(np.median(radius[np.concatenate(averaged)]))
-    halves = [
-        [rows[radius[rows] <= middle] for rows in averaged],
-        [rows[radius[rows] >= middle] for rows in averaged],
-    ]
+    halves = within(radius, averaged, (0.0, middle)), within(radius, averaged, (middle, math.inf))
     if min(rows.size for half in halves for rows in half) >= FEWEST_STATES:
         low, high = (found(half, rig) for half in halves)
         # A trend along the window, beyond what noise makes of two halves.
-        others += np.maximum(((high - low) / 2) ** 2 - noise**2, 0.0) / 3
+        others += np.maximum(((high - low) / 2) ** 2 - noise**2, 0.0)
     reach = np.sqrt((float(stdtrit(count - 1, 0.975)) * noise) ** 2 + REACH**2 * others)
     error = np.sqrt(noise**2 + others)
     return [
@@ -460,7 +488,7 @@ def _modulus_remark(rig: Rig, fitted: Estimate[float]) -> list[str]:
 
 
 def _stiffness(
-    recording: Recording, rig: Rig, modulus: Estimate[float], averaged: list[Rows]
+    recording: Recording, rig: Rig, modulus: Estimate[float], averaged: Branches
 ) -> Estimate[float]:
     """Stiffness of the machine: displacement beyond the penetration that force and radius have."""
     displacement, force = recording.displacement, recording.force
@@ -488,9 +516,7 @@ def _stiffness(
     return Estimate(1 / value if value > 0 else math.inf, math.nan, least, most)
 
 
-def _lost_energy(
-    recording: Recording, contact: _Contact, branches: list[Rows]
-) -> tuple[float, str]:
+def _lost_energy(recording: Recording, contact: _Contact, branches: Branches) -> tuple[float, str]:
     """Energy lost in a whole loop per largest contact area, or why it is not known.
 
     The work of the force along the displacement of the mount: what bends in the machine comes back.
@@ -499,38 +525,54 @@ def _lost_energy(
     moved = recording.displacement
     if moved is None:
         moved = contact.penetration
-    force = contact.force
-    largest = float(np.max(contact.radius[rows]))
     if _touches(recording)[-1]:
         return math.nan, "The energy lost is not known: the retraction does not end out of contact."
-    path, pull = moved[rows], force[rows]
-    work = float(np.sum(np.diff(path) * (pull[1:] + pull[:-1]) / 2))
-    # The loop is closed by the jumps, at the displacements of the first and the last contact.
-    return work / (math.pi * largest**2), ""
+    return work_per_area(moved[rows], contact.force[rows], contact.radius[rows]), ""
+
+
+def work_per_area(displacement: Array, force: Array, radius: Array) -> float:
+    """Work of the force over all states of a loop, per largest contact area.
+
+    The loop is closed by the jumps, at the displacements of the first and the last contact.
+    """
+    work = float(np.sum(np.diff(displacement) * (force[1:] + force[:-1]) / 2))
+    return work / (math.pi * float(np.max(radius)) ** 2)
+
+
+_REDUCED_UNITS = {"J/m2": " w_int", "N": " pi w_int R", "Pa": "", "m": ""}
+"""What stands behind numbers in reduced units, by the unit of SI."""
 
 
 def _page(loop: MeasuredLoop) -> Iterator[str]:
     """Lines of what a reader wants first."""
+
+    def text(unit: str, *values: float) -> str:
+        if not loop.reduced:
+            return prefixed(unit, *values)
+        value, *ends = (f"{one:.4g}" for one in values)
+        interval = f" ({ends[0]} to {ends[1]})" if ends else ""
+        return f"{value}{_REDUCED_UNITS[unit]}{interval}"
+
     for name, found in (
         ("hysteresis", loop.hysteresis),
         ("w_appr", loop.w_appr),
         ("w_retr", loop.w_retr),
     ):
-        yield f"{name:18}{prefixed('J/m2', found.value, found.low, found.high)}"
-    yield f"{'pull-off force':18}{prefixed('N', loop.pull_off_force)}"
+        yield f"{name:18}{text('J/m2', found.value, found.low, found.high)}"
+    yield f"{'pull-off force':18}{text('N', loop.pull_off_force)}"
     if math.isfinite(loop.lost_energy):
-        yield f"{'energy lost':18}{prefixed('J/m2', loop.lost_energy)} of the largest contact area"
-    yield f"{'contact modulus':18}{prefixed('Pa', loop.contact_modulus.value)}"
+        yield f"{'energy lost':18}{text('J/m2', loop.lost_energy)} of the largest contact area"
+    yield f"{'contact modulus':18}{text('Pa', loop.contact_modulus.value)}"
     for name, known, unit in (
         ("modulus by fit", loop.fitted_modulus, "Pa"),
         ("machine", loop.stiffness, "N/m"),
     ):
         if math.isfinite(known.value):
-            yield f"{name:18}{prefixed(unit, known.value, known.low, known.high)}"
+            yield f"{name:18}{text(unit, known.value, known.low, known.high)}"
     low, high = loop.window
     counts = [int(np.sum(loop.in_window & (loop.direction == sign))) for sign in (1, -1)]
     yield (
-        f"{'averaged over':18}contact radii of {prefixed('m', low)} to {prefixed('m', high)}: "
+        f"{'averaged over':18}contact radii of {text('m', low)} to {text('m', high)}: "
         f"{counts[0]} rows of approach, {counts[1]} of retraction"
     )
     yield from loop.remarks

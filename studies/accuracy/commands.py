@@ -23,6 +23,7 @@ from crackfront.simulate.run import compile_solver
 from crackfront.topography.scan.reading import read_measurements
 from studies.accuracy import energies as synthetic
 from studies.accuracy import energy_balance as balance
+from studies.accuracy import loops as rigs
 from studies.accuracy import movement as settled
 from studies.accuracy import predictions as films
 from studies.accuracy import scans as instrument
@@ -147,3 +148,15 @@ def energy_balance(keep: bool) -> None:
     announce_compilation()
     parts = {"Energy balance": balance.energy_table()}
     tell("accuracy", parts, "studies.accuracy.energy_balance", keep=keep)
+
+
+@commands.command(epilog=examples("python -m studies accuracy loops --loops 40"))
+@click.option(
+    "--loops", type=whole(Range(1, 1e6)), default=20, show_default=True, help="Simulated spheres."
+)
+@keep_option
+def loops(loops: int, keep: bool) -> None:
+    """Record simulated cycles as rigs would, and count truths within intervals; print a table."""
+    announce_compilation()
+    parts = {"Measured loops": rigs.coverage_table(rigs.coverage(rigs.cycles(loops)))}
+    tell("accuracy", parts, "studies.accuracy.loops", keep=keep)
