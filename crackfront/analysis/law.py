@@ -86,7 +86,7 @@ class Law:
 
     def departures_at(self, size: float, breadth: float | None = None) -> list[Departure]:
         """Departures of the fronts of about a size g, and of a breadth where it is known."""
-        rows = [Departure(*row) for row in self.departures]
+        rows = [Departure._make(row) for row in self.departures]
         return [
             row
             for row in rows
@@ -106,14 +106,14 @@ class Departure(NamedTuple):
     """Sizes g."""
     mean: float
     rms: float
-    count: int
+    fronts: int
     """Spectra, amplitudes and springs."""
 
     @property
     def sentence(self) -> str:
         """Where the measured k lie, and for which fronts."""
         return (
-            f"{self.mean:+.1%} in the mean, {self.rms:.1%} rms ({self.count} fronts of g "
+            f"{self.mean:+.1%} in the mean, {self.rms:.1%} rms ({self.fronts} fronts of g "
             f"{self.least_size:.3g} to {self.largest_size:.3g}, breadth {self.narrowest:.3g} to "
             f"{self.broadest:.3g})"
         )

@@ -74,7 +74,7 @@ def departures_part(law: Law) -> str:
         (
             f"{one.narrowest:.3g} to {one.broadest:.3g}",
             f"{one.least_size:.3g} to {one.largest_size:.3g}",
-            str(one.count),
+            str(one.fronts),
             f"{one.mean:+.1%}",
             f"{one.rms:.1%}",
         )

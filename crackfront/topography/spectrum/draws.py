@@ -183,15 +183,15 @@ class SpectrumSampler:
         beyond = self.rest.wavevector > self.wavevector[-1]
         below = np.broadcast_to(np.log(self.rest.value[beyond]), (count, int(np.sum(beyond))))
         held = np.append(self.wavevector, self.rest.wavevector[beyond])
-        measured = (np.full(count, wave) for wave in self.wavevector[[0, -1]])
-        estimated, longer, known = mean_squares(self.grid, table, end, *measured)
+        ends = (np.full(count, wave) for wave in self.wavevector[[0, -1]])
+        estimated, longer, measured = mean_squares(self.grid, table, end, *ends)
         [recorded_squares] = mean_squares(
             held, np.concatenate([recorded, below], axis=1), np.full(count, held[-1])
         )
         return _Drawn(
             estimated=estimated,
             recorded=recorded_squares,
-            outside=np.array([longer[1], estimated[1] - known[1]]),
+            outside=np.array([longer[1], estimated[1] - measured[1]]),
             table=table,
             end=end,
         )
