@@ -142,8 +142,8 @@ def self_affine_surface(**numbers: Any) -> StatedSurface:
     Examples
     --------
     >>> rough = self_affine_surface(rms="60nm", correlation_length="1um", hurst=0.8)
-    >>> f"{rough.measures[0].rms.value * 1e9:.4g} nm, {rough.longest * 1e6:.3g} um"
-    '60 nm, 4.11 um'
+    >>> f"{rough.measures[0].rms.value * 1e9:.4g} nm, {rough.longest * 1e6:.2g} um"
+    '60 nm, 4.1 um'
     """
     refuse_unknown("self_affine_surface", numbers, SelfAffineOptions)
     return self_affine_surface_of(checked_options(SelfAffineOptions, numbers))

@@ -363,8 +363,11 @@ def _yaml_rows(path: Path) -> Iterator[tuple[int, dict[str, Any]]]:
     """Line and content of every sample of a YAML file."""
     try:
         content = YAML(typ="rt").load(path.read_text(encoding="utf-8"))
-    except (MarkedYAMLError, UnicodeDecodeError) as error:
-        raise ValueError(f"{path} is no YAML: {' '.join(str(error).split())}") from error
+    except UnicodeDecodeError as error:
+        raise ValueError(f"{path} is no text in UTF-8; store it as such") from error
+    except MarkedYAMLError as error:
+        where = "" if error.problem_mark is None else f", line {error.problem_mark.line + 1}"
+        raise ValueError(f"{path}{where}: this is no YAML: {error.problem}; correct it") from error
     rows = content.get("samples") if isinstance(content, dict) else content
     if not isinstance(rows, list) or not all(isinstance(one, dict) for one in rows):
         raise ValueError(

@@ -116,6 +116,9 @@ def test_what_a_row_lacks_is_refused_before_any_work(tmp_path):
     other.write_text("samples: {A: 1}\n")
     with pytest.raises(ValueError, match="has no list of samples; write 'samples:'"):
         read_samples(other, SPHERE)
+    other.write_text("samples:\n  - {sample: A\n  - B: [\n")
+    with pytest.raises(ValueError, match=r"samples.yaml, line \d: this is no YAML: "):
+        read_samples(other, SPHERE)
     other.write_text("samples:\n  - {sample: A, rms: 20nm, hurst: 0.8}\n")
     with pytest.raises(ValueError, match=r"samples.yaml, line 2: a surface of numbers needs"):
         read_samples(other, SPHERE)

@@ -288,6 +288,8 @@ def _text_reader(path: Path, text: NumberText) -> Any:
     """Reader of a text, of points or of a matrix of heights."""
     kind = next((_TEXT_HEADS[one] for one in _TEXT_HEADS if text.lines[0].startswith(one)), None)
     unit, factor, info = None, None, {}
+    if kind in (None, "comments"):
+        refuse_spectrum(path, text)
     is_matrix = kind != "dektak" and not are_points(text)
     if kind is not None and not is_matrix:
         library_part("IO").readers  # noqa: B018  # Its modules for texts import each other.
@@ -305,8 +307,6 @@ def _text_reader(path: Path, text: NumberText) -> Any:
         refuse_positions(path, text)
         with _errors_as_sentences(path, "text"):
             return library_part("IO").AscReader(io.StringIO("\n".join([*text.lines, ""])))
-    if kind is None or kind == "comments":
-        refuse_spectrum(path, text)
     points = read_points(path, text, kind)
     heights = points.heights * (factor or 1.0)
     grid = Grid("default", Points(heights, points.size), None)

@@ -53,6 +53,9 @@ _UNIT = re.compile(r"[\[(]\s*([^\[\]()]+(?:\([^()]*\)[^\[\]()]*)?)\s*[\])]|\s/\s
 _MARKUP = re.compile(r"</?su[bp]>")
 _SPLITS = (r";", r"\t", r",", r"\s{2,}", r"\s+")
 
+_MOST_ROWS, _MOST_COLUMNS = 100_000, 8
+"""Rows and columns that a text of densities has at most."""
+
 _STEEP, _SPAN, _FEWEST_ROWS = -0.9, 1e3, 8
 """Rank correlation, largest over least value, and rows, from which values are those of a density:
 heights of a line neither fall all along nor come so near to zero."""
@@ -145,6 +148,8 @@ def read_psd_file(path: Path, options: PsdOptions) -> Psd:
 
 def refuse_spectrum(path: Path, text: NumberText) -> None:
     """Raise where a text of two columns is a spectral density and no line of heights."""
+    if len(text.rows) > _MOST_ROWS or not 2 <= text.n_column <= _MOST_COLUMNS:
+        return
     named, found = None, [one for one in _series(text) if one.numbers.shape[1] >= 2]
     for one in found:
         heads = " ".join(one.heads[:2]).lower()

@@ -126,6 +126,8 @@ def test_what_is_no_density_is_refused_with_a_sentence(tmp_path, text, options, 
     [
         contact_engineering(),
         "q,C2D\n" + columns(Q, isotropic()),
+        "k;W_1;k;W_1;\n[1/m];[m^3];[1/m];[m^3];\n"
+        + "".join(f"{a};{b};{a};{b};\n" for a, b in zip(Q, profile(), strict=True)),
         "1/m  m^3\n" + columns(Q, profile(), " "),
         columns(Q, profile(), " "),
         columns(Q[0] * np.arange(200), 1e-20 / (1 + np.arange(200)) ** 2.6, " "),
