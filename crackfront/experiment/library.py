@@ -92,10 +92,9 @@ def measured_loop(
         raise ValueError("a measured loop does not state its sphere; give its radius in metres")
     rig = Rig(radius, contact_modulus, modulus_error, radius_error, stiffness, window)
     if isinstance(loop, Mapping):
-        if unknown := set(loop) - set(UNITS):
+        if unknown := set(map(str, loop)) - set(UNITS):
             raise ValueError(
-                f"a loop has no {', '.join(map(str, sorted(unknown)))}; give two of "
-                f"{', '.join(UNITS)}"
+                f"a loop has no {', '.join(sorted(unknown))}; give two of {', '.join(UNITS)}"
             )
         columns = {
             name: None if loop.get(name) is None else np.array(loop[name], float) for name in UNITS

@@ -167,8 +167,8 @@ def analyse_loop(recording: Recording, rig: Rig) -> MeasuredLoop:
         # A true trend of either branch moves the zero; one branch alone says by how much.
         for rows in averaged:
             place = _zero_displacement(recording, rig, known, [rows])
-            appr, retr = branch_means(_contact(recording, rig, known, place).work, averaged)
-            alone.append(np.array([appr, retr, retr - appr, known]))
+            w_appr, w_retr = branch_means(_contact(recording, rig, known, place).work, averaged)
+            alone.append(np.array([w_appr, w_retr, w_retr - w_appr, known]))
     estimates = _estimates(found, averaged, first.radius, rig, shifted, alone)
     fitted = _NOTHING
     if recording.force is not None and recording.radius is not None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
-from typing import get_args
+from typing import Any, get_args
 
 import numpy as np
 from xarray import Dataset
@@ -128,7 +128,8 @@ def _stated_length(cycle: Dataset, name: str) -> float:
     """Correlation length of w_loc that a cycle in reduced units states, or its spectrum has."""
     if "correlation_length" in cycle:
         return float(cycle.correlation_length)
-    spectrum, kind = Spectrum.stated(cycle.attrs), cycle.attrs.get("kind")
+    spectrum = Spectrum.stated(cycle.attrs)
+    kind: Any = cycle.attrs.get("kind")
     if spectrum is None or kind not in get_args(FieldKind):
         raise ValueError(
             f"{name} states neither a correlation length nor the spectrum of its surface, so that "
