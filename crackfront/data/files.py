@@ -86,9 +86,27 @@ def write_dataset(path: Path, dataset: xr.Dataset, origin: Provenance) -> None:
     The folder is created.
     """
     stamped, encoding = _stamped(dataset, origin)
-    replace_atomically(
-        path, lambda part: stamped.to_netcdf(part, engine="netcdf4", encoding=encoding)
-    )
+
+    def write(part: Path) -> None:
+        with library_path(part) as named:
+            stamped.to_netcdf(named, engine="netcdf4", encoding=encoding)
+
+    replace_atomically(path, write)
+
+
+@contextlib.contextmanager
+def library_path(path: Path) -> Iterator[Path]:
+    """A path in UTF-8 of a file whose folder may have a name that is none, for netCDF4."""
+    try:
+        str(path).encode()
+    except UnicodeEncodeError:
+        folder = os.open(path.parent, os.O_RDONLY)
+        try:
+            yield Path(f"/proc/self/fd/{folder}", path.name)
+        finally:
+            os.close(folder)
+    else:
+        yield path
 
 
 def dataset_content(dataset: xr.Dataset, origin: Provenance) -> bytes:
@@ -217,7 +235,13 @@ def read_dataset(
     if source is None:
         raise UnreadableFileError(f"{path} {_DAMAGED}")
     try:
-        with xr.open_dataset(source, engine="netcdf4", decode_times=False) as dataset:
+        opened = (
+            library_path(source) if isinstance(source, Path) else contextlib.nullcontext(source)
+        )
+        with (
+            opened as named,
+            xr.open_dataset(named, engine="netcdf4", decode_times=False) as dataset,
+        ):
             others = [] if names is None else [name for name in dataset if name not in names]
             chosen = dataset.drop_vars(others)
             refuse_beyond_memory(

@@ -15,6 +15,7 @@ from crackfront.analysis.table import PLACE, SweepRow
 from crackfront.core.variables import variables
 from crackfront.data.digests import digest_beside, file_digest
 from crackfront.data.files import (
+    library_path,
     read_dataset,
     refuse_failing_system,
     write_dataset,
@@ -95,7 +96,7 @@ def finished_shard(path: Path) -> FinishedShard | None:
         # HDF5 never sees a damaged file: it may believe it, or not return.
         if digest_beside(path) != file_digest(path):
             return None
-        with netCDF4.Dataset(path) as file:
+        with library_path(path) as named, netCDF4.Dataset(named) as file:
             return FinishedShard(
                 path=path,
                 spectrum=str(file.spectrum_name),
@@ -118,7 +119,7 @@ def shard_columns(shard: FinishedShard, taken: range) -> dict[str, NDArray[np.ge
     """
     first = shard.realisations.start
     columns = {}
-    with netCDF4.Dataset(shard.path) as file:
+    with library_path(shard.path) as named, netCDF4.Dataset(named) as file:
         file.set_auto_maskandscale(False)
         file.set_auto_chartostring(False)
         for item in variables(SweepRow):

@@ -377,9 +377,8 @@ int flock(int number, int operation) { errno = ENOLCK; return -1; }
 READ = """
 import sys
 from pathlib import Path
-from crackfront.data.files import read_dataset, write_text
-from crackfront.sweep.shards import finished_shard
-for read in (read_dataset, finished_shard):
+from crackfront.data.files import read_attributes, read_dataset
+for read in (read_dataset, read_attributes):
     try:
         print(read(Path(sys.argv[1])))
     except OSError as error:

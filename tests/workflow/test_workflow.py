@@ -304,7 +304,7 @@ def test_make_takes_a_configuration_in_a_folder_of_any_name():
 def test_a_configuration_that_snakemake_reads_as_no_text_is_refused(tmp_path, given):
     done = snakemake(tmp_path, "--dry-run", sweep=given)
     assert done.returncode != 0
-    assert re.search(r"sweep is .*; give the name of a file", done.stderr)
+    assert re.search(r"sweep is .*; give the name of a file", done.stdout + done.stderr)
     assert "Traceback" not in done.stderr
 
 

@@ -67,7 +67,8 @@ def test_the_cost_of_a_study_is_that_of_its_runs():
     scene = SCENES["small-0.04"]
     found = scene_errors(scene, scene.asked_settings(), range(2))
     seconds = np.sum(found.reference_seconds) + sum(np.sum(one.seconds) for one in found.errors)
-    assert seconds / 4 < 2 * STUDIES["asked"].seconds(scene) < 4 * seconds
+    # Machines that are five times slower were seen.
+    assert seconds / 10 < 2 * STUDIES["asked"].seconds(scene) < 10 * seconds
 
 
 def test_an_unknown_scene_is_refused_with_the_nearest_one():
