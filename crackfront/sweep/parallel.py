@@ -53,6 +53,9 @@ _RANKS = (
 )
 """Those in which they number the processes, from 0; some state nothing else."""
 
+_LOOK = 0.02
+"""Time between two looks at a launcher. (Units: s)"""
+
 _GRACE = 10.0
 """Time that a launcher has to end its ranks before it is killed. (Units: s)"""
 
@@ -306,7 +309,9 @@ def launch_ranks(
                 reader.start()
             with contextlib.suppress(BrokenPipeError):
                 process.stdin.write(_ALIVE)
-            code = process.wait()
+            # Without an end of its own, a wait that begins as a signal arrives would not heed it.
+            while (code := process.poll()) is None:
+                time.sleep(_LOOK)
             for reader in readers:
                 reader.join(_GRACE)  # a process that outlives the launcher may hold its output
         ended = file.exists() and file.read_text(encoding="utf-8") == _ENDED
