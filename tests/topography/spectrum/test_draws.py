@@ -48,6 +48,12 @@ def measurements(request):
     return MEASURED[request.param]()
 
 
+@pytest.fixture(scope="module")
+def known(measurements):
+    """Ends of the interval of e_el as it is computed."""
+    return ends(measured_surface(measurements))
+
+
 @pytest.fixture
 def other_seeds(monkeypatch):
     """Every seed of a prediction is another one."""
@@ -55,14 +61,12 @@ def other_seeds(monkeypatch):
     monkeypatch.setattr(quadrature, "SEED", 8)
 
 
-def test_intervals_do_not_depend_on_the_seeds(measurements, request):
-    known = ends(measured_surface(measurements))
-    request.getfixturevalue("other_seeds")
+@pytest.mark.usefixtures("other_seeds")
+def test_intervals_do_not_depend_on_the_seeds(measurements, known):
     assert 0 < moved(known, ends(measured_surface(measurements))) < MOST
 
 
-def test_intervals_do_not_depend_on_the_digits_of_heights(measurements):
-    known = ends(measured_surface(measurements))
+def test_intervals_do_not_depend_on_the_digits_of_heights(measurements, known):
     steps = [1e-4 * one.heights.std() for one in measurements]
     rounded = [
         replace(one, heights=step * np.round(one.heights / step))
