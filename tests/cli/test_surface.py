@@ -130,7 +130,7 @@ def test_each_outcome_has_its_exit_code(predict, tmp_path):
 def test_a_modulus_far_too_low_is_refused_with_what_would_do(predict):
     result = predict("--simulate", modulus="0.0007Pa", drawn=True)
     assert result.exit_code == 4
-    assert "THE THEORY DOES NOT APPLY" in result.output
+    assert result.output.startswith("THE THEORY DOES NOT APPLY")
     assert "contact of 114 mm on a sphere of 1.25 mm, above the limit of 875 um" in result.output
     assert "contact modulus E / (1 - nu^2) above 2.08 kPa" in result.output
     assert "w_appr" not in result.output
@@ -140,7 +140,7 @@ def test_a_modulus_far_too_low_is_refused_with_what_would_do(predict):
 def test_the_text_says_what_was_read_predicted_and_drawn(predict, tmp_path):
     result = predict("--long", drawn=True)
     short = result.output.split("\n\n")[0].splitlines()
-    assert 8 <= len(short) <= 12
+    assert 8 <= len(short) <= 16  # every reservation has a line
     assert short[0].startswith("hysteresis        2")
     assert result.exit_code == 0, result.output
     assert predict("--no-figure").output.splitlines() == short

@@ -46,13 +46,16 @@ def report_text(
 ) -> str:
     """All of surface, verdict and prediction, each where it is known, with all remarks.
 
-    Without a prediction, scales in SI units add the energy of full conformity.
+    The verdict stands first where the theory does not apply. Without a prediction, scales in SI
+    units add the energy of full conformity.
     """
     parts = [_surface_lines(surface)]
     if verdict is None:
         parts.append(remark_lines(surface_remarks(surface)))
     else:
-        parts.append(iter([verdict.heading, *remark_lines(verdict.remarks)]))
+        first = verdict.outcome == "does not apply"
+        said = iter([verdict.heading, *remark_lines(verdict.remarks)])
+        parts.insert(0 if first else 1, said)
     if prediction is not None:
         parts.append(_prediction_lines(prediction))
     elif scales is not None:

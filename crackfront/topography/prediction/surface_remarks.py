@@ -132,9 +132,11 @@ def measure_next(surface: Surface) -> Remark:
         gain = f"would narrow it to {longer:.2g}"
         advice.append((known / longer, f"{_larger_scan(joint)} {gain}"))
     if known > _NARROWER * shorter or joint.shares.missing_short > _MATTERS:
-        gain = f"would narrow it to {shorter:.2g}"
+        narrows = known > _NARROWER * shorter
+        gain = f"would narrow it to {shorter:.2g}" if narrows else "would hardly narrow it"
         if joint.shares.missing_short > _MATTERS:
-            gain += f", and may add {part_of_energy(joint.shares.missing_short)}"
+            joined = ", and" if narrows else ", but"
+            gain += f"{joined} may add {part_of_energy(joint.shares.missing_short)}"
         factor = max(known / shorter, 1 + joint.shares.missing_short)
         advice.append((factor, f"{_finer_scan(surface)} {gain}"))
     text = f"e_el is known within a factor of {known:.3g}"
