@@ -87,6 +87,7 @@ def test_the_readme_begins_with_who_has_a_surface_and_has_two_commands_to_set_up
         ["make", "test"],
     ]
     assert predict.startswith(".venv/bin/crackfront predict")
+    assert len(text.splitlines()) < 75
     # What comes out and what is left out stand before the commands, the law after them.
     words = ("works of adhesion", "prediction-force.png", "viscoelasticity", "make test", "finding")
     places = [text.index(word) for word in words]

@@ -16,13 +16,9 @@ from crackfront.topography.density.bands import BandLimit
 from crackfront.topography.prediction.prediction import Prediction
 from crackfront.topography.prediction.remarks import Remark, Verdict, remark_lines, remark_text
 from crackfront.topography.prediction.surface_remarks import is_lower_bound, surface_remarks
-from crackfront.topography.prediction.texts import (
-    ENERGY,
-    estimate_text,
-    part_of_energy,
-    wavelengths_text,
-)
+from crackfront.topography.prediction.texts import ENERGY, estimate_text, wavelengths_text
 from crackfront.topography.spectrum.fit import Fit
+from crackfront.topography.spectrum.joining import part_of_energy
 from crackfront.topography.spectrum.measures import MeasuredSurface
 from crackfront.topography.spectrum.stated import StatedSurface, Surface
 

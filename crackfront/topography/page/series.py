@@ -50,10 +50,9 @@ def series_figure(points: Sequence[SeriesPoint], name: str) -> Figure:
         figure = blank_figure(min(PAGE, 1.6 + 0.35 * len(points)), 0.42 * PAGE)
         axes = figure.subplots()
         for place, one in enumerate(points):
-            index = groups.index(one.group)
-            look = COLOURS[index % len(COLOURS)], MARKERS[index % len(MARKERS)]
-            _draw(axes, place - _ASIDE, one.predicted, factor, *look, filled=True)
-            _draw(axes, place + _ASIDE, one.measured, factor, *look, filled=False)
+            colour, marker = _look(groups.index(one.group))
+            _draw(axes, place - _ASIDE, one.predicted, factor, colour, marker, filled=True)
+            _draw(axes, place + _ASIDE, one.measured, factor, colour, marker, filled=False)
             top = one.predicted.high * factor
             if one.is_lower_bound and math.isfinite(top):
                 axes.annotate("↑", (place - _ASIDE, top), ha="center", va="bottom")
@@ -77,6 +76,11 @@ def series_figure(points: Sequence[SeriesPoint], name: str) -> Figure:
         _add_legend(axes, groups, any(math.isfinite(one.measured.value) for one in points))
         explain(figure, _sentences(points))
         return figure
+
+
+def _look(group: int) -> tuple[str, str]:
+    """Colour and marker of a group, by its number."""
+    return COLOURS[group % len(COLOURS)], MARKERS[group % len(MARKERS)]
 
 
 def _draw(
@@ -112,8 +116,8 @@ def _draw(
 def _add_legend(axes: Axes, groups: Sequence[str], is_measured: bool) -> None:
     """Groups by marker, and filled beside open points where any are measured."""
     entries = [
-        Line2D([], [], color=COLOURS[i % 7], marker=MARKERS[i % 7], linestyle="none", label=group)
-        for i, group in enumerate(groups)
+        Line2D([], [], color=colour, marker=marker, linestyle="none", label=group)
+        for group, (colour, marker) in zip(groups, map(_look, range(len(groups))), strict=True)
         if group
     ]
     if is_measured:

@@ -10,9 +10,8 @@ import numpy as np
 from crackfront.data.written_units import prefixed
 from crackfront.topography.density.bands import Scan
 from crackfront.topography.prediction.remarks import Remark
-from crackfront.topography.prediction.texts import part_of_energy
 from crackfront.topography.scan.instruments import is_doubtful
-from crackfront.topography.spectrum.joining import JointSpectrum
+from crackfront.topography.spectrum.joining import JointSpectrum, part_of_energy
 from crackfront.topography.spectrum.measures import MeasuredSurface
 from crackfront.topography.spectrum.stated import StatedSurface, Surface
 
@@ -70,6 +69,8 @@ def scan_remarks(scans: Iterable[Scan], contact_radius: float | None = None) -> 
         path = str(one.measurement.path)
         for sentence in one.measurement.outliers:
             yield Remark(path, "reservation", f"{path}: {sentence}.")
+        for sentence in one.measurement.unusable:
+            yield Remark(path, "reservation", f"Left out of the container: {sentence}.")
         for sentence in _treatments(one):
             yield Remark(path, "note", sentence)
         if contact_radius is not None and min(one.measurement.size) < 2 * contact_radius:
@@ -168,8 +169,10 @@ def _finer_scan(surface: MeasuredSurface) -> str:
     side = _WAVES_OF_SIDE * _OVERLAP * joint.shortest
     text = f"a scan with pixels of at most {_rounded(shortest / _PIXELS_OF_WAVE)}"
     if any(one.measurement.tip_radius for one in surface.scans):
+        # The tip is no blunter than the surface: 3/8 of the mean square of the Laplacian is that of
+        # the curvature of profiles of an isotropic surface.
         curvature = math.sqrt(3 / 8 * joint.extended.longer_than(shortest).mean_square(2.0))
-        text += f", a tip of at most {_rounded(1 / curvature)}"
+        text += f", a tip radius of at most {_rounded(1 / curvature)}"
     return f"{text} and a side of at least {_rounded(side)}"
 
 

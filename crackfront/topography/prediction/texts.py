@@ -26,14 +26,3 @@ def estimate_text(unit: str, found: Estimate[float]) -> str:
 def wavelengths_text(shortest: float, longest: float) -> str:
     """A range of wavelengths (Units: m)."""
     return f"{prefixed('m', shortest)} to {prefixed('m', longest)}"
-
-
-def part_of_energy(part: float) -> str:
-    """A part of e_el as a share, or as a multiple where it is more than all of it.
-
-    Examples
-    --------
-    >>> part_of_energy(0.7), part_of_energy(122.68)
-    ('70% of e_el', '123 times e_el')
-    """
-    return f"{part:.0%} of e_el" if part < 1 else f"{part:.3g} times e_el"

@@ -125,7 +125,9 @@ def contained_surfaces(path: Path) -> tuple[ContainedSurface, ...]:
         ) from error
 
 
-def surface_of(path: Path, surfaces: Sequence[ContainedSurface], wanted: str | None) -> Any:
+def surface_of(
+    path: Path, surfaces: Sequence[ContainedSurface], wanted: str | None
+) -> ContainedSurface:
     """The surface of a name or number, or the only one of a container."""
     listed = "; ".join(
         f"{number} {one.name!r} ({len(one.topographies)} measurements)"

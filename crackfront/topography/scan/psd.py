@@ -35,11 +35,6 @@ _ABSCISSAS: dict[PsdAbscissa, str] = {
 }
 """What heads call the first column."""
 
-_DENSITY = (
-    r"\bpsdf?\b|\bc[_ ]?(1d|2d|iso)\b|spectral density|power spectrum|\bw[_ ]?[12rxy₁₂]|\bw\("
-)
-"""What heads call the second column."""
-
 _GWYDDION = r"\bpsdf\b|\bw[_ ]?[12rxy₁₂]|\bw\("
 """Heads of Gwyddion, whose densities are per wavevector."""
 

@@ -86,6 +86,8 @@ class Measurement:
     """What was taken off, in words."""
     outliers: tuple[str, ...] = ()
     """Sentences on heights that were taken as missing, since no surface has them."""
+    unusable: tuple[str, ...] = ()
+    """Sentences on other measurements of its container, which cannot be used."""
     gaps: Points | None = None
     """Which points were missing and interpolated; None if none were. As `heights`."""
 
@@ -135,7 +137,7 @@ def read_measurements(
 
 
 def _measurements(path: Path, options: ReadingOptions) -> Iterator[Measurement]:
-    """Measurement of one file, or all of a surface in a container."""
+    """Measurement of one file, or those of a surface in a container that can be used."""
     refuse_unreadable(path)
     surfaces = contained_surfaces(path)
     if not surfaces:
@@ -144,15 +146,22 @@ def _measurements(path: Path, options: ReadingOptions) -> Iterator[Measurement]:
         yield _measurement(path, options)
         return
     members = surface_of(path, surfaces, options.surface).topographies
+    found: list[Measurement] = []
+    unusable: list[str] = []
     with unpacked(path, members) as files:
         for member, file in zip(members, files, strict=True):
             shown = path / member.shown
             try:
                 scale = member.height_scale if member.is_original else 1.0
-                found = _measurement(file, _member_options(file, member, options), scale)
+                one = _measurement(file, _member_options(file, member, options), scale)
             except ValueError as error:
-                raise ValueError(str(error).replace(str(file), str(shown))) from error
-            yield replace(found, path=shown)
+                unusable.append(str(error).replace(str(file), str(shown)))
+            else:
+                found.append(replace(one, path=shown))
+    if not found:
+        raise ValueError(unusable[0])
+    yield replace(found[0], unusable=tuple(unusable))
+    yield from found[1:]
 
 
 def _member_options(file: Path, member: Member, options: ReadingOptions) -> ReadingOptions:

@@ -68,6 +68,17 @@ class Shares:
     """Part in waves longer than all that are measured, which the model continues."""
 
 
+def part_of_energy(part: float) -> str:
+    """A part of e_el as a share, or as a multiple where it is more than all of it.
+
+    Examples
+    --------
+    >>> part_of_energy(0.7), part_of_energy(122.68)
+    ('70% of e_el', '123 times e_el')
+    """
+    return f"{part:.0%} of e_el" if part < 1 else f"{part:.3g} times e_el"
+
+
 @dataclass(frozen=True, slots=True)
 class JointSpectrum:
     """Spectrum of a surface, measured where it can be and continued beyond."""

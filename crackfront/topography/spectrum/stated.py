@@ -18,7 +18,7 @@ from crackfront.data.written_units import prefixed
 from crackfront.topography.options import SelfAffineOptions
 from crackfront.topography.scan.psd import Psd
 from crackfront.topography.spectrum.draws import ORDERS
-from crackfront.topography.spectrum.joining import Shares
+from crackfront.topography.spectrum.joining import Shares, part_of_energy
 from crackfront.topography.spectrum.measures import (
     DOMINANT_SHARE,
     MeasuredSurface,
@@ -227,13 +227,13 @@ def _missing_waves(
         if more > _MATTERS:
             yield (
                 f"The density rises up to its longest wave, {longest}, and is taken as flat above; "
-                f"with a roll-off at {_LONGER:g} times that e_el would be {more:.0%} larger; add "
-                "longer waves."
+                f"with a roll-off at {_LONGER:g} times that there would be {part_of_energy(more)} "
+                "more; add longer waves."
             )
     if missing > _MATTERS:
         yield (
             f"Waves shorter than {short} are left out: two more decades of the power law would "
-            f"add {missing:.0%} to e_el; add shorter waves."
+            f"add {part_of_energy(missing)}; add shorter waves."
         )
 
 

@@ -132,3 +132,21 @@ def test_what_is_no_container_or_a_damaged_one_is_refused_with_a_sentence(tmp_pa
     locked.write_bytes(content)
     with pytest.raises(ValueError, match="is encrypted; unpack it with its password"):
         read_measurements([locked])
+
+
+def test_a_measurement_that_cannot_be_used_is_left_out_with_a_sentence(tmp_path, rng):
+    [good] = maps(rng, 1)
+    points = np.column_stack([[0.0, 1.0, 2.0, 3.7, 5.0, 6.1, 7.0, 8.4], rng.standard_normal(8)])
+    line = io.BytesIO()
+    np.savetxt(line, points, header="x z")
+    files = {"good.txt": texts(good, 1e9), "uneven.txt": line.getvalue()}
+    entries = [entry("uneven", size=[8.4], height_scale=1.0), entry("good")]
+    both = container(tmp_path / "both.zip", {"rough": entries}, files)
+    [one] = read_measurements([both], CENTER)
+    assert one.path == both / "good"
+    [sentence] = one.unusable
+    assert sentence.startswith(f"{both / 'uneven'}: ")
+    assert "not equally spaced" in sentence
+    alone = container(tmp_path / "alone.zip", {"rough": entries[:1]}, files)
+    with pytest.raises(ValueError, match="not equally spaced"):
+        read_measurements([alone], CENTER)
