@@ -35,6 +35,9 @@ similar waves where it is periodic: powers of random surfaces are distributed ex
 _PARTS, _EDGE = 4, 24
 """Parts along a side whose e_el is compared, and which part of a side is left out at its ends."""
 
+_ROUNDING = 1e-12
+"""Noise of heights in parts of the highest one, below which a density is that of computers."""
+
 _UNEVEN = (1.5, 2.5)
 """Ratios of the variance between parts to that of a Gaussian surface between which what is more
 begins to count."""
@@ -143,8 +146,11 @@ def periodogram(
         known = np.where(measurement.gaps, 0.0, weight)
         dependence = float(np.mean(known**4) / np.mean(known**2) ** 2)
     level = np.sum(weight * heights, axes, keepdims=True) / np.sum(weight, axes, keepdims=True)
-    transform = rfftn(weight * (heights - level), axes=axes, norm="forward")
+    heights = heights - level
+    transform = rfftn(weight * heights, axes=axes, norm="forward")
+    rounding = square * (_ROUNDING * np.max(np.abs(heights))) ** 2
     power = transform.real**2 + transform.imag**2
+    power += rounding / math.prod(heights.shape[axis] for axis in axes)
     if len(axes) < heights.ndim:
         power = np.mean(power, axis=1)
     counts = [(heights.shape[axis], measurement.pixels[axis]) for axis in axes]

@@ -103,7 +103,14 @@ def measured_surface(
     ValueError if the densities do not determine a spectrum.
     """
     scans = tuple(scan(item, shortest, longest) for item in measurements)
-    joint = joint_spectrum(scans)
+    try:
+        joint = joint_spectrum(scans)
+    except np.linalg.LinAlgError:
+        raise ValueError(
+            f"{_names(scans)}: the density determines no spectrum, as it does not fall as those of "
+            "surfaces do; use a finer or larger scan, or name --shortest and --longest about the "
+            "waves of its roughness"
+        ) from None
     _refuse_undetermined(scans, joint)
     return MeasuredSurface(
         scans=scans,
@@ -129,7 +136,6 @@ def _refuse_undetermined(scans: Sequence[Scan], joint: JointSpectrum) -> None:
     energy = joint.draws.mean_square(0.5)
     if energy.high < _UNDETERMINED * energy.low:
         return
-    paths = [str(one.measurement.path) for one in scans]
     if any(joint.density.disagrees(index) for index in range(len(scans))):
         advice = "they disagree where they overlap, so predict from each alone, and leave out the "
         advice += "one that does not resolve the surface"
@@ -137,9 +143,14 @@ def _refuse_undetermined(scans: Sequence[Scan], joint: JointSpectrum) -> None:
         advice = "use a finer or larger scan, or name --shortest and --longest about the waves of "
         advice += "its roughness"
     raise ValueError(
-        f"{' and '.join(paths)}: the density does not determine e_el, the upper end of whose "
+        f"{_names(scans)}: the density does not determine e_el, the upper end of whose "
         f"interval is {energy.high / energy.low:.0e} times the lower one; {advice}"
     )
+
+
+def _names(scans: Sequence[Scan]) -> str:
+    """Paths of scans, for a sentence."""
+    return " and ".join(str(one.measurement.path) for one in scans)
 
 
 def _rms_measure(order: float, joint: JointSpectrum) -> RmsMeasure:

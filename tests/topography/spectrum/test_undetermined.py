@@ -1,10 +1,11 @@
 """Scans that hardly show a spectrum: an interval that may be believed, or a sentence."""
 
-from dataclasses import replace
+from dataclasses import astuple, replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose
 
 from crackfront.topography.density.bands import scan
 from crackfront.topography.scan.reading import Measurement
@@ -73,16 +74,48 @@ def test_scans_that_disagree_beyond_all_measure_are_refused(rng):
     assert "they disagree where they overlap" in sentence
 
 
+def shown(heights):
+    """Mean square half-derivative of the waves of a periodic map (Units: m)."""
+    along = [2 * np.pi * np.fft.fftfreq(count, PIXEL) for count in heights.shape]
+    power = np.abs(np.fft.fft2(heights, norm="forward")) ** 2
+    return float(np.sum(np.hypot(*np.ix_(*along)) * power))
+
+
 @pytest.mark.parametrize(
     "heights",
     [
-        pytest.param(lambda rng: waves_up_to(3, rng), id="long waves alone"),
-        pytest.param(lambda rng: waves_up_to(5, rng, (48, 80)), id="long waves, oblong"),
+        pytest.param(lambda rng: waves_up_to(3, rng), id="three waves"),
+        pytest.param(lambda rng: waves_up_to(5, rng, (48, 80)), id="five waves, oblong"),
     ],
 )
-def test_scans_without_informative_waves_are_refused(heights, rng):
-    given = measurement(heights(rng))
-    assert "determine e_el" in (found := refusal(given)) or "can be trusted" in found
+def test_intervals_of_maps_whose_waves_end_hold_them_whatever_the_rounding(heights, rng):
+    heights = heights(rng)
+    rounding = 1e-16 * np.std(heights) * rng.standard_normal(heights.shape)
+    energy, rounded = (
+        measured_surface([measurement(given)]).half_derivative
+        for given in (heights, heights + rounding)
+    )
+    # Of one map of few waves, whose own e_el is not that of its surface.
+    assert energy.low / 2 < shown(heights) < energy.high
+    assert energy.high < 30 * energy.low
+    assert_allclose(astuple(rounded), astuple(energy), rtol=1e-6)
+
+
+@pytest.mark.parametrize(
+    "heights",
+    [
+        pytest.param(np.sin(np.arange(64) * np.pi / 4), id="line"),
+        pytest.param(np.sin(np.arange(48)[:, None] * np.pi / 4) + np.zeros(48), id="map"),
+    ],
+)
+def test_one_wave_does_not_determine_e_el(heights):
+    assert "does not determine e_el" in refusal(measurement(1e-8 * heights))
+
+
+def test_named_ends_about_no_wave_are_refused(rng):
+    given = measurement(waves_up_to(5, rng, (64, 64)))
+    with pytest.raises(ValueError, match=r"scan: the density (does not )?determine.*--sho"):
+        measured_surface([given], shortest=2e-7, longest=1.1e-6)
 
 
 @pytest.mark.parametrize(
