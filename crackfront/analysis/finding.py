@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from scipy.optimize import brentq
+import scipy
 
 from crackfront.analysis.estimate import with_interval
 from crackfront.analysis.law import (
@@ -79,7 +79,8 @@ def crossing() -> tuple[float, float, float]:
 
     # k falls with s: where its lower end is 3 is the lower end of s.
     value, low, high = (
-        float(brentq(excess, WEAKEST, 1.0, args=(name,))) for name in ("value", "low", "high")
+        float(scipy.optimize.brentq(excess, WEAKEST, 1.0, args=(name,)))
+        for name in ("value", "low", "high")
     )
     return value, low, high
 
@@ -91,4 +92,4 @@ def least_size() -> float:
     def excess(logarithm: float) -> float:
         return float(law_value(coefficients, 0.0, math.exp(logarithm))) - PAPER_FACTOR
 
-    return math.exp(brentq(excess, 0.0, math.log(1e3)))
+    return math.exp(scipy.optimize.brentq(excess, 0.0, math.log(1e3)))

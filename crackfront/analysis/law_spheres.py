@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import astuple, dataclass, replace
 from typing import TYPE_CHECKING
 
-from scipy.optimize import brentq
+import scipy
 
 from crackfront.analysis.estimate import Estimate, normal_estimate
 from crackfront.analysis.law import (
@@ -154,5 +154,5 @@ def _branch_size(
             size = math.inf
         return float(law_value(coefficients, w_rms, size, breadth)) - factor
 
-    root = float(brentq(excess, 0.0, coefficients[0], xtol=1e-6))
+    root = float(scipy.optimize.brentq(excess, 0.0, coefficients[0], xtol=1e-6))
     return spring(adhesion(root)) / larkin

@@ -11,6 +11,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike
 
 from crackfront.core.arrays import Array
@@ -102,8 +103,6 @@ def equilibrium_radius(penetration: float, work_of_adhesion: float = 1.0) -> flo
     >>> round(equilibrium_radius(1.0), 12)
     1.783484193282
     """
-    from scipy.optimize import brentq
-
     smallest, lowest = pull_off_radius(work_of_adhesion), pull_off_penetration(work_of_adhesion)
     if penetration < lowest:
         raise ValueError(
@@ -114,7 +113,7 @@ def equilibrium_radius(penetration: float, work_of_adhesion: float = 1.0) -> flo
     while equilibrium_penetration(largest, work_of_adhesion) < penetration:
         largest *= 2.0
     return float(
-        brentq(
+        scipy.optimize.brentq(
             lambda a: float(equilibrium_penetration(a, work_of_adhesion)) - penetration,
             smallest,
             largest,

@@ -10,8 +10,8 @@ from dataclasses import dataclass, replace
 from typing import Any, ClassVar, Self, cast
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike
-from scipy.optimize import brentq
 from scipy.special import beta, betainc
 
 from crackfront.core.arrays import Array
@@ -133,7 +133,7 @@ class Spectrum(ABC):
             high = low + 1.0
             while excess(high) > 0:
                 high += 1.0
-            return math.exp(brentq(excess, low, high, xtol=1e-13))
+            return math.exp(scipy.optimize.brentq(excess, low, high, xtol=1e-13))
 
         return wavelength_above_which(1 - rest), wavelength_above_which(rest)
 

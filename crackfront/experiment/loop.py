@@ -7,8 +7,8 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.optimize import minimize_scalar
 from scipy.special import stdtrit
 
 from crackfront.analysis.estimate import REACH, Estimate
@@ -278,7 +278,9 @@ def _zero_displacement(
     step = 3 * (high - low) / (_ZEROS - 1)
     around = near - step, near + step
     tight = {"xatol": 1e-7 * (high - low)}
-    return float(minimize_scalar(unevenness, bounds=around, method="bounded", options=tight).x)
+    return float(
+        scipy.optimize.minimize_scalar(unevenness, bounds=around, method="bounded", options=tight).x
+    )
 
 
 def _touching(radius: Array) -> Array:

@@ -21,7 +21,7 @@ from dataclasses import astuple, dataclass, replace
 from importlib.resources import files
 
 import numpy as np
-from scipy.optimize import least_squares
+import scipy
 
 from crackfront.core import jkr
 from crackfront.core.arrays import Array
@@ -197,7 +197,7 @@ def _coefficients() -> tuple[float, ...]:
     def residuals(coefficients: Array) -> Array:
         return np.log(_seconds(coefficients, known)) - found
 
-    return tuple(least_squares(residuals, _START).x.tolist())
+    return tuple(scipy.optimize.least_squares(residuals, _START).x.tolist())
 
 
 _START = (-7.0, -9.0, -18.0, -12.0, 0.5, *(0.0,) * 9)

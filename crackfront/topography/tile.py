@@ -7,6 +7,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
+import scipy
 from scipy.fft import fftfreq, irfft2, rfft2
 
 from crackfront.core.units import Scales
@@ -81,14 +82,12 @@ def _with_square_pixels(measurement: Measurement) -> Measurement:
     pixel = min(measurement.pixels)
     if max(measurement.pixels) <= pixel * (1 + _EQUAL):
         return measurement
-    from scipy.interpolate import RectBivariateSpline
-
     places = [
         (np.arange(count) + 0.5) * width
         for count, width in zip(measurement.heights.shape, measurement.pixels, strict=True)
     ]
     counts = [math.floor(side / pixel * (1 + _EQUAL)) for side in measurement.size]
     wanted = [(np.arange(count) + 0.5) * pixel for count in counts]
-    spline = RectBivariateSpline(*places, measurement.heights)
+    spline = scipy.interpolate.RectBivariateSpline(*places, measurement.heights)
     sides = tuple(count * pixel for count in counts)
     return replace(measurement, size=sides, heights=np.asarray(spline(*wanted)))

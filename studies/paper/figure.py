@@ -12,16 +12,19 @@ import importlib
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, fields
 from pathlib import Path
-from typing import Any, Literal, cast, get_type_hints
+from typing import TYPE_CHECKING, Any, Literal, cast, get_type_hints
 
 import numpy as np
-from matplotlib.figure import Figure as Drawing
 from numpy.typing import NDArray
 
 from crackfront.analysis.estimate import with_error
 from crackfront.core.fingerprint import fingerprint
 from crackfront.data.section import ConfigurationError, Section, content_of, validated
-from studies.paper.drawing import Animation
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure as Drawing
+
+    from studies.paper.drawing import Animation
 
 Integers = NDArray[np.int64]
 
@@ -195,6 +198,15 @@ def load_figure(path: Path, scale: str) -> Section:
             )
         given |= content[section]
     return validated(path, given, figure(path.stem).parameters)
+
+
+def sweep_of_figure(path: Path, scale: str) -> Path:
+    """Sweep that a figure shows at a scale, without the modules that compute the figure."""
+    try:
+        return Path(content_of(path)[scale]["sweep"])
+    except (LookupError, TypeError):
+        load_figure(path, scale)  # says what is wrong
+        raise
 
 
 def settings_fingerprint(path: Path, scale: str) -> str:

@@ -63,8 +63,8 @@ rule figure_of_sweep:
         mem_mb=megabytes(NEEDS["fit"].memory),
         runtime=minutes(NEEDS["fit"].seconds),
     params:
-        sources=figure_fingerprint("si-5"),
-        fit=fingerprint("crackfront.analysis.sweep"),
+        sources=lambda wildcards: figure_fingerprint("si-5"),
+        fit=lambda wildcards: fingerprint("crackfront.analysis.sweep"),
         settings=settings_of,
         sweep=lambda wildcards: load_configuration(Path(SWEEPS[SCALE])).fingerprint,
         file=figure_file,
@@ -136,7 +136,7 @@ rule figure_checks:
         mem_mb=4000,
         runtime=30,
     params:
-        sources=checks_fingerprint(),
+        sources=lambda wildcards: checks_fingerprint(),
         scale=SCALE,
         results=folder,
     shell:

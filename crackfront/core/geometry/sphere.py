@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from typing import Any, ClassVar, Generic, NamedTuple, TypeVar
 
 import numpy as np
+import scipy
 from scipy.fft import irfft, rfft
 
 from crackfront.core import jkr
@@ -211,12 +212,10 @@ def polar_field(
     products = np.ascontiguousarray(radii * rays)
     slopes = np.empty((0, 0))
     if interpolation == "cubic":
-        from scipy.interpolate import CubicSpline
-
         # Ray by ray: the coefficients of all rays at once need seven times the memory.
         slopes = np.empty_like(products)
         for slope, product in zip(slopes, products, strict=True):
-            slope[:] = CubicSpline(radii, product)(radii, 1)
+            slope[:] = scipy.interpolate.CubicSpline(radii, product)(radii, 1)
     return RayField(sphere(len(rays)), radii.copy(), products, slopes)
 
 

@@ -13,8 +13,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.optimize import OptimizeResult, least_squares
 from scipy.special import expit
 
 from crackfront.topography.density.densities import Density
@@ -187,8 +187,8 @@ def _minima(models: DensityModels, starts: Sequence[Array], limits: Array) -> tu
         every = residuals(np.concatenate([parameters[None], parameters + np.diag(step)]))
         return np.asarray(((every[1:] - every[0]) / step[:, None]).T)
 
-    def fitted(start: Array, evaluations: int) -> OptimizeResult:
-        return least_squares(
+    def fitted(start: Array, evaluations: int) -> scipy.optimize.OptimizeResult:
+        return scipy.optimize.least_squares(
             lambda parameters: residuals(parameters[None])[0],
             np.clip(start, limits[:, 0] + 1e-6, limits[:, 1] - 1e-6),
             slopes,

@@ -6,7 +6,7 @@ import math
 from dataclasses import replace
 from typing import NamedTuple
 
-from scipy.optimize import brentq
+import scipy
 
 from crackfront.analysis.estimate import Estimate, product
 from crackfront.analysis.law_spheres import SphereFactors, sphere_factors
@@ -83,7 +83,7 @@ def implied_work_of_adhesion(surface: Surface, scales: Scales, measured: float) 
         most = 10 * max(measured, least)
         if excess_adhesion(least) * excess_adhesion(most) > 0:
             return math.nan
-        return float(brentq(excess_adhesion, least, most, rtol=1e-4))
+        return float(scipy.optimize.brentq(excess_adhesion, least, most, rtol=1e-4))
 
     # Its interval ends where those of predictions do.
     return Estimate(solved("value"), math.nan, solved("high"), solved("low"))

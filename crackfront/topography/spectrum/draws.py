@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
+import scipy
 
 from crackfront.analysis.estimate import Estimate, quantiles
 from crackfront.topography.density.bands import Scan
@@ -240,12 +241,10 @@ class Batch(NamedTuple):
 
 def batches(model: Continuation, quadrature: Quadrature, seed: int | None) -> Iterator[Batch]:
     """Batches of states without end, the same ones for the same seed."""
-    from scipy.stats import qmc  # slow to import, and of no use to who reads a configuration
-
     seeds = np.random.SeedSequence(SEED if seed is None else seed, spawn_key=(0xD4A3,))
     while True:
         sequence, chance = map(np.random.default_rng, seeds.spawn(2))
-        uniform = qmc.Sobol(quadrature.n_dimension, rng=sequence).random(BATCH)
+        uniform = scipy.stats.qmc.Sobol(quadrature.n_dimension, rng=sequence).random(BATCH)
         states = quadrature.states(uniform)
         yield Batch(fit_of(model, quadrature, states), states.logarithm, chance)
 

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from typing import NamedTuple, Protocol
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
 from scipy.ndimage import maximum_filter
 from scipy.special import log_ndtr, ndtri_exp
@@ -122,12 +123,10 @@ class Quadrature:
     """States of one likelihood."""
 
     def __init__(self, likelihood: Likelihood) -> None:
-        from scipy.stats import qmc  # as slow to import as all else here
-
         self._likelihood = likelihood
         self._cells = _fine_cells(likelihood)
         count = len(self._cells.logarithm)
-        points = qmc.Sobol(self.n_dimension, rng=SEED).random(_PILOTS)
+        points = scipy.stats.qmc.Sobol(self.n_dimension, rng=SEED).random(_PILOTS)
         uniform = np.tile(points, (count, 1))
         *_, weight = self._drawn(np.repeat(np.arange(count), _PILOTS), uniform)
         pilot = weight.reshape(count, _PILOTS)

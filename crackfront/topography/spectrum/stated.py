@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import brentq
+import scipy
 from scipy.special import j0, j1
 
 from crackfront.analysis.estimate import Estimate
@@ -249,7 +249,7 @@ def _roll_off(length: float, hurst: float, cutoff: float) -> float:
             f"waves longer than a cutoff of {prefixed('m', cutoff)} have no correlation length of "
             f"{prefixed('m', length)}; name a shorter short cutoff"
         )
-    return math.exp(brentq(excess, *ends, xtol=1e-10))
+    return math.exp(scipy.optimize.brentq(excess, *ends, xtol=1e-10))
 
 
 def _autocorrelation(distance: float, roll_off: float, hurst: float, cutoff: float) -> float:

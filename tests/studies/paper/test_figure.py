@@ -1,5 +1,6 @@
 """Figures of the paper: their configurations, data and checks."""
 
+import ast
 import re
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,7 +14,16 @@ from crackfront.data.provenance import provenance
 from crackfront.data.records import read_record, write_record
 from crackfront.data.section import ConfigurationError
 from studies.pages import kept_parts
-from studies.paper.figure import FIGURES, SCALES, Check, checks_table, close_to, figure, load_figure
+from studies.paper.figure import (
+    FIGURES,
+    SCALES,
+    Check,
+    checks_table,
+    close_to,
+    figure,
+    load_figure,
+    sweep_of_figure,
+)
 from tests.studies.paper.made import CONFIGURATIONS
 
 REFERENCES = Path(__file__).parents[3] / "docs" / "reference"
@@ -28,6 +38,7 @@ def test_figures_that_took_longer_than_a_minute_tell_about_how_long_they_take(mo
     told = {
         name: re.search(r"Scale (\w+), (\d+) s of one core", part.text).groups()
         for name, part in kept_parts()["paper"].items()
+        if name in FIGURES
     }
     slow = [
         (name, scale, float(seconds))
@@ -38,6 +49,31 @@ def test_figures_that_took_longer_than_a_minute_tell_about_how_long_they_take(mo
     for name, scale, seconds in slow:
         expected = figure(name).seconds(load_figure(CONFIGURATIONS / f"{name}.yaml", scale))
         assert float(seconds) / 4 < expected < 4 * float(seconds), name
+
+
+def test_the_workflow_names_those_that_take_longest_and_those_that_move():
+    rules = (REFERENCES.parents[1] / "workflow/rules/common.smk").read_text()
+    longest, moving = (
+        set(ast.literal_eval(re.search(rf"^{name} = (\[.*?\])$", rules, re.M | re.S)[1]))
+        for name in ("LONGEST", "ANIMATED")
+    )
+    assert moving == {name for name in FIGURES if figure(name).animate}
+    for scale in SCALES:
+        seconds = {
+            name: figure(name).seconds(load_figure(CONFIGURATIONS / f"{name}.yaml", scale))
+            for name in FIGURES
+        }
+        assert set(sorted(FIGURES, key=seconds.get)[-5:]) == longest
+
+
+def test_the_sweep_of_a_figure_is_known_without_what_computes_the_figure(tmp_path):
+    given = CONFIGURATIONS / "si-5.yaml"
+    for scale in SCALES:
+        assert sweep_of_figure(given, scale) == Path(load_figure(given, scale).sweep)
+    wrong = tmp_path / "si-5.yaml"
+    wrong.write_text(given.read_text().replace("sweep:", "swept:"))
+    with pytest.raises(ConfigurationError, match="swept"):
+        sweep_of_figure(wrong, "quick")
 
 
 @pytest.mark.parametrize("scale", SCALES)
