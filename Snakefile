@@ -32,6 +32,18 @@ rule all:
         expand("{results}/shards/{shard}.nc", results=RESULTS, shard=SHARDS),
 
 
+onstart:
+    BAR.begin()
+
+
+onsuccess:
+    BAR.end()
+
+
+onerror:
+    BAR.end()
+
+
 include: "workflow/rules/simulate.smk"
 include: "workflow/rules/aggregate.smk"
 include: "workflow/rules/fit.smk"

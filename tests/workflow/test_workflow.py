@@ -1,14 +1,18 @@
 """The whole workflow by Snakemake on the configuration `test`, with real ranks of MPI."""
 
 import base64
+import contextlib
 import json
 import os
+import pty
 import re
 import shlex
 import shutil
 import subprocess
 import sys
+import termios
 import time
+from concurrent.futures import ThreadPoolExecutor
 from datetime import UTC, datetime
 from pathlib import Path
 
@@ -33,11 +37,12 @@ def command(folder, *settings, sweep=ROOT / "config/test.yaml", ranks=2):
     ]
 
 
-def snakemake(*arguments, **options):
+def snakemake(*arguments, errors=subprocess.PIPE, **options):
     """Run the workflow in a folder of its own."""
     return subprocess.run(
         command(*arguments, **options),
-        capture_output=True,
+        stdout=subprocess.PIPE,
+        stderr=errors,
         text=True,
         timeout=900,
         check=False,
@@ -48,7 +53,7 @@ def snakemake(*arguments, **options):
 def repair(sweep, results):
     """Take back what is damaged or missing, as `make` does before the workflow plans."""
     told = [sys.executable, "-m", "crackfront", "repair", str(sweep), "--output", str(results)]
-    subprocess.run(told, check=True, timeout=60)
+    subprocess.run(told, check=True, timeout=600)
 
 
 def states(folder):
@@ -58,13 +63,45 @@ def states(folder):
 
 
 @pytest.fixture(scope="module")
-def whole(tmp_path_factory):
-    """Folder of a whole run without MPI."""
+def whole_on_terminal(tmp_path_factory):
+    """Folder of a whole run without MPI, and what its terminal of 24 by 100 letters showed."""
     folder = tmp_path_factory.mktemp("whole")
-    done = snakemake(folder, ranks=1)
-    assert done.returncode == 0, done.stderr
+    terminal, side = pty.openpty()
+    termios.tcsetwinsize(side, (24, 100))
+    with os.fdopen(terminal, encoding="utf-8", errors="replace", newline="") as shown:
+        read = ThreadPoolExecutor().submit(_everything, shown)
+        with os.fdopen(side, "wb") as errors:
+            done = snakemake(folder, ranks=1, errors=errors)
+        text = read.result()
+    assert done.returncode == 0, text
     assert str(Path("results/test/fit.md")) in done.stdout
-    return folder
+    return folder, text
+
+
+def _everything(terminal):
+    """What a terminal shows until nothing more can write to it."""
+    text = ""
+    with contextlib.suppress(OSError):  # the end of a terminal is an error of input
+        while part := terminal.read(1):
+            text += part
+    return text
+
+
+@pytest.fixture(scope="module")
+def whole(whole_on_terminal):
+    """Folder of a whole run without MPI."""
+    return whole_on_terminal[0]
+
+
+def test_a_terminal_shows_one_bar_of_the_whole_sweep_and_logs_have_lines(whole_on_terminal):
+    folder, shown = whole_on_terminal
+    assert re.search(r"\r +0%\|.*\| 0/8 ", shown)
+    assert re.search(r"\r100%\|.*\| 8/8 ", shown)
+    for shard in ("flat", "rough"):
+        log = (folder / f"results/test/logs/simulate-{shard}.log").read_bytes()
+        assert b"\r" not in log
+        assert log.count(b"/4] ") == 4
+    assert "/4] " not in shown
 
 
 def contents(folder):
@@ -83,7 +120,7 @@ def test_reading_the_workflow_changes_nothing_even_where_files_are_damaged(tmp_p
         (tmp_path / "results/test" / name).write_bytes(b"{")
     date(2096, tmp_path / "results/test/summary.html")
     before = contents(tmp_path / "results")
-    subprocess.run([*command(tmp_path), verb], capture_output=True, timeout=120, check=False)
+    subprocess.run([*command(tmp_path), verb], capture_output=True, timeout=600, check=False)
     assert contents(tmp_path / "results") == before
 
 
@@ -107,7 +144,7 @@ def seen_in_browser(page, profile):
         ["chromium", *options, f"--user-data-dir={profile}", page.as_uri()],
         capture_output=True,
         text=True,
-        timeout=120,
+        timeout=600,
         check=True,
     )
     return done.stdout
@@ -290,7 +327,7 @@ def test_a_clone_may_stand_under_a_name_with_quotes_and_braces(tmp_path):
 def test_make_takes_a_configuration_in_a_folder_of_any_name():
     name = b"my \xff dir/it's; $$(one)/mine.yaml"
     told = [b"make", b"--dry-run", b"all", b"SWEEP=" + name]
-    done = subprocess.run(told, capture_output=True, check=True, timeout=60, cwd=ROOT)
+    done = subprocess.run(told, capture_output=True, check=True, timeout=600, cwd=ROOT)
     lines = os.fsdecode(done.stdout).splitlines()
     taken = os.fsdecode(name).replace("$$", "$")
     [repaired] = [shlex.split(line) for line in lines if "/crackfront repair " in line]

@@ -14,6 +14,8 @@ from crackfront.simulate.costs import expected_cost
 from crackfront.sweep.configuration import load_configuration, results_folder
 from crackfront.sweep.needs import postprocessing_costs
 from crackfront.sweep.shards import shard_fingerprint
+from crackfront.sweep.store import Store
+from crackfront.sweep.watching import SweepBar
 from studies.boundary_elements.parameters import load_validation
 from studies.paper.figure import (
     FIGURES,
@@ -24,6 +26,7 @@ from studies.paper.figure import (
     figure_fingerprint,
     load_figure,
     settings_fingerprint,
+    sweep_of_figure,
 )
 
 unknown = set(config) - {"sweep", "ranks", "block", "scale", "validation"}
@@ -50,7 +53,7 @@ def shipped(path):
 # The figures of the paper, and the sweep of each scale's SI Fig. S-5.
 FIGURE_SETTINGS = shipped("config/figures")
 SWEEPS = {
-    scale: shipped(load_figure(Path(FIGURE_SETTINGS, "si-5.yaml"), scale).sweep)
+    scale: shipped(sweep_of_figure(Path(FIGURE_SETTINGS, "si-5.yaml"), scale))
     for scale in SCALES
 }
 CONFIGURATION = config.get("sweep", SWEEPS[SCALE])
@@ -74,7 +77,8 @@ FIRSTS = {item.name: SWEEP.one_per_amplitude(item) for item in SWEEP.spectra}
 RANK_BYTES = max(
     expected_cost(one).memory for firsts in FIRSTS.values() for one in firsts
 )
-ANIMATED = [name for name in FIGURES if figure(name).animate]
+# Names, as reading this must not import what computes the figures.
+ANIMATED = ["beyond-animation"]
 
 
 def expected_seconds(name):
@@ -84,7 +88,13 @@ def expected_seconds(name):
 
 
 # Those that take longest go first: one that began last would leave the other cores waiting.
-LONGEST = sorted(FIGURES, key=expected_seconds)[-5:]
+LONGEST = [
+    "main-3ab",
+    "main-3cd",
+    "main-5bc",
+    "beyond-avalanches",
+    "beyond-roughness",
+]
 
 
 def settings_of(wildcards):
@@ -115,6 +125,13 @@ def importable(path):
 CRACKFRONT = command("crackfront")
 STUDIES = importable(BASE) + command("python") + " -m studies"
 LOGGED = " > >(trap '' INT TERM HUP; exec tee {log:q}) 2>&1"
+# Of simulations a terminal shows one bar of the whole sweep, and what goes wrong; a log all lines.
+BAR = SweepBar(SWEEP, Store(Path(RESULTS)))
+SIMULATED = (
+    " >> {log:q} 2> >(trap '' INT TERM HUP; exec tee --append {log:q} >&2)"
+    if BAR.terminal
+    else LOGGED
+)
 
 
 # Functions of an output are no reason to run a job again, and know a module's prefix of paths.

@@ -31,6 +31,6 @@ rule simulate:
         results=folder_above,
     shell:
         # The command takes the shell's place, so that it gets the notice before a time limit.
-        f"exec {CRACKFRONT} simulate {{params.configuration:q}}"
+        f": > {{log:q}}; exec {CRACKFRONT} simulate {{params.configuration:q}}"
         f" --output {{params.results:q}} --spectrum {{params.spectrum}}"
-        f" --realisations {{params.block}} {{params.ranks}}{LOGGED}"
+        f" --realisations {{params.block}} {{params.ranks}}{SIMULATED}"
