@@ -20,7 +20,7 @@ from crackfront.cli.report import (
     whole,
 )
 from crackfront.cli.samples import exit_code, write_samples
-from crackfront.data.bounds import SEED, Range, in_time
+from crackfront.data.bounds import SEED, Range, counted, in_time
 from crackfront.topography.options import (
     PredictionOptions,
     PsdOptions,
@@ -225,7 +225,7 @@ def _simulated(
 
     plan = prediction_plan(prediction.surface, scales, realisations, seed)
     seconds = in_time(plan.expected_seconds)
-    about = f"simulating {realisations} surface(s), about {seconds} ..."
+    about = f"simulating {counted(realisations, 'surface')}, about {seconds} ..."
     say("\n".join(filter(None, (plan.remark, about))))
     outcome = simulated(plan, scales)
     say(simulation_text(outcome, prediction))

@@ -26,7 +26,7 @@ from crackfront.cli.report import (
     table,
     whole,
 )
-from crackfront.data.bounds import COUNT, Range, in_bytes, refuse_beyond_memory
+from crackfront.data.bounds import COUNT, Range, counted, in_bytes, refuse_beyond_memory
 
 # The rest is imported where it is used, so that --help does not wait for it.
 if TYPE_CHECKING:
@@ -256,7 +256,7 @@ def simulate(
     if missing and not parallel.under_mpi():
         busy, costs = min(ranks, len(missing)), _costs(missing)
         refuse_beyond_memory(
-            f"{busy} rank(s) of {in_bytes(costs['bytes_a_rank'])}",
+            f"{counted(busy, 'rank')} of {in_bytes(costs['bytes_a_rank'])}",
             costs["bytes_a_rank"] * (busy if launcher is None else 1),
             "use fewer ranks, coarser numerics or a smaller tile",
         )

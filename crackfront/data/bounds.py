@@ -137,6 +137,11 @@ def _group_limits() -> Iterator[float]:
                 yield float(int(path.read_text()))
 
 
+def counted(number: int, thing: str) -> str:
+    """A number of things, whose plural takes an s."""
+    return f"{number} {thing}" if number == 1 else f"{number} {thing}s"
+
+
 def in_bytes(number: float) -> str:
     """Bytes in words.
 

@@ -16,7 +16,7 @@ from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.core.variables import ADHESION, LATERAL, Variable
 from crackfront.data.arguments import refuse_no_numbers, refuse_other_type
 from crackfront.data.bounds import ADHESION as VALUES
-from crackfront.data.bounds import NUMBER, refuse_outside
+from crackfront.data.bounds import NUMBER, counted, refuse_outside
 from crackfront.data.files import UnreadableFileError, read_dataset
 from crackfront.data.labels import label, labelled, stated_unit
 from crackfront.data.written_units import unit_value
@@ -273,7 +273,7 @@ def _spacing(values: xr.DataArray, name: str) -> float:
     """Uniform spacing of a coordinate."""
     if name not in values.coords or values.sizes[name] < 2:
         raise ValueError(
-            f"{values.name} has {values.sizes[name]} point(s) along {name} and "
+            f"{values.name} has {counted(values.sizes[name], 'point')} along {name} and "
             f"{'a' if name in values.coords else 'no'} coordinate {name}; give 2 or more with "
             "their positions"
         )

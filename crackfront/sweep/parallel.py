@@ -25,6 +25,8 @@ from pathlib import Path
 from types import FrameType
 from typing import TypeVar, cast
 
+from crackfront.data.bounds import counted
+
 Task = TypeVar("Task")
 Result = TypeVar("Result")
 Kept = TypeVar("Kept")
@@ -162,8 +164,9 @@ def is_manager(n_worker: int) -> bool:
         time.sleep(5)
         sys.exit(2)
     raise ValueError(
-        f"MPI started {world.size} rank(s) where {n_worker + 1} were expected ({n_worker} workers "
-        "and a manager); launch workers + 1, by the launcher that belongs to mpi4py's MPI library"
+        f"MPI started {counted(world.size, 'rank')} where {n_worker + 1} were expected, "
+        f"{counted(n_worker, 'worker')} and a manager; launch workers + 1, by the launcher that "
+        "belongs to mpi4py's MPI library"
     )
 
 

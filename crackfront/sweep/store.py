@@ -14,6 +14,7 @@ from pathlib import Path
 from zipfile import ZIP_DEFLATED, ZIP_STORED, ZipFile, ZipInfo
 
 from crackfront.analysis.table import SweepRow, SweepTable
+from crackfront.data.bounds import counted
 from crackfront.data.digests import (
     SUMS,
     digest_beside,
@@ -324,7 +325,8 @@ class Store:
                 forget_sums(self.folder)
                 path.unlink()
                 place_of_digest(path).unlink(missing_ok=True)
-                yield f"{path} is made anew, as {len(lost)} curve(s) of its simulations are gone"
+                curves = counted(len(lost), "curve")
+                yield f"{path} is made anew, as it lacks {curves} of its simulations"
 
     def aggregate(self, sweep: Sweep, origin: Provenance) -> Path:
         """Write the file of the whole sweep from those of its shards, and return its path.

@@ -19,7 +19,7 @@ from pydantic_core import ErrorDetails
 
 from crackfront.core.units import Scales
 from crackfront.data.arguments import refuse_other_type
-from crackfront.data.bounds import SI, Range, refuse_outside
+from crackfront.data.bounds import SI, Range, counted, refuse_outside
 from crackfront.data.written_units import is_unit, si_value
 
 DetrendName = Literal["center", "height", "slope", "curvature"]
@@ -90,8 +90,8 @@ def reading_options(
     for name, values in _values_per_scan(given):
         if len(values) not in (1, n_scan):
             raise ValueError(
-                f"{_shown_name(name, prefix)} is given {len(values)} times for {n_scan} scan(s); "
-                "give it once, or once for each in their order"
+                f"{_shown_name(name, prefix)} is given {len(values)} times for "
+                f"{counted(n_scan, 'scan')}; give it once, or once for each in their order"
             )
     found = []
     for scan in range(n_scan):

@@ -227,7 +227,7 @@ def test_a_single_simulation_has_no_interval(predict):
     content = json.loads(predict(*more, "--json", **options).stdout)
     assert content["simulation"]["w_appr"]["low"] is None
     text = predict(*more, **options).output
-    assert "simulating 1 surface(s), about" in text
+    assert "simulating 1 surface, about" in text
     corrected = content["simulation"]["corrected"]["w_appr"]
     assert corrected["low"] is None
     assert f"w_appr                {1e3 * corrected['value']:.3g} mJ/m2; predicted " in text

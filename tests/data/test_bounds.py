@@ -59,7 +59,7 @@ def test_a_limit_of_the_process_is_what_is_at_hand():
         "resource.setrlimit(resource.RLIMIT_AS, (10**9, 10**9))\n"
         "assert 0 < memory_at_hand() < 1e9"
     )
-    subprocess.run([sys.executable, "-c", code], check=True, timeout=100)
+    subprocess.run([sys.executable, "-c", code], check=True, timeout=600)
 
 
 def test_a_thousand_years_are_refused_and_half_of_them_are_not():

@@ -212,8 +212,8 @@ UNUSABLE = {
     "other dims": (tile().rename(y="z"), "has the dimensions (x, z); a tile must have x and y"),
     "one dim": (tile()[0], "has the dimensions (y); a tile must have x and y"),
     "text": (tile().astype(str), "work_of_adhesion is <U"),
-    "no positions": (tile().drop_vars("x"), "4 point(s) along x and no coordinate x"),
-    "one row": (tile(n_x=1), "1 point(s) along x and a coordinate x"),
+    "no positions": (tile().drop_vars("x"), "4 points along x and no coordinate x"),
+    "one row": (tile(n_x=1), "1 point along x and a coordinate x"),
     "oblong pixels": (
         tile().assign_coords(y=0.4 * np.arange(6)),
         "the spacing is 0.5 in x and 0.4 in y; they must be equal",

@@ -37,7 +37,7 @@ def add(task, result):
     return task + result
 
 
-def crackfront(*arguments, ranks=None, timeout=120, **environment):
+def crackfront(*arguments, ranks=None, timeout=600, **environment):
     """Run the command, directly or as ranks of MPI."""
     command = [sys.executable, "-m", "crackfront", *arguments]
     if ranks is not None:
@@ -241,7 +241,7 @@ def test_a_surface_and_a_mask_in_npy_are_read_by_the_manager_alone(tmp_path, rng
 def test_a_wrong_number_of_ranks_is_one_sentence_and_no_simulation(tmp_path):
     run = crackfront("simulate", TEST, "--output", str(tmp_path), "--ranks", "2", ranks=2)
     assert run.returncode != 0
-    assert run.stderr.count("MPI started 2 rank(s) where 3 were expected") == 1
+    assert run.stderr.count("MPI started 2 ranks where 3 were expected") == 1
     assert "Traceback" not in run.stderr
     assert list(tmp_path.iterdir()) == []
 
@@ -251,9 +251,9 @@ def test_a_launcher_of_another_mpi_is_no_silent_serial_run(tmp_path):
     # What such a launcher starts: ranks that each believe to be alone.
     lonely = [sys.executable, "-m", "mpi4py", "-m", "crackfront", "simulate", TEST]
     lonely += ["--output", str(tmp_path), "--ranks", "2"]
-    run = subprocess.run(lonely, capture_output=True, text=True, timeout=60, check=False)
+    run = subprocess.run(lonely, capture_output=True, text=True, timeout=600, check=False)
     assert run.returncode != 0
-    assert "MPI started 1 rank(s) where 3 were expected" in run.stderr
+    assert "MPI started 1 rank where 3 were expected" in run.stderr
     assert list(tmp_path.iterdir()) == []
 
 
@@ -269,7 +269,7 @@ def test_an_exception_in_a_task_ends_the_job_at_once(tmp_path):
     )
     mpi = [*default_launcher().split(), "-n", "3", sys.executable, "-m", "mpi4py"]
     run = subprocess.run(
-        [*mpi, str(script)], capture_output=True, text=True, timeout=60, check=False
+        [*mpi, str(script)], capture_output=True, text=True, timeout=600, check=False
     )
     assert run.returncode != 0
     assert "ZeroDivisionError" in run.stderr

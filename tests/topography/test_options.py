@@ -76,7 +76,7 @@ def test_an_option_is_given_once_for_all_scans_or_once_for_each():
     each = reading_options({"crop": crops, "channel": ("A",), "unit": "um"}, 2)
     assert [one.channel for one in each] == ["A", "A"]
     np.testing.assert_allclose([one.crop[0] for one in each], [(0, 1e-6), (1e-6, 2e-6)])
-    with pytest.raises(ValueError, match=r"--channel is given 2 times for 3 scan\(s\)"):
+    with pytest.raises(ValueError, match=r"--channel is given 2 times for 3 scans"):
         reading_options({"channel": ["A", "B"]}, 3, "--")
     with pytest.raises(ValueError, match=r"^mask is for one scan, and 2 are named"):
         reading_options({"mask": "0:1um,0:1um"}, 2)

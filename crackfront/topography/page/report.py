@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 from crackfront.analysis.estimate import Estimate
 from crackfront.core.units import Scales
 from crackfront.core.variables import variables
+from crackfront.data.bounds import counted
 from crackfront.data.jsonable import to_jsonable
 from crackfront.data.written_units import prefixed
 from crackfront.topography.density.bands import BandLimit
@@ -62,10 +63,8 @@ def report_text(
 
 def simulation_text(found: Simulated, prediction: Prediction) -> str:
     """What simulations found beside what is predicted: of the front itself, and corrected."""
-    several = "s" if found.realisations > 1 else ""
-    lines = [
-        f"Simulated on {found.realisations} synthesised surface{several}, beside the prediction"
-    ]
+    surfaces = counted(found.realisations, "synthesised surface")
+    lines = [f"Simulated on {surfaces}, beside the prediction"]
     front = (
         estimate_text(ENERGY, found.hysteresis),
         estimate_text(ENERGY, prediction.front_hysteresis),

@@ -11,6 +11,8 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import Literal
 
+from crackfront.data.bounds import counted
+
 Severity = Literal["fails", "undecided", "reservation", "note", "holds"]
 """Whether the theory ends, may end or is in doubt there; a note on the input; or all is well."""
 
@@ -108,9 +110,7 @@ class Verdict:
         count = len(self.of("reservation"))
         headings: dict[Outcome, str] = {
             "applies": "The theory applies",
-            "applies with reservations": (
-                f"The theory applies with {count} reservation{'s' if count > 1 else ''}"
-            ),
+            "applies with reservations": f"The theory applies with {counted(count, 'reservation')}",
             "cannot be decided": (
                 "WHETHER THE THEORY APPLIES CANNOT BE DECIDED; the numbers hold if it does"
             ),

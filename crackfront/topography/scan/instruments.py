@@ -16,6 +16,7 @@ from typing import Any
 
 import numpy as np
 
+from crackfront.data.bounds import counted
 from crackfront.data.optional_libraries import MissingExtraError
 from crackfront.data.written_units import prefixed, unit_value
 from crackfront.topography.options import ReadingOptions
@@ -534,8 +535,8 @@ def _sides(path: Path, named: tuple[float, ...], n_side: int) -> tuple[float, ..
     found = named * n_side if len(named) == 1 else named
     if len(found) != n_side:
         raise ValueError(
-            f"{path} has {n_side} dimension(s) and the size that is named {len(named)}; name one "
-            "length for each, as in --size 50,40, or one for a square"
+            f"{path} has {counted(n_side, 'dimension')} and the size that is named "
+            f"{len(named)}; name one length for each, as in --size 50,40, or one for a square"
         )
     return found
 

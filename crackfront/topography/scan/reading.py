@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from crackfront.data.bounds import counted
 from crackfront.data.written_units import prefixed
 from crackfront.topography.options import ReadingOptions, Region
 from crackfront.topography.scan.containers import Member, contained_surfaces, surface_of, unpacked
@@ -331,8 +332,8 @@ def _slices(
     """Slices of the points within a region of a scan."""
     if len(region) != len(counts):
         raise ValueError(
-            f"{path} has {len(counts)} dimension(s) and the {what} {len(region)}; name both ends "
-            "along each, as in 2um:8um,0um:5um"
+            f"{path} has {counted(len(counts), 'dimension')} and the {what} "
+            f"{len(region)}; name both ends along each, as in 2um:8um,0um:5um"
         )
     for (_, high), side in zip(region, size, strict=True):
         if high > side * (1 + 1e-9):

@@ -177,7 +177,7 @@ def test_units_and_sizes_that_a_file_lacks_must_be_named(tmp_path, heights, scan
     assert "read as asc, states no unit of length; name it, as in --unit um" in refusal(path)
     assert "states no size" in refusal(path, unit="um")
     assert "--unit kg is no unit of length" in refusal(path, unit="kg", size=(20.0, 20.0))
-    assert "2 dimension(s)" in refusal(path, unit="um", size=(20.0, 20.0, 20.0))
+    assert "2 dimensions" in refusal(path, unit="um", size=(20.0, 20.0, 20.0))
     [given] = read_measurements([path], ReadingOptions(**PLAIN))
     assert given.size == pytest.approx((20e-6, 20e-6))
     assert np.std(given.heights) == pytest.approx(
