@@ -128,7 +128,8 @@ PORTABLE = NPY_DISABLE_CPU_FEATURES="$$(.venv/bin/python -c '$(DISPATCHED)')" \
   OPENBLAS_CORETYPE=Nehalem OPENBLAS_NUM_THREADS=3 NUMBA_CPU_NAME=generic NUMBA_CPU_FEATURES=
 
 test-portable: env  ## Run the tests of predictions as on another processor (two minutes)
-	@$(IN_ENV) $(PORTABLE) .venv/bin/python -m pytest $(PARALLEL) -m "not slow" tests/topography
+	@$(IN_ENV) $(PORTABLE) .venv/bin/python -m pytest $(PARALLEL) -m "not slow" \
+	  tests/topography/density tests/topography/spectrum tests/topography/prediction
 
 test-cluster: env  ## Run the tests that need a Slurm, on one started for them (5 minutes)
 	@$(IN_ENV) tests/cluster/with-slurm.sh .venv/bin/python -m pytest -m slurm tests/cluster

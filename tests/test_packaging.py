@@ -37,7 +37,7 @@ def told(*command, **options):
         check=True,
         capture_output=True,
         text=True,
-        timeout=120,
+        timeout=600,
         **options,
     )
     return done.stdout.strip()

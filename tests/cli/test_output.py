@@ -23,7 +23,7 @@ def test_a_sweep_is_computed_although_nobody_reads_its_lines(tmp_path, ranks):
     reader, writer = os.pipe()
     os.close(reader)
     told = command("simulate", TEST, "--output", tmp_path, "--ranks", ranks)
-    done = subprocess.run(told, stdout=writer, stderr=writer, timeout=200, check=False)
+    done = subprocess.run(told, stdout=writer, stderr=writer, timeout=600, check=False)
     os.close(writer)
     assert done.returncode == 0
     assert len(curves(tmp_path)) == 8
@@ -34,14 +34,14 @@ def test_a_sweep_is_computed_although_nobody_reads_its_lines(tmp_path, ranks):
 def test_a_closed_output_becomes_no_file_that_is_written(tmp_path, closing):
     (tmp_path / "text").write_text("content")
     told = ["bash", "-c", f'exec "$@" {closing}', "bash", *command("checksums", tmp_path)]
-    assert subprocess.run(told, timeout=200, check=False).returncode == 0
+    assert subprocess.run(told, timeout=600, check=False).returncode == 0
     assert (tmp_path / "SHA256SUMS").read_text().endswith("  text\n")
     assert len((tmp_path / "SHA256SUMS").read_text().splitlines()) == 1
 
 
 def test_an_answer_that_does_not_fit_on_a_disk_is_no_success():
     with Path("/dev/full").open("w") as full:
-        done = subprocess.run(command("plan", TEST), stdout=full, timeout=200, check=False)
+        done = subprocess.run(command("plan", TEST), stdout=full, timeout=600, check=False)
     assert done.returncode != 0
 
 
@@ -54,16 +54,16 @@ def test_names_are_bytes(tmp_path):
     )
     output = folder / "results"
     told = command("simulate", sweep, "--output", output, "--spectrum", "flat")
-    done = subprocess.run(told, capture_output=True, timeout=200, check=False)
+    done = subprocess.run(told, capture_output=True, timeout=600, check=False)
     assert done.returncode == 0, done.stderr
     assert b"rows: " + os.fsencode(output / "shards/flat.nc") in done.stdout
     assert b"[4/4]" in done.stdout
     for words in (("status", output), ("verify", output), ("checksums", output)):
-        done = subprocess.run(command(*words), capture_output=True, timeout=200, check=False)
+        done = subprocess.run(command(*words), capture_output=True, timeout=600, check=False)
         assert done.returncode == 0, done.stderr
     (output / os.fsdecode(b"remark \xff")).write_text("mine")
     for words in (("checksums", output), ("verify", output)):
-        done = subprocess.run(command(*words), capture_output=True, timeout=200, check=False)
+        done = subprocess.run(command(*words), capture_output=True, timeout=600, check=False)
         assert done.returncode == 0, done.stderr
     check = ["sha256sum", "--quiet", "--check", "SHA256SUMS"]
-    subprocess.run(check, check=True, timeout=60, cwd=output)
+    subprocess.run(check, check=True, timeout=600, cwd=output)

@@ -355,7 +355,7 @@ def test_kernels_in_plain_python_raise_no_floating_point_error_and_find_the_comp
         env=os.environ | {"NUMBA_DISABLE_JIT": "1"},
         capture_output=True,
         text=True,
-        timeout=200,
+        timeout=600,
     )
     assert done.returncode == 0, done.stderr[-2000:]
     for plain, compiled in zip(json.loads(done.stdout), plain_cycles(), strict=True):

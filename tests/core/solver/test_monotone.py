@@ -203,7 +203,7 @@ def test_the_number_of_threads_has_no_say():
             capture_output=True,
             text=True,
             check=True,
-            timeout=200,
+            timeout=600,
         ).stdout
         for threads in ("1", "2")
     }

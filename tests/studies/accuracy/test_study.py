@@ -100,13 +100,11 @@ def small_study():
     return scene_errors(SMALL, finer + SMALL.asked_settings(), range(3))
 
 
-def test_errors_fall_with_the_error_that_is_asked_for_and_time_grows(small_study):
+def test_errors_fall_with_the_error_that_is_asked_for(small_study):
     assert SMALL.elastic_energy == 0.04
     asked = [errors for errors in small_study.errors if errors.knob == "asked"]
     error = {errors.value: rms(errors.adhesion) for errors in asked}
-    seconds = [errors.seconds.mean() for errors in asked]
     assert error[0.1] > 3 * error[0.003]
-    assert seconds[0] < seconds[-1]
     for errors in asked:
         assert np.all(errors.front_rms <= errors.front_max)
     finer = small_study.errors[0]
