@@ -431,6 +431,7 @@ cases:
 """
 
 
+@pytest.mark.slow
 def test_the_workflow_makes_a_figure_of_the_paper_and_validates_the_model(tmp_path):
     configuration = tmp_path / "tiny.yaml"
     configuration.write_text(VALIDATION)
