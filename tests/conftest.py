@@ -33,8 +33,13 @@ hypothesis.settings.load_profile("ours")
 
 
 @pytest.fixture(autouse=True, scope="session")
-def _kernels_shared_out() -> None:
-    """Of workers side by side, two begin with kernels of either kind: neither compiles both."""
+def _kernels_shared_out(request: pytest.FixtureRequest) -> None:
+    """Of workers side by side, two begin with kernels of either kind: neither compiles both.
+
+    Where no test of the core runs, hardly any needs them.
+    """
+    if not any(item.nodeid.startswith("tests/core/") for item in request.session.items):
+        return
     match os.environ.get("PYTEST_XDIST_WORKER"):
         case "gw0":
             compile_solver(Newton.name)
