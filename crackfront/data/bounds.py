@@ -138,7 +138,13 @@ def _group_limits() -> Iterator[float]:
 
 
 def counted(number: int, thing: str) -> str:
-    """A number of things, whose plural takes an s."""
+    """A number of things, whose plural takes an s.
+
+    Examples
+    --------
+    >>> counted(1, "scan"), counted(3, "scan")
+    ('1 scan', '3 scans')
+    """
     return f"{number} {thing}" if number == 1 else f"{number} {thing}s"
 
 
