@@ -231,7 +231,7 @@ def _departure(fit: SweepFit) -> str:
     if not fit.n_large:
         return "; in this sweep no contact is large enough to tell, as g is nowhere above 1"
     counts = int(fit.n_large), fit.cells.size.size
-    if not fit.table.straight:
+    if not fit.table.on_springs:
         return departure_of_spheres(float(fit.law_departure), *counts, "those of this sweep")
     return (
         f", and those of this sweep have its k within {fit.law_departure:.1%} rms where g is above "

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable
 from dataclasses import astuple, fields
 from typing import NamedTuple
 
@@ -81,13 +82,15 @@ def fit_sweep(
     seed: int = 0,
     kind: FieldKind = "roughness",
     uncorrelated: bool = False,
+    watched: Callable[[list[int]], Iterable[int]] = iter,
 ) -> SweepFit:
     """Fit k, the exponent, the midpoint and the trends of k, with intervals.
 
     The fit uses the amplitudes between two requested e_el, ends included (Units: w_int). The point
     estimates do not depend on the seed of the bootstrap. The midpoint should be w_int - e_el for
     roughness, w_int for a chemical field. With `uncorrelated`, the sites of straight fronts know
-    nothing of each other: the law's limit of weak disorder, whatever the amplitude.
+    nothing of each other: the law's limit of weak disorder, whatever the amplitude. Spectra are
+    fitted as `watched` yields their numbers, which may show how far this is.
 
     Estimates are as :data:`FIT_DEFINITION` says. What the data do not give is NaN and has a
     sentence in :func:`crackfront.analysis.report.fit_notes`. ValueError if the range is empty,
@@ -100,7 +103,7 @@ def fit_sweep(
     chosen = _Samples(*(values[:, in_range] for values in samples))
     n_realisation = np.count_nonzero(np.any(np.isfinite(chosen.factor), axis=1), axis=-1)
     freedom = n_realisation - 1
-    parts, weights = _fit_spectra(chosen, freedom, n_bootstrap, seed)
+    parts, weights = _fit_spectra(chosen, freedom, n_bootstrap, seed, watched)
     spectra, shares = LawEstimates(*parts), ratio(weights, np.sum(weights, axis=1, keepdims=True))
     pooled = [combination(part, freedom, share) for part, share in zip(parts, shares, strict=True)]
     law = SweepLaw(table, kind, uncorrelated)
@@ -186,13 +189,17 @@ def _cell_estimates(samples: _Samples, lowering: float, law: SweepLaw) -> CellEs
 
 
 def _fit_spectra(
-    samples: _Samples, freedom: NDArray[np.int64], n_bootstrap: int, seed: int
+    samples: _Samples,
+    freedom: NDArray[np.int64],
+    n_bootstrap: int,
+    seed: int,
+    watched: Callable[[list[int]], Iterable[int]],
 ) -> tuple[list[Estimate], Array]:
     """Estimates of every statistic for the spectra, and their (statistic, spectrum) weights."""
     shape = len(fields(LawEstimates)), freedom.size
     values, errors, weights = np.empty(shape), np.full(shape, np.nan), np.empty(shape)
     streams = np.random.SeedSequence(seed).spawn(freedom.size)
-    for index, stream in enumerate(streams):
+    for index in watched([*range(freedom.size)]):
         own = _Samples(*(quantity[index] for quantity in samples))
         present = np.any(np.isfinite(own.factor), axis=0)
         own = _Samples(*(quantity[:, present] for quantity in own))
@@ -200,7 +207,7 @@ def _fit_spectra(
         value, weight = _statistics(_means(own, whole))
         values[:, index], weights[:, index] = value[:, 0], weight[:, 0]
         if freedom[index] > 0:
-            rng = np.random.default_rng(stream)
+            rng = np.random.default_rng(streams[index])
             drawn, _ = _statistics(_resampled(own, n_bootstrap, rng))
             errors[:, index] = scatter(drawn)
     estimates = [student_estimate(*row, freedom) for row in zip(values, errors, strict=True)]

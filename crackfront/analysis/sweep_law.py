@@ -49,16 +49,15 @@ class SweepLaw:
     def support_lengths(self) -> Array:
         """Springs of straight fronts, or contact radii, (n_spectrum, n_amplitude)."""
         table = self.table
-        if table.straight:
-            return table.spring
-        return mean_estimate(np.where(table.finite, table.contact_radius, np.nan))[0].value
+        radius = mean_estimate(np.where(table.finite, table.contact_radius, np.nan))[0].value
+        return np.where(np.isfinite(table.spring), table.spring, radius)
 
     def factor(self, index: int, energy: float, support: float) -> tuple[Estimate[float], float]:
         """Factor k of a spectrum at an e_el and a spring or contact radius, and g; else NaN."""
         if not (0 < energy < 1 and 0 < support < math.inf):
             return _UNKNOWN, math.nan
         spectrum = self.table.shape_of(index)
-        if self.table.straight:
+        if self.table.on_springs:
             w_rms = 2 * math.sqrt(energy)
             size = support / larkin_length(self.kind, spectrum, w_rms)
             disorder = WEAKEST if self.uncorrelated else w_rms

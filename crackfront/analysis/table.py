@@ -112,8 +112,8 @@ class SweepTable:
         return (self.w_appr_numerical_error + self.w_retr_numerical_error) / (2 * self.e_el)
 
     @property
-    def straight(self) -> bool:
-        """Whether the fronts are straight ones on springs."""
+    def on_springs(self) -> bool:
+        """Whether springs hold the fronts, which are straight, and no sphere does."""
         return bool(np.any(np.isfinite(self.spring)))
 
     @property

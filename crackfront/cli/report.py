@@ -4,14 +4,18 @@ from __future__ import annotations
 
 import json
 import math
+import sys
+import time
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import click
 
 from crackfront.data.bounds import Range, in_time
 from crackfront.data.jsonable import to_jsonable
+
+T = TypeVar("T")
 
 FILE = click.Path(path_type=Path)
 """Type of a parameter that names a file or folder."""
@@ -96,6 +100,31 @@ def announce_cost(seconds: float, *, err: bool = True) -> None:
 
 _MOMENT = 20.0
 """Time that needs no announcement. (Units: s)"""
+
+
+def with_progress(things: Iterable[T], total: int, unit: str) -> Iterator[T]:
+    """The things one by one, with a bar on a terminal once they take more than a few seconds.
+
+    Elsewhere lines on standard error count them, each after twice the time of the one before. The
+    unit is the plural of a thing.
+    """
+    from tqdm import tqdm
+
+    began, due, terminal = time.monotonic(), _PATIENCE, sys.stderr.isatty()
+    with tqdm(
+        total=total, unit=unit, delay=_PATIENCE, disable=not terminal, file=sys.stderr
+    ) as bar:
+        for number, thing in enumerate(things, start=1):
+            yield thing
+            bar.update()
+            passed = time.monotonic() - began
+            if not terminal and passed > due and number < total:
+                click.echo(f"{number} of {total} {unit}", err=True)
+                due = 2 * passed
+
+
+_PATIENCE = 5.0
+"""Time after which a command shows how far it is. (Units: s)"""
 
 
 def refuse_unwritable(folder: Path) -> None:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from crackfront.cli.report import FILE, announce_cost, as_json, examples
+from crackfront.cli.report import FILE, announce_cost, as_json, examples, with_progress
 from crackfront.cli.sweep import configuration_argument, fill_store, output_option
 
 if TYPE_CHECKING:
@@ -26,7 +26,9 @@ def aggregate(configuration: Path, output: Path | None) -> None:
     from crackfront.sweep.library import opened, without_value
 
     sweep, store, origin = opened(configuration, output)
-    path = store.aggregate(sweep, origin)
+    path = store.aggregate(
+        sweep, origin, lambda shards: with_progress(shards, len(shards), "shards")
+    )
     failed, sentence = without_value(path)
     if failed > sweep.failed_fraction * sweep.n_simulation:
         raise click.ClickException(
@@ -186,6 +188,7 @@ def _fitted(sweep: Sweep, store: Store) -> SweepFit:
         seed=sweep.seed,
         kind=sweep.kind,
         uncorrelated=sweep.schedule.uncorrelated,
+        watched=lambda spectra: with_progress(spectra, len(spectra), "spectra"),
     )
 
 

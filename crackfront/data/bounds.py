@@ -40,6 +40,9 @@ ADHESION = Range(-1e4, 1e4)
 DENSITY = Range(1e-3, 1e3)
 """Sites, samples or points per length of a surface."""
 
+PIXELS = Range(2, 1e3)
+"""Points of a tile per shortest wavelength; fewer do not hold it."""
+
 SITES = Range(4, 10**15)
 """Sites of a front; fewer resolve no distortion."""
 

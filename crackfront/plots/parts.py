@@ -71,7 +71,7 @@ def sweep_series(table: SweepTable) -> tuple[Series, ...]:
     for index, family in enumerate(families):
         colour = marker = index
         label = spectrum_label(table, index)
-        if table.straight:
+        if table.on_springs:
             colour, marker = family, families[:index].count(family)
             label = "" if marker else label
         found.append(Series(spectrum_colour(colour), spectrum_marker(marker), label))

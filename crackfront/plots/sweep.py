@@ -77,7 +77,7 @@ def factor_figure(fit: SweepFit) -> Figure:
         figure = blank_figure(PAGE, 0.45 * PAGE)
         left, right = figure.subplots(1, 2, sharey=True, width_ratios=(1.35, 1))
         text = POINTS_EXPLAINED
-        if fit.table.straight:
+        if fit.table.on_springs:
             _draw_line_factors(left, right, fit)
         else:
             draw_factor_by_disorder(left, fit)
@@ -179,9 +179,8 @@ def draw_hysteresis(axes: Axes, fit: SweepFit) -> None:
     axes.set_xlabel(r"disorder $(w_\mathrm{rms}/w_\mathrm{int})^2$")
     axes.set_ylabel(r"hysteresis $(w_\mathrm{retr}-w_\mathrm{appr})/w_\mathrm{int}$")
     handles, labels = legend_entries(axes)
-    if fit.table.straight:
-        families = spectrum_families(fit.table)
-        for index in (index for index, family in enumerate(families) if family == 0):
+    for index, family in enumerate(spectrum_families(fit.table)):
+        if family == 0 and np.all(np.isfinite(fit.table.spring[index])):
             marker = sweep_series(fit.table)[index].marker
             handles.append(Line2D([], [], color="0.4", linestyle="none", marker=marker))
             labels.append(spring_label(fit, index))

@@ -19,9 +19,10 @@ from pydantic import (
 
 from crackfront.analysis.sweep import FEWEST_BOOTSTRAP
 from crackfront.core.field.fields import Interpolation
-from crackfront.core.solver.relax import SOLVERS
+from crackfront.core.solver import DEFAULT_TOLERANCE
+from crackfront.core.solver.relax import named_solver
 from crackfront.core.spectrum import SelfAffineSpectrum, TabulatedSpectrum
-from crackfront.data.bounds import SI, Range
+from crackfront.data.bounds import PIXELS, SI, SITES, TOLERANCE, Range
 from crackfront.data.packs import LONGEST_NAME
 from crackfront.data.section import (
     ConfigurationError,
@@ -221,13 +222,13 @@ class NumericsSection(Section):
     """An error or a resolution, and the solver, as in `Numerics`."""
 
     error: Annotated[float, Field(gt=0, lt=1)] | None = None
-    angles: Annotated[Count, Field(ge=4)] | None = None
+    angles: Annotated[int, within(SITES)] | None = None
     angles_per_cutoff: Density | None = None
     samples_per_cutoff: Density | None = None
     interpolation: Interpolation | None = None
-    pixels_per_cutoff: Density | None = None
+    pixels_per_cutoff: Annotated[float, within(PIXELS)] | None = None
     tile: TileSection
-    tolerance: Annotated[float, Field(gt=0, lt=1)] | None = None
+    tolerance: Annotated[float, within(TOLERANCE)] | None = None
     max_sweeps: Count
     solver: str
 
@@ -246,15 +247,7 @@ class NumericsSection(Section):
                 (self.angles, self.angles_per_cutoff),
                 otherwise="give one, or ask for an error",
             )
-        if self.pixels_per_cutoff is not None and self.pixels_per_cutoff < 2:
-            raise refusal(
-                f"pixels_per_cutoff is {self.pixels_per_cutoff:g}, so that short_cutoff is below "
-                "two pixels; it must be 2 or more"
-            )
-        if self.solver not in SOLVERS:
-            raise refusal(
-                f"solver {self.solver!r} is unknown; choose one of {', '.join(sorted(SOLVERS))}"
-            )
+        _refuse_unless_made(lambda: named_solver(self.solver, DEFAULT_TOLERANCE, self.max_sweeps))
         return self
 
     def numerics(self) -> Numerics:

@@ -7,10 +7,11 @@ import functools
 import hashlib
 import itertools
 from collections import Counter, defaultdict
-from collections.abc import Collection, Iterable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from operator import attrgetter
 from pathlib import Path
+from typing import Any
 from zipfile import ZIP_DEFLATED, ZIP_STORED, ZipFile, ZipInfo
 
 from crackfront.analysis.table import SweepRow, SweepTable
@@ -328,10 +329,13 @@ class Store:
                 curves = counted(len(lost), "curve")
                 yield f"{path} is made anew, as it lacks {curves} of its simulations"
 
-    def aggregate(self, sweep: Sweep, origin: Provenance) -> Path:
+    def aggregate(
+        self, sweep: Sweep, origin: Provenance, watched: Callable[[list[Any]], Iterable[Any]] = iter
+    ) -> Path:
         """Write the file of the whole sweep from those of its shards, and return its path.
 
-        ValueError if shards are missing or damaged.
+        Shards are read as `watched` yields them, which may show how far this is. ValueError if
+        shards are missing or damaged.
         """
         shards, missing = [], 0
         for item in sweep.spectra:
@@ -344,7 +348,8 @@ class Store:
                 f"{self.folder}; run `crackfront simulate` with this configuration and output, or "
                 "`make` again"
             )
-        parts = [[shard_columns(one, taken) for one, taken in chosen] for chosen in shards]
+        read = (shard_columns(*one) for one in watched([one for some in shards for one in some]))
+        parts = [[*itertools.islice(read, len(chosen))] for chosen in shards]
         forget_sums(self.folder)
         write_hysteresis(self.hysteresis, sweep, parts, origin)
         return self.hysteresis

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+from collections import defaultdict
 from pathlib import Path
 
 import click
@@ -14,6 +15,7 @@ from crackfront.cli.report import (
     examples,
     refuse_unwritable,
     whole,
+    with_progress,
 )
 from crackfront.data.bounds import Range
 from crackfront.data.digests import forget_sums
@@ -92,7 +94,8 @@ def report(output: Path, keep: bool) -> None:
 @keep_option
 def predictions(keep: bool) -> None:
     """Compare predictions from scans with simulations of the surfaces; print a table."""
-    parts = {"Predictions": films.comparison_table(films.comparisons())}
+    shown = with_progress(films.comparisons(), len(films.FILMS), "films")
+    parts = {"Predictions": films.comparison_table(shown)}
     tell("accuracy", parts, "studies.accuracy.predictions", keep=keep)
 
 
@@ -108,8 +111,14 @@ def energies(scans: int, keep: bool) -> None:
         "Roll-offs": synthetic.ROLL_OFFS,
         "Held-out scans": synthetic.HELD_OUT,
     }
+    every = [
+        (kind, number) for kinds in tables.values() for kind in kinds for number in range(scans)
+    ]
+    found = defaultdict(list)
+    for kind, number in with_progress(every, len(every), "scans"):
+        found[kind].append(synthetic.found_scan(kind, number))
     parts = {
-        name: synthetic.energy_table(synthetic.found_scans(scans, kinds))
+        name: synthetic.energy_table({kind: found[kind] for kind in kinds})
         for name, kinds in tables.items()
     }
     tell("accuracy", parts, "studies.accuracy.energies", keep=keep)
@@ -127,7 +136,8 @@ def movement(scans: tuple[Path, ...], keep: bool) -> None:
         kind.name: [one.measurement for one in synthetic.found_scan(kind, 0).surface.scans]
         for kind in synthetic.KINDS
     }
-    found = [(name, settled.movement(one)) for name, one in surfaces.items()]
+    shown = with_progress(surfaces.items(), len(surfaces), "scans")
+    found = [(name, settled.movement(one)) for name, one in shown]
     parts = {"Movement": settled.movement_table(found)}
     tell("accuracy", parts, "studies.accuracy.movement", keep=keep)
 
@@ -158,5 +168,6 @@ def energy_balance(keep: bool) -> None:
 def loops(loops: int, keep: bool) -> None:
     """Record simulated cycles as rigs would, and count truths within intervals; print a table."""
     announce_compilation()
-    parts = {"Measured loops": rigs.coverage_table(rigs.coverage(rigs.cycles(loops)))}
+    shown = with_progress(rigs.cycles(loops), loops, "loops")
+    parts = {"Measured loops": rigs.coverage_table(rigs.coverage(shown))}
     tell("accuracy", parts, "studies.accuracy.loops", keep=keep)

@@ -288,11 +288,6 @@ def _lines(kind: Kind, rng: np.random.Generator) -> MeasuredSurface:
         return measured_surface(read_measurements(paths, ReadingOptions(unit="um")))
 
 
-def found_scans(n_scan: int, kinds: Sequence[Kind] = KINDS) -> dict[Kind, list[Found]]:
-    """What is found for so many scans of each kind."""
-    return {kind: [found_scan(kind, number) for number in range(n_scan)] for kind in kinds}
-
-
 def energy_table(found: Mapping[Kind, Sequence[Found]]) -> str:
     """e_el of all scans relative to the true one, and how often the intervals hold that."""
     rows = []

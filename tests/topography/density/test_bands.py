@@ -16,7 +16,6 @@ from studies.accuracy.energies import (
     SIDE,
     energy_table,
     found_scan,
-    found_scans,
 )
 
 
@@ -180,7 +179,7 @@ def test_the_table_of_energies_has_a_row_for_each_kind(found):
 
 @pytest.mark.slow
 def test_intervals_of_two_hundred_scans_hold_the_truth():
-    every = [(kind, one) for kind, scans in found_scans(12).items() for one in scans]
+    every = [(kind, found_scan(kind, number)) for kind in KINDS for number in range(12)]
     assert len(every) > 200
     assert np.median([abs(one.ratio.value - 1) for _, one in every]) < 0.2
     assert np.mean([one.covers for _, one in every]) >= 0.9
