@@ -159,7 +159,7 @@ def refuse_oversized(spectrum: Spectrum, numerics: Numerics, knobs: Knobs, deepe
 def features(simulation: Simulation) -> Features:
     """Features of a simulation."""
     sizes, spectrum, schedule = simulation.resolution, simulation.spectrum, simulation.schedule
-    travel, n_state, full_cycle = schedule.expected_motion(simulation)
+    travel, n_state, full_cycle = schedule.expected_motion(simulation.surface)
     return Features(
         n_angle=sizes.n_angle,
         n_point=math.sqrt(math.prod(simulation.tile[0])),

@@ -36,7 +36,7 @@ from crackfront.data.provenance import __version__
 from crackfront.simulate.files import cycle_dataset
 from crackfront.simulate.instabilities import measured_instabilities, resolved_motion
 from crackfront.simulate.loop_setup import LoopContact, LoopNumerics, LoopSetup, load_values
-from crackfront.simulate.numerics import stated_error
+from crackfront.simulate.numerical_errors import stated_error
 from crackfront.simulate.run import compile_solver
 from crackfront.simulate.sphere.loop import PressedSphere
 

@@ -12,12 +12,11 @@ from crackfront.core.geometry.base import Geometry, fast_site_count
 from crackfront.core.solver.relax import Solver
 from crackfront.core.spectrum import Spectrum
 from crackfront.simulate.front_sizes import sphere_size
-from crackfront.simulate.tiles import gaussian_adhesion
+from crackfront.simulate.tiles import RandomSurface, gaussian_adhesion
 
 if TYPE_CHECKING:
     from crackfront.analysis.steady import SteadyAdhesion
     from crackfront.simulate.numerics import Numerics
-    from crackfront.simulate.simulation import Simulation
 
 
 class ExpectedMotion(NamedTuple):
@@ -106,9 +105,9 @@ class Schedule(ABC):
     def geometry(self, n_site: int) -> Geometry:
         """Contact, whose springs do not pull at w_int."""
 
-    def adhesion(self, simulation: Simulation) -> AdhesionMap:
-        """Work of adhesion on the tile of a simulation, by default that of a Gaussian surface."""
-        return gaussian_adhesion(simulation)
+    def adhesion(self, surface: RandomSurface) -> AdhesionMap:
+        """Work of adhesion on the tile of a surface, by default that of a Gaussian one."""
+        return gaussian_adhesion(surface)
 
     @abstractmethod
     def field(
@@ -142,8 +141,8 @@ class Schedule(ABC):
     # What is known of it before and after.
 
     @abstractmethod
-    def expected_motion(self, simulation: Simulation) -> ExpectedMotion:
-        """States that a simulation under these loads is expected to find."""
+    def expected_motion(self, surface: RandomSurface) -> ExpectedMotion:
+        """States that these loads are expected to find on a surface."""
 
     @abstractmethod
     def spring_at(self, work_of_adhesion: float) -> float:
@@ -154,9 +153,9 @@ class Schedule(ABC):
 
     @abstractmethod
     def steady_load(
-        self, simulation: Simulation, works: tuple[float, float], travel: float, n_state: int
+        self, surface: RandomSurface, works: tuple[float, float], travel: float, n_state: int
     ) -> float:
-        """Largest load from which on so many states of both branches are steady.
+        """Largest load from which on so many states of both branches on a surface are steady.
 
         Works of adhesion of approach and retraction (Units: w_int) and the travel after which a
         branch is steady (Units: length) are expected ones. Minus infinity where any load is enough.

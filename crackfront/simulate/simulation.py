@@ -1,6 +1,6 @@
 """What determines one simulation: its parameters, sizes, key and seed; and its field.
 
-How the sizes are chosen stands in :mod:`crackfront.simulate.numerics`: it may change without any
+How the sizes are chosen stands in :mod:`crackfront.simulate.sizing`: it may change without any
 simulation of known sizes being another one.
 """
 
@@ -28,7 +28,7 @@ from crackfront.core.geometry.base import Geometry
 from crackfront.core.solver.relax import Solver
 from crackfront.core.spectrum import Spectrum
 from crackfront.simulate.schedule import Schedule
-from crackfront.simulate.sphere.cycle import FullCycle
+from crackfront.simulate.tiles import RandomSurface
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,6 +113,11 @@ class Simulation:
         return self.schedule.tile(self.resolution.n_point, self.resolution.tile_side)
 
     @property
+    def surface(self) -> RandomSurface:
+        """The surface on the tile."""
+        return RandomSurface(self.kind, self.spectrum, self.elastic_energy, self.seed, *self.tile)
+
+    @property
     def label(self) -> str:
         """Name of this simulation in messages."""
         return f"{self.spectrum_name} e_el={self.elastic_energy:g} r={self.realisation}"
@@ -166,7 +171,7 @@ _WITHOUT_NUMBER = attrgetter(
 
 def simulation_adhesion(simulation: Simulation) -> AdhesionMap:
     """Work of adhesion on the tile of a simulation."""
-    return simulation.schedule.adhesion(simulation)
+    return simulation.schedule.adhesion(simulation.surface)
 
 
 def simulation_field(simulation: Simulation, adhesion: AdhesionMap | None = None) -> TileField:
@@ -188,6 +193,6 @@ def _text(content: Any) -> str:
 
 
 @functools.cache
-def simulation_fingerprint(kind: type[Schedule] = FullCycle) -> str:
+def simulation_fingerprint(kind: type[Schedule]) -> str:
     """Twelve hexadecimal digits that change with what determines a simulation of a kind of load."""
     return fingerprint("crackfront.simulate.run", kind.__module__)

@@ -17,8 +17,9 @@ from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.data.arguments import refuse_no_numbers, refuse_other_type
 from crackfront.data.bounds import SEED, refuse_beyond_memory
 from crackfront.simulate.costs import expected_cost, refuse_oversized
-from crackfront.simulate.numerics import Numerics, simulation_of
+from crackfront.simulate.numerics import Numerics
 from crackfront.simulate.simulation import Simulation, simulation_adhesion
+from crackfront.simulate.sizing import simulation_of
 from crackfront.simulate.sphere.cycle import FullCycle
 from crackfront.simulate.tiles import gaussian_values
 from crackfront.simulate.user_surface import refuse_unknown_kind, surface_array
@@ -90,7 +91,7 @@ def random_surface(
         realisation=realisation,
     )
     if kind == "roughness":
-        values = gaussian_values(simulation)
+        values = gaussian_values(simulation.surface)
     else:
         values = simulation_adhesion(simulation).work_of_adhesion / WORK_OF_ADHESION
     tile = simulation.resolution

@@ -1,55 +1,80 @@
-"""Surfaces of simulations: random heights and works of adhesion on their tiles."""
+"""Random surfaces: heights and works of adhesion on periodic tiles."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import replace
-from typing import TYPE_CHECKING
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from crackfront.core.adhesion import AdhesionMap, chemical_adhesion, rough_adhesion
+from crackfront.core.adhesion import (
+    AdhesionMap,
+    FieldKind,
+    chemical_adhesion,
+    correlation_length,
+    rough_adhesion,
+)
 from crackfront.core.arrays import Array
+from crackfront.core.spectrum import Spectrum
 from crackfront.core.synthesis import gaussian_field, uncorrelated_rows
 
-if TYPE_CHECKING:
-    from crackfront.simulate.simulation import Simulation
+
+@dataclass(frozen=True, slots=True)
+class RandomSurface:
+    """One realisation of a spectrum on a tile."""
+
+    kind: FieldKind
+    """What the spectrum describes: heights, or the work of adhesion itself."""
+    spectrum: Spectrum
+    """Shape of the spectrum; its plateau has no effect. (Units: reduced lateral length)"""
+    elastic_energy: float
+    """Requested e_el / w_int; for a chemical field the equivalent (w_rms / w_int)^2 / 4."""
+    seed: int
+    """Seed of the noise, as of `numpy.random.default_rng`."""
+    shape: tuple[int, int]
+    """Points of the tile along x and y."""
+    sides: tuple[float, float]
+    """Sides of the tile along x and y. (Units: reduced lateral length)"""
+
+    @property
+    def correlation_length(self) -> float:
+        """Wavelength of the mean wavevector of w_loc (Units: reduced lateral length)."""
+        return correlation_length(self.kind, self.spectrum)
+
+    @property
+    def pixel(self) -> float:
+        """Distance of points of the tile (Units: reduced lateral length)."""
+        return self.sides[1] / self.shape[1]
 
 
-def gaussian_values(simulation: Simulation) -> Array:
+def gaussian_values(surface: RandomSurface) -> Array:
     """Heights on the tile (Units: reduced vertical length), or deviations of w_loc (Units: w_int).
 
     The noise of a realisation is scaled to the amplitude, so that all amplitudes of a spectrum
     see the same surface.
     """
-    unit, rng = simulation.spectrum.with_elastic_energy(1.0), np.random.default_rng(simulation.seed)
-    values = gaussian_field(unit, *simulation.tile, rng)
-    if simulation.kind == "roughness":
-        values *= math.sqrt(simulation.elastic_energy)
+    unit, rng = surface.spectrum.with_elastic_energy(1.0), np.random.default_rng(surface.seed)
+    values = gaussian_field(unit, surface.shape, surface.sides, rng)
+    if surface.kind == "roughness":
+        values *= math.sqrt(surface.elastic_energy)
     else:
-        values *= 2 * math.sqrt(simulation.elastic_energy / unit.mean_square(0.0))
+        values *= 2 * math.sqrt(surface.elastic_energy / unit.mean_square(0.0))
     return values
 
 
-def gaussian_adhesion(simulation: Simulation) -> AdhesionMap:
-    """Work of adhesion of a Gaussian surface on the tile of a simulation."""
-    adhesion = rough_adhesion if simulation.kind == "roughness" else chemical_adhesion
-    return adhesion(gaussian_values(simulation), _pixel(simulation))
+def gaussian_adhesion(surface: RandomSurface) -> AdhesionMap:
+    """Work of adhesion of a Gaussian surface."""
+    adhesion = rough_adhesion if surface.kind == "roughness" else chemical_adhesion
+    return adhesion(gaussian_values(surface), surface.pixel)
 
 
-def uncorrelated_adhesion(simulation: Simulation) -> AdhesionMap:
+def uncorrelated_adhesion(surface: RandomSurface) -> AdhesionMap:
     """Rows of the spectrum of w_loc integrated along the front; e_el is a quarter of its f_2."""
-    spectrum, order = simulation.spectrum, 0.5 if simulation.kind == "roughness" else 0.0
-    rng, pixel = np.random.default_rng(simulation.seed), _pixel(simulation)
-    rows = uncorrelated_rows(spectrum, order, simulation.tile[0], pixel, rng)
+    spectrum, order = surface.spectrum, 0.5 if surface.kind == "roughness" else 0.0
+    rng, pixel = np.random.default_rng(surface.seed), surface.pixel
+    rows = uncorrelated_rows(spectrum, order, surface.shape, pixel, rng)
     ratio = spectrum.mean_square(order - 0.5) / spectrum.mean_square(order)
     adhesion = chemical_adhesion(rows, pixel)
-    rows *= math.sqrt(8 * simulation.elastic_energy * ratio / pixel)
-    energy = simulation.elastic_energy * adhesion.w_rms**2
+    rows *= math.sqrt(8 * surface.elastic_energy * ratio / pixel)
+    energy = surface.elastic_energy * adhesion.w_rms**2
     return replace(chemical_adhesion(rows, pixel), e_el=energy)
-
-
-def _pixel(simulation: Simulation) -> float:
-    """Distance of points of the tile (Units: reduced lateral length)."""
-    points, sides = simulation.tile
-    return sides[1] / points[1]

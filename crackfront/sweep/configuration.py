@@ -26,7 +26,7 @@ from crackfront.data.section import (
 )
 from crackfront.simulate.costs import expected_cost, refuse_oversized
 from crackfront.simulate.laws import Knobs
-from crackfront.simulate.numerics import missed_error
+from crackfront.simulate.numerical_errors import missed_error
 from crackfront.simulate.simulation import Simulation
 from crackfront.sweep.sections import (
     AmplitudesSection,

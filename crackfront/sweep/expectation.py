@@ -58,7 +58,7 @@ def _needed_penetration(simulation: Simulation, size: float, factor: float, n_st
     mean = mean_w_loc(simulation.kind, simulation.elastic_energy)
     low = max(mean - factor * simulation.elastic_energy, 0.0)
     high = mean + factor * simulation.elastic_energy
-    return simulation.schedule.steady_load(simulation, (low, high), way, n_state)
+    return simulation.schedule.steady_load(simulation.surface, (low, high), way, n_state)
 
 
 def expectations(sweep: Sweep) -> dict[str, list[Expectation]]:

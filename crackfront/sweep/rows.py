@@ -19,7 +19,7 @@ from crackfront.core.fingerprint import fingerprint
 from crackfront.core.outcome import Status
 from crackfront.core.variables import ADHESION, variables
 from crackfront.data.labels import label
-from crackfront.simulate.numerics import stated_error
+from crackfront.simulate.numerical_errors import stated_error
 from crackfront.simulate.run import SimulationResult
 from crackfront.simulate.simulation import Simulation
 

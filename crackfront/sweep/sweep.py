@@ -12,9 +12,10 @@ from typing import Literal
 from crackfront.core.adhesion import FieldKind
 from crackfront.core.spectrum import Spectrum
 from crackfront.core.units import Scales
-from crackfront.simulate.numerics import Numerics, simulation_of
+from crackfront.simulate.numerics import Numerics
 from crackfront.simulate.schedule import SweepLoad
 from crackfront.simulate.simulation import Simulation
+from crackfront.simulate.sizing import simulation_of
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,7 +11,7 @@ from crackfront.analysis.steady import steady_adhesion
 from crackfront.core.arrays import Array
 from crackfront.core.variables import ADHESION, variable
 from crackfront.simulate.costs import expected_cost
-from crackfront.simulate.numerics import numerical_error, stated_error
+from crackfront.simulate.numerical_errors import numerical_error, stated_error
 from crackfront.simulate.run import run_simulation
 from crackfront.simulate.simulation import Simulation
 from crackfront.simulate.sphere.cycle import FullCycle

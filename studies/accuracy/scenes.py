@@ -12,8 +12,9 @@ from crackfront.core.adhesion import FieldKind
 from crackfront.core.arrays import Array
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.simulate.laws import KNOBS, MEASURED, Knob, Knobs, chosen_knobs
-from crackfront.simulate.numerics import Numerics, simulation_of
+from crackfront.simulate.numerics import Numerics
 from crackfront.simulate.simulation import Simulation
+from crackfront.simulate.sizing import simulation_of
 from crackfront.simulate.sphere.cycle import FullCycle
 
 Progress = Callable[[str], None]

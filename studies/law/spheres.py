@@ -15,8 +15,9 @@ from crackfront.core import jkr
 from crackfront.core.adhesion import FieldKind
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.data.files import read_dataset
-from crackfront.simulate.numerics import Numerics, simulation_of
+from crackfront.simulate.numerics import Numerics
 from crackfront.simulate.run import run_simulation
+from crackfront.simulate.sizing import simulation_of
 from crackfront.simulate.sphere.steady import SteadySchedule
 from crackfront.sweep.configuration import load_configuration, results_folder
 from crackfront.sweep.rows import sweep_row

@@ -28,7 +28,7 @@ from crackfront.plots.fronts import label_plane
 from crackfront.plots.loop import draw_loop
 from crackfront.plots.parts import ADHESION_LABEL, field_colours
 from crackfront.plots.style import BLACK, BLUE, PAGE, VERMILION, blank_figure, explain, house_style
-from crackfront.simulate.numerics import stated_error
+from crackfront.simulate.numerical_errors import stated_error
 from crackfront.simulate.simulation import simulation_adhesion, simulation_field
 from studies.paper.drawing import name_panels
 from studies.paper.figure import Check, Figure, Integers, Progress, close_to, values_of

@@ -25,9 +25,11 @@ from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.data.section import Count, Energy, Positive, Section, Seed, refusal
 from crackfront.simulate.costs import expected_cost
 from crackfront.simulate.laws import chosen_knobs, measured_energies
-from crackfront.simulate.numerics import Numerics, missed_error, simulation_of
+from crackfront.simulate.numerical_errors import missed_error
+from crackfront.simulate.numerics import Numerics
 from crackfront.simulate.run import compile_solver
 from crackfront.simulate.simulation import Simulation, simulation_adhesion, simulation_field
+from crackfront.simulate.sizing import simulation_of
 from crackfront.simulate.sphere.cycle import FullCycle
 from studies.paper.figure import Check
 

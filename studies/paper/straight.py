@@ -20,8 +20,9 @@ from crackfront.core.solver.relax import Solver
 from crackfront.data.section import Positive, Section
 from crackfront.simulate.laws import Knobs
 from crackfront.simulate.line.loads import LineLoad
-from crackfront.simulate.numerics import Numerics, simulation_of
+from crackfront.simulate.numerics import Numerics
 from crackfront.simulate.simulation import simulation_adhesion, simulation_field
+from crackfront.simulate.sizing import simulation_of
 from studies.paper.rough import flat_spectrum
 
 _KIND: FieldKind = "roughness"

@@ -17,9 +17,10 @@ import numpy as np
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.simulate.costs import Features, Measured, features, measured_runs, predicted_seconds
 from crackfront.simulate.laws import Knobs
-from crackfront.simulate.numerics import Numerics, simulation_of
+from crackfront.simulate.numerics import Numerics
 from crackfront.simulate.run import run_simulation
 from crackfront.simulate.simulation import Simulation
+from crackfront.simulate.sizing import simulation_of
 from crackfront.simulate.sphere.cycle import FullCycle
 from crackfront.simulate.sphere.steady import SteadySchedule
 

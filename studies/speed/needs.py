@@ -28,9 +28,10 @@ from crackfront.data.files import write_dataset
 from crackfront.data.provenance import provenance
 from crackfront.simulate.files import cycle_dataset, simulation_dataset
 from crackfront.simulate.laws import Knobs
-from crackfront.simulate.numerics import Numerics, simulation_of
+from crackfront.simulate.numerics import Numerics
 from crackfront.simulate.run import compile_solver, run_simulation
 from crackfront.simulate.simulation import Simulation, simulation_field
+from crackfront.simulate.sizing import simulation_of
 from crackfront.simulate.sphere.cycle import FullCycle
 from crackfront.simulate.sphere.steady import SteadySchedule
 from studies.pages import markdown_table

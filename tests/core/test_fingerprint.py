@@ -83,7 +83,7 @@ def test_a_name_of_no_module_is_refused():
 
 
 def test_equal_sources_have_equal_fingerprints_wherever_they_lie(sources):
-    assert key_part() == simulation_fingerprint()
+    assert key_part() == simulation_fingerprint(FullCycle)
 
 
 def test_what_is_known_of_a_source_is_read_and_found_anew_where_it_is_damaged(

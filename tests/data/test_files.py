@@ -42,7 +42,7 @@ from crackfront.simulate.files import (
     read_simulation,
     simulation_dataset,
 )
-from crackfront.simulate.numerics import numerical_error
+from crackfront.simulate.numerical_errors import numerical_error
 from crackfront.simulate.run import SimulationResult, run_simulation
 from crackfront.simulate.user_surface import read_field, surface_adhesion
 from crackfront.sweep.configuration import load_configuration

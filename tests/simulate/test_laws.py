@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from crackfront.core.spectrum import SelfAffineSpectrum, TabulatedSpectrum
 from crackfront.simulate.front_sizes import LAW_SIZE
 from crackfront.simulate.laws import KNOBS, chosen_knobs, combined_error, read_laws
-from crackfront.simulate.numerics import numerical_error
+from crackfront.simulate.numerical_errors import numerical_error
 from studies.accuracy.scenes import SCENES, with_knob
 
 ENERGIES = (0.001, 0.0025, 0.01, 0.04, 0.16, 0.4)

@@ -15,9 +15,10 @@ from crackfront.core.solver.relax import Newton, Reference
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.simulate.laws import Knobs
-from crackfront.simulate.numerics import Numerics, resolution
+from crackfront.simulate.numerics import Numerics
 from crackfront.simulate.run import run_simulation
 from crackfront.simulate.simulation import Resolution, Simulation, simulation_adhesion, stems
+from crackfront.simulate.sizing import resolution
 from crackfront.simulate.sphere.cycle import FullCycle
 
 KNOBS = Knobs(None, 2, 4, "cubic", 4, 1e-6)

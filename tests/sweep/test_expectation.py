@@ -11,8 +11,9 @@ from crackfront.analysis.steady import steady_adhesion
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.units import Scales
 from crackfront.simulate.laws import Knobs
-from crackfront.simulate.numerics import Numerics, simulation_of
+from crackfront.simulate.numerics import Numerics
 from crackfront.simulate.run import run_simulation
+from crackfront.simulate.sizing import simulation_of
 from crackfront.simulate.sphere.cycle import FullCycle
 from crackfront.simulate.sphere.steady import SteadySchedule
 from crackfront.sweep.expectation import expectation

@@ -25,11 +25,10 @@ from crackfront.core.spectrum import Spectrum
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.simulate.front_sizes import LAW_SIZE
 from crackfront.simulate.schedule import ExpectedMotion, Schedule
-from crackfront.simulate.tiles import gaussian_adhesion, uncorrelated_adhesion
+from crackfront.simulate.tiles import RandomSurface, gaussian_adhesion, uncorrelated_adhesion
 
 if TYPE_CHECKING:
     from crackfront.analysis.steady import SteadyAdhesion
-    from crackfront.simulate.simulation import Simulation
 
 _BEHIND = 1.3
 """Pinning force of the first front over that of second-order theory; none is larger."""
@@ -100,11 +99,11 @@ class LineSchedule(Schedule):
         """Line on springs that do not pull at w_int."""
         return Line(n_site, self.length, WORK_OF_ADHESION / self.spring, WORK_OF_ADHESION)
 
-    def adhesion(self, simulation: Simulation) -> AdhesionMap:
+    def adhesion(self, surface: RandomSurface) -> AdhesionMap:
         """Work of adhesion of a Gaussian surface, or of independent rows for weak disorder."""
         if self.uncorrelated:
-            return uncorrelated_adhesion(simulation)
-        return gaussian_adhesion(simulation)
+            return uncorrelated_adhesion(surface)
+        return gaussian_adhesion(surface)
 
     def field(
         self, adhesion: AdhesionMap, n_site: int, spacing: float, interpolation: Interpolation
@@ -149,10 +148,10 @@ class LineSchedule(Schedule):
         """A front of one spring over a tile of one point."""
         return cls(spring=1.0, length=4.0, period=1.0, lead_in=1.0, step=1.0)
 
-    def expected_motion(self, simulation: Simulation) -> ExpectedMotion:
+    def expected_motion(self, surface: RandomSurface) -> ExpectedMotion:
         """States of the lead-in and of the period, in both directions."""
         steps = math.ceil(self.lead_in / self.period * self.n_period)
-        travel, n_state = self.step / simulation.correlation_length, steps + self.n_period + 1
+        travel, n_state = self.step / surface.correlation_length, steps + self.n_period + 1
         return ExpectedMotion(travel, 2.0 * n_state, full_cycle=False)
 
     def spring_at(self, work_of_adhesion: float) -> float:

@@ -16,10 +16,10 @@ from crackfront.core.geometry.base import Geometry
 from crackfront.core.geometry.sphere import contact_field, sphere
 from crackfront.core.solver.relax import Solver
 from crackfront.simulate.schedule import ExpectedMotion, Schedule
+from crackfront.simulate.tiles import RandomSurface
 
 if TYPE_CHECKING:
     from crackfront.analysis.steady import SteadyAdhesion
-    from crackfront.simulate.simulation import Simulation
 
 
 class SphereSchedule(Schedule):
@@ -88,16 +88,16 @@ class FullCycle(SphereSchedule, LoadSchedule):
         """States from first contact to pull-off."""
         return run_cycle(field, self, solver, recorder)
 
-    def expected_motion(self, simulation: Simulation) -> ExpectedMotion:
+    def expected_motion(self, surface: RandomSurface) -> ExpectedMotion:
         """States of both branches, until contact is lost."""
         travel = self.step / jkr.penetration_slope(self.max_penetration)
         # The hysteresis lifts w_retr by about twice e_el, and contact is lost that much later.
-        lost_at = jkr.pull_off_penetration(1 + 2 * simulation.elastic_energy)
+        lost_at = jkr.pull_off_penetration(1 + 2 * surface.elastic_energy)
         n_state = (2 * self.max_penetration - lost_at) / self.step
-        return ExpectedMotion(travel / simulation.correlation_length, n_state, full_cycle=True)
+        return ExpectedMotion(travel / surface.correlation_length, n_state, full_cycle=True)
 
     def steady_load(
-        self, simulation: Simulation, works: tuple[float, float], travel: float, n_state: int
+        self, surface: RandomSurface, works: tuple[float, float], travel: float, n_state: int
     ) -> float:
         """Penetration that leaves both branches so many steady states at the same radii."""
         low, high = works

@@ -16,7 +16,7 @@ from crackfront.core.geometry.sphere import contact_field
 from crackfront.core.solver import DEFAULT_TOLERANCE
 from crackfront.simulate.costs import affordable_seconds
 from crackfront.simulate.loop_setup import LoopContact, LoopNumerics, LoopSetup, state_count
-from crackfront.simulate.numerics import missed_error
+from crackfront.simulate.numerical_errors import missed_error
 from crackfront.simulate.simulation import simulation_field
 from crackfront.simulate.sphere.cycle import FullCycle
 from crackfront.simulate.surfaces import (

@@ -10,12 +10,12 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from crackfront.analysis.standard_error import standard_error
 from crackfront.core import jkr
+from crackfront.core.adhesion import FieldKind
 from crackfront.core.arrays import Array
 from crackfront.core.cycle.follow import Load
 from crackfront.core.cycle.record import CycleRecord, Recorder, columns
@@ -25,13 +25,11 @@ from crackfront.core.field.rays import front_adhesion
 from crackfront.core.geometry.sphere import ContactState
 from crackfront.core.outcome import Direction, Status
 from crackfront.core.solver.relax import Solver
-from crackfront.core.spectrum import SelfAffineSpectrum
+from crackfront.core.spectrum import SelfAffineSpectrum, Spectrum
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.simulate.schedule import ExpectedMotion
 from crackfront.simulate.sphere.cycle import SphereSchedule
-
-if TYPE_CHECKING:
-    from crackfront.simulate.simulation import Simulation
+from crackfront.simulate.tiles import RandomSurface
 
 _FEWEST_TO_TURN = 8
 """Steady states before the approach may turn."""
@@ -145,36 +143,36 @@ class SteadySchedule(SphereSchedule):
             penetration -= step
             yield Load(penetration, -1)
 
-    def expected_motion(self, simulation: Simulation) -> ExpectedMotion:
+    def expected_motion(self, surface: RandomSurface) -> ExpectedMotion:
         """States of both branches until k has the requested standard error."""
-        length = simulation.correlation_length
+        length = surface.correlation_length
         step = self.travel * length * jkr.penetration_slope(self.start)
         n_most = 1 + math.floor((self.max_penetration - self.start) / step)
-        alike = length * integral_breadth(simulation)
+        alike = length * integral_breadth(surface.kind, surface.spectrum)
         n_independent = 2 * math.pi * jkr.equilibrium_radius(self.start) / alike
-        variance = _NOISE / ((simulation.elastic_energy + _SHARED * alike) * n_independent)
+        variance = _NOISE / ((surface.elastic_energy + _SHARED * alike) * n_independent)
         n_least = max(_FEWEST_STEADY, _LEAD_IN + variance / self.standard_error**2)
         return ExpectedMotion(self.travel, 2 * min(n_most, n_least), full_cycle=False)
 
     def steady_load(
-        self, simulation: Simulation, works: tuple[float, float], travel: float, n_state: int
+        self, surface: RandomSurface, works: tuple[float, float], travel: float, n_state: int
     ) -> float:
         """Penetration that leaves the approach so many steady states."""
         low, _ = works
-        length = simulation.correlation_length
+        length = surface.correlation_length
         # It begins a correlation length behind, and the retraction behind the end.
         begin = jkr.equilibrium_radius(self.start, low) - length
         needed = travel + n_state * self.travel * length
         return float(jkr.equilibrium_penetration(begin + needed, low))
 
 
-def integral_breadth(simulation: Simulation) -> float:
+def integral_breadth(kind: FieldKind, spectrum: Spectrum) -> float:
     """Mean of q times mean of 1/q in the variance of w_loc, relative to those of a flat surface.
 
     The mean of w_loc along a front varies by its longest waves, the mean of 1/q, and the
     correlation length is that of the mean of q.
     """
-    spectrum, order = simulation.spectrum, 0.5 if simulation.kind == "roughness" else 0.0
+    order = 0.5 if kind == "roughness" else 0.0
     flat = SelfAffineSpectrum(1.0, 1.0, hurst=1.0)
     means = [
         shape.mean_square(order + 0.5)

@@ -1,0 +1,58 @@
+"""Errors of w_appr, w_retr and k that the numerics of a simulation leave."""
+
+from __future__ import annotations
+
+from crackfront.analysis.steady import SteadyAdhesion
+from crackfront.simulate.laws import Knob, combined_error
+from crackfront.simulate.simulation import Simulation
+
+
+def missed_error(simulation: Simulation, wanted: float) -> float:
+    """Error of k that the numerics are expected to leave; 0 where it is at most the wanted one."""
+    left = max(numerical_error(simulation)) / simulation.elastic_energy
+    # Knobs have two digits.
+    return left if left > 1.2 * wanted else 0.0
+
+
+def numerical_error(
+    simulation: Simulation, size: float | None = None, front_length: float | None = None
+) -> tuple[float, float]:
+    """Standard errors (w_appr, w_retr) that the numerics leave (Units: w_int).
+
+    The size is the number of states times length of the front over the short cutoff, by default the
+    usual one; the front length that of the longest front, by default that of a smooth contact.
+    (Units: reduced lateral length)
+    """
+    sizes, cutoff = simulation.resolution, simulation.spectrum.short_cutoff
+    if front_length is None:
+        front_length = simulation.schedule.front_length
+    usual_size = simulation.schedule.usual_size(simulation.spectrum)
+    values: dict[Knob, float] = {
+        "sites": sizes.n_angle * cutoff / front_length,
+        sizes.interpolation: cutoff / sizes.spacing,
+        "pixels": cutoff * sizes.n_point / sizes.tile_side,
+        "tolerance": simulation.solver.tolerance,
+    }
+    return combined_error(
+        simulation.kind,
+        simulation.spectrum,
+        simulation.elastic_energy,
+        values,
+        usual_size if size is None else size,
+        usual_size,
+    )
+
+
+def stated_error(
+    simulation: Simulation, steady: SteadyAdhesion, correlation_length: float
+) -> tuple[float, float]:
+    """Numerical standard errors of the w_appr and w_retr that a simulation found (Units: w_int).
+
+    States closer than a correlation length of w_loc count as one.
+    """
+    *sizes, longest = simulation.schedule.averaged_sizes(
+        steady, correlation_length, simulation.spectrum.short_cutoff
+    )
+    approach, _ = numerical_error(simulation, sizes[0], longest)
+    _, retraction = numerical_error(simulation, sizes[1], longest)
+    return approach, retraction
