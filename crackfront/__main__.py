@@ -13,7 +13,7 @@ def main() -> None:
     try:
         from crackfront.cli import main as commands
     except KeyboardInterrupt:
-        sys.stderr.write("Interrupted. Nothing was begun; run the same command again\n")
+        sys.stderr.write("Interrupted before anything was computed; run the same command again\n")
         sys.exit(75)
     commands()
 

@@ -14,9 +14,9 @@ from crackfront.data.files import write_text
 STUDIES = {
     "paper": "Figures of the paper: compute their data, draw them, compare them with the paper.",
     "law": "The law of k: measure it on straight fronts, fit it, compare spheres with it.",
-    "accuracy": "Errors of the numerics, the fit of their laws, and what the errors rest on.",
+    "accuracy": "Errors of the numerics and their laws, of predictions and of measured loops.",
     "boundary-elements": "The model against boundary elements of the same rough sphere.",
-    "speed": "Solvers against the reference, what requests cost, how sweeps scale.",
+    "speed": "Times of the solvers, costs of requests, scaling of sweeps.",
 }
 """What each study measures, by the name of its folder."""
 
@@ -53,7 +53,10 @@ def main() -> None:
 @main.command(epilog=examples("python -m studies pages", "python -m studies pages --check"))
 @click.option("--check", is_flag=True, help="Write nothing; list numbers of older sources.")
 def pages(check: bool) -> None:
-    """Write what studies have kept into README.md, paper.md and docs."""
+    """Write the stored tables and numbers of studies into README.md, paper.md and docs.
+
+    With --check a page whose numbers are not the stored ones is refused.
+    """
     from studies.pages import kept_parts, renewed, stale
 
     parts = kept_parts()

@@ -24,7 +24,7 @@ _BLOCK = re.compile(
     r"<!-- (?P<study>[\w-]+): (?P<name>.*?) -->(?P<text>.*?)<!-- end -->", re.DOTALL
 )
 
-keep_option = click.option("--keep", is_flag=True, help=f"Keep the tables for pages, in {KEPT}.")
+keep_option = click.option("--keep", is_flag=True, help=f"Store the tables for pages in {KEPT}.")
 
 output_option = functools.partial(click.option, "--output", type=FILE, show_default=True)
 """Option for the folder that a command writes into."""

@@ -148,11 +148,11 @@ def front_excess(energy: float, size: float, rows: Sequence[ValidityRow] | None 
     reach = REACH * math.hypot(error * energy, grown * energy, beyond, _MODEL_ERROR)
     law = Estimate(logarithm, math.nan, logarithm - reach, logarithm + reach).each(math.exp)
     interval = f"{law.value:.2f} ({law.low:.2f} to {law.high:.2f})"
-    sentence = f"A front has {interval} times the hysteresis that boundary elements have at this "
-    sentence += "e_el" + (", and is divided by that." if law.value >= _NOTHING else ".")
+    sentence = f"A front has {interval} times the hysteresis of boundary elements at this e_el"
+    sentence += "; the prediction is divided by this." if law.value >= _NOTHING else "."
     if grown or beyond:
         sentence += (
             f" Both were compared up to e_el/w_int = {strongest:.2g} and g = {largest:.2g}; here "
-            f"they are {energy:.2g} and {size:.3g}, and the interval is wider."
+            f"they are {energy:.2g} and {size:.3g}, so that the interval is wider."
         )
     return Excess(law, not beyond, sentence)

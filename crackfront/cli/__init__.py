@@ -40,11 +40,11 @@ class Commands(click.Group):
         except KeyboardInterrupt as error:
             raise StoppedError(
                 str(error)
-                or "Nothing is half-written; run the same command to continue from its last "
-                "checkpoint, or to begin anew where it has none"
+                or "No file is incomplete; run the same command to continue from its last "
+                "checkpoint, or from the beginning if it has none"
             ) from error
         except MemoryError as error:
-            sentence = "the memory does not suffice; compute less, or on a machine with more"
+            sentence = "the memory does not suffice; compute less, or use a machine with more"
             raise click.ClickException(sentence) from error
         except (OSError, ValueError) as error:
             raise _RefusalError(_sentence(error)) from error
@@ -73,7 +73,7 @@ def _sentence(error: OSError | ValueError) -> str:
 
 @click.command("compile", epilog=examples("crackfront compile"))
 def compile_solvers() -> None:
-    """Compile the solver of sweeps, so that no run waits for it.
+    """Compile the solver, so that no run has to wait for it.
 
     Compiled code is kept for these sources and this kind of processor; what is kept already is
     only loaded. Spheres and straight fronts are compiled in a process each.
@@ -102,12 +102,12 @@ SECTIONS: dict[str, tuple[click.Command, ...]] = {
 _EPILOG = """\b
 Exit codes:
   0   done
-  1   computed, but not what was asked for: too many simulations without a value,
-      a cycle that ended early, ranks that failed, results that are damaged or do not
-      agree
+  1   computed, but not as requested: too many simulations without a value, a cycle
+      that ended early, ranks that failed, results that are damaged or do not agree
   2   the input cannot be used; one sentence says why, and nothing was computed
-  3   predict --strict: the theory applies with reservations, which are named
-  4   predict: the theory does not apply, and what modulus, radius or roughness would do
+  3   predict, samples with --strict: the theory applies with reservations
+  4   predict, samples: the theory does not apply; the output says which modulus,
+      radius or roughness would meet the condition
   75  interrupted (Ctrl-C or SIGTERM); run the same command to continue
 
 \b

@@ -79,17 +79,19 @@ def _loads(_: click.Context, __: click.Parameter, given: str | None) -> tuple[fl
 )
 @click.option("--field", "field_file", type=FILE, required=True, help="netCDF file of the field.")
 @click.option(
-    "--max-penetration", type=Number(_PLACE), help="Largest penetration of a sphere, without loads."
+    "--max-penetration",
+    type=Number(_PLACE),
+    help="Largest penetration of a sphere, if no loads are given.",
 )
 @click.option(
     "--loads",
     callback=_loads,
-    help="Loads to visit, up and down in any order: a text as 0,1,0.2,1, or a file of numbers.",
+    help="Loads, up and down in any order: a list as in 0,1,0.2,1, or a file of numbers.",
 )
 @click.option(
     "--step",
     type=Number(_PLACE),
-    help="Largest difference of loads.  [default: 0.004 without loads, dissipated energies to 1%]",
+    help="Largest load step.  [default without loads: 0.004, for dissipated energies within 1%]",
 )
 @click.option(
     "--spring",
@@ -99,18 +101,18 @@ def _loads(_: click.Context, __: click.Parameter, given: str | None) -> tuple[fl
 @click.option(
     "--error",
     type=Number(Range(0, 1)),
-    help="Error of k that the numerics may leave, where the field states its spectrum.  "
+    help="Error of k that the numerics may leave, if the field states its spectrum.  "
     "[default: 0.03]",
 )
 @click.option(
     "--sites",
     type=whole(SITES),
-    help="Sites of the front, in place of an error.  [default: one a pixel or more]",
+    help="Sites of the front, instead of an error.  [default: one or more per pixel]",
 )
 @click.option(
     "--samples",
     type=Number(DENSITY),
-    help="Samples a pixel along a ray, in place of an error.  [default: 2, of straight fronts 1]",
+    help="Samples per pixel along a ray, instead of an error.  [default: 2; straight fronts: 1]",
 )
 @click.option(
     "--solver",
@@ -145,19 +147,19 @@ def cycle(
 ) -> None:
     """Run one approach and retraction on a field from a file.
 
-    The field is a surface on a periodic tile, work_of_adhesion(x, y) or height(x, y), whose centre
-    is the apex of the sphere, as crackfront.surface of the Python library makes one of an array.
-    All quantities are in reduced units: R = 1, w_int = 1/pi, E' = 3/4; works of adhesion whose
-    attribute units is w_int are relative to it.
+    The field is a surface on a periodic tile, work_of_adhesion(x, y) or height(x, y); the apex of
+    the sphere is at its centre. crackfront.surface of the Python library makes a field from an
+    array. All quantities are in reduced units: R = 1, w_int = 1/pi, E' = 3/4. Works of adhesion
+    are in units of w_int if their attribute units is w_int.
 
-    With --spring the front is straight, along y, one site for every y of the tile. Springs pull it
-    along x, their other end at the loads; lengths are those of the tile. On a tile without
-    roughness the front rests at the load.
+    With --spring the front is straight along y, with one site for every y of the tile. Springs
+    pull it along x; the loads are the positions of their other ends, in lengths of the tile. On a
+    tile without roughness the front rests at the load.
 
-    The exit code is 0 where the cycle came to its end (on a sphere without --loads, by losing
-    contact) and 1 where it ended early; the output is written in both cases. It is 2 where the
-    input cannot be used, and 75 after Ctrl-C or SIGTERM: the states so far are then kept beside the
-    output, and the same command goes on from there.
+    The exit code is 0 if the cycle is complete (on a sphere without --loads, if contact is lost)
+    and 1 if it ended early; the output is written in both cases. It is 2 if the input cannot be
+    used, and 75 after Ctrl-C or SIGTERM: the states so far are then kept beside the output, and
+    the same command continues from there.
     """
     from crackfront.core.cycle.record import Recorder
     from crackfront.core.cycle.schedule import DEFAULT_STEP

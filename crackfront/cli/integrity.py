@@ -71,11 +71,11 @@ def checksums(folders: tuple[Path, ...]) -> None:
     "--output", type=FILE, help="Folder of the results of configurations.  [default: their own]"
 )
 def repair(places: tuple[Path, ...], output: Path | None) -> None:
-    """Set damaged files aside, so that the workflow makes them and what depends on them anew.
+    """Set damaged files aside, so that the workflow makes them and dependent files again.
 
-    A PLACE is a configuration of a sweep, or a folder of results. Shards
-    whose curves are gone are removed, and files that are dated in the future get the date of now.
-    `make` begins with it; nothing else of the workflow changes results before its jobs run.
+    A PLACE is a configuration of a sweep, or a folder of results. Shards whose curves are missing
+    are removed, and files that are dated in the future get the present date. `make` begins with
+    this command; no other part of the workflow changes results before its jobs run.
     """
     from crackfront.data.files import date_back, set_aside_damaged
     from crackfront.sweep.library import opened
@@ -109,8 +109,8 @@ def repair(places: tuple[Path, ...], output: Path | None) -> None:
 def compare(one: Path, other: Path, tolerance: float, as_json: bool) -> None:
     """Compare two files of results, or two folders of them, in values and in bits.
 
-    The numbers are largest differences relative to the largest magnitude, a variable each. Costs
-    and origin of a run are left out. The exit code is 1 where the results do not agree.
+    The output lists the largest difference of each variable, relative to its largest magnitude.
+    Costs and origin of a run are left out. The exit code is 1 if the results do not agree.
     """
     from crackfront.data.comparison import comparison
 

@@ -34,7 +34,7 @@ _ERRORS = ("statistical", "numerical", "model")
 @click.option(
     "--breadth",
     type=float,
-    help="Front: relative breadth of the spectrum of w_loc; by default that of any spectrum.",
+    help="Front: breadth of the spectrum of w_loc, in e-folds; by default k covers all breadths.",
 )
 @click.option(
     "--spectrum",

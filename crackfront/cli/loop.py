@@ -30,11 +30,12 @@ _COLUMNS = (("force", "N"), ("radius", "m"), ("displacement", "m"))
 def _columns(command: Any) -> Any:
     """Options that name the columns of a table and their units."""
     for name, unit in reversed(_COLUMNS):
-        command = click.option(
-            f"--{name}-unit", help=f"Unit of it, as in {'mN' if unit == 'N' else 'um'}."
-        )(command)
+        symbol = "mN" if unit == "N" else "um"
+        command = click.option(f"--{name}-unit", help=f"Unit of the {name}, as in {symbol}.")(
+            command
+        )
         option = "--contact-radius" if name == "radius" else f"--{name}"
-        command = click.option(option, name, help=f"Head of the column of the {name}.")(command)
+        command = click.option(option, name, help=f"Heading of the column of the {name}.")(command)
     return command
 
 
@@ -48,7 +49,7 @@ def _columns(command: Any) -> Any:
 )
 @click.argument("path", type=FILE, metavar="FILE")
 @click.option("--radius", "sphere", help="Radius of the sphere, as in 1.25mm.")
-@click.option("--modulus", help="Young's modulus, as in 0.7MPa; fitted where it is left out.")
+@click.option("--modulus", help="Young's modulus, as in 0.7MPa; fitted if it is left out.")
 @click.option(
     "--poisson",
     type=Number(Range(-0.99, 0.5)),
@@ -56,8 +57,12 @@ def _columns(command: Any) -> Any:
     show_default=True,
     help="Poisson's ratio.",
 )
-@click.option("--modulus-error", type=_SHARE, default=0.0, help="Relative standard error of it.")
-@click.option("--radius-error", type=_SHARE, default=0.0, help="The same of the sphere's radius.")
+@click.option(
+    "--modulus-error", type=_SHARE, default=0.0, help="Relative standard error of the modulus."
+)
+@click.option(
+    "--radius-error", type=_SHARE, default=0.0, help="Relative standard error of the radius."
+)
 @click.option("--stiffness", help="Stiffness of the machine, as in 200N/m.")
 @click.option("--window", help="Contact radii to average over, as in 50um:150um.")
 @_columns
@@ -78,10 +83,11 @@ def loop(
 ) -> None:
     """Evaluate a measured or simulated loop of force, contact radius and displacement.
 
-    FILE is a text with heads, two of the three columns or all. Both branches have a mean work of
-    adhesion over the same contact radii, as simulations have. Or it is a cycle in netCDF, which
-    `crackfront cycle` wrote or a sweep stored: its works of adhesion are those of the simulation,
-    in reduced units unless it states a sphere or --radius, --modulus and --work-of-adhesion do.
+    FILE is a text with headings and two or three of these columns. Works of adhesion are averaged
+    over the same contact radii in both branches, as in simulations. FILE may also be a cycle in
+    netCDF that `crackfront cycle` or a sweep has written. Its works of adhesion are those of the
+    simulation; they are in reduced units unless the file states a sphere, or --radius, --modulus
+    and --work-of-adhesion name one.
     """
     from crackfront.experiment.simulated import is_netcdf
 

@@ -47,7 +47,7 @@ if TYPE_CHECKING:
     default="hysteresis",
     help="What the figure shows.",
 )
-@click.option("--strict", is_flag=True, help="Exit with 3 where there are reservations.")
+@click.option("--strict", is_flag=True, help="Exit with 3 if there are reservations.")
 @click.pass_context
 def samples(
     context: click.Context,
@@ -60,16 +60,16 @@ def samples(
     strict: bool,
     **options: Any,
 ) -> None:
-    """Predict a series of samples from a table, with a figure of all beside what was measured.
+    """Predict a series of samples from a table, with a figure of predicted and measured values.
 
     TABLE is CSV, TSV or YAML with a row for each sample: `sample`, `scans` (with | between several)
-    or `psd` or `rms`, and where they are known `group`, `radius (mm)`, `modulus (MPa)`,
+    or `psd` or `rms`, and if they are known `group`, `radius (mm)`, `modulus (MPa)`,
     `work_of_adhesion (mJ/m2)`, `measured_hysteresis (mJ/m2)` and any other option of
-    `crackfront predict`. Options of the command hold where a row has none.
+    `crackfront predict`. Options of the command apply to rows that do not give a value.
 
-    A row that cannot be used is refused with its line before anything is computed. A sample whose
-    files fail later has the outcome `refused` in its row. Exit codes are those of
-    `crackfront predict`, the largest of all samples.
+    If a row cannot be used, the table is refused with the number of its line before anything is
+    computed. A sample whose files fail later has the outcome `refused` in its row. The exit code is
+    the largest of all samples, each as that of `crackfront predict`.
     """
     from crackfront.topography.samples import read_samples
 
@@ -82,7 +82,7 @@ def samples(
     found = write_samples(table, series, "sample")
     refused = [one.sample.name for one in found if one.outcome == "refused"]
     if refused:
-        click.echo(f"without a value: {', '.join(refused)}; the table says why", err=True)
+        click.echo(f"without a value: {', '.join(refused)}; the table states the reasons", err=True)
     if not no_figure:
         from crackfront.plots.style import save_figure
         from crackfront.topography.page.series import series_figure

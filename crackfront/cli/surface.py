@@ -62,7 +62,7 @@ def _scans(*, required: bool) -> Callable[[Command], Command]:
 
     def decorated(command: Command) -> Command:
         command = click.option(
-            "--list-channels", is_flag=True, is_eager=True, help="List the channels of SCANS alone."
+            "--list-channels", is_flag=True, is_eager=True, help="Only list the channels of SCANS."
         )(command)
         scans = click.argument(
             "scans", type=FILE, nargs=-1, required=required, is_eager=True, callback=_listed
@@ -82,15 +82,13 @@ def _scans(*, required: bool) -> Callable[[Command], Command]:
 )
 @_scans(required=False)
 @options_of(ReadingOptions)
-@click.option("--psd", type=FILE, help="Spectral density of a surface without scans, as text.")
+@click.option("--psd", type=FILE, help="Text file of a spectral density, instead of scans.")
 @options_of(PsdOptions)
 @options_of(SelfAffineOptions)
 @options_of(SphereOptions, required=True)
 @options_of(PredictionOptions)
 @as_json
-@click.option(
-    "--simulate", is_flag=True, help="Simulate surfaces of the measured spectrum as well."
-)
+@click.option("--simulate", is_flag=True, help="Also simulate surfaces of the measured spectrum.")
 @click.option(
     "--realisations",
     type=whole(Range(1, 1e6)),
@@ -109,10 +107,10 @@ def _scans(*, required: bool) -> Callable[[Command], Command]:
     "--csv",
     "table",
     type=FILE,
-    help="Treat each scan as a sample, and write a row for each; - prints them.",
+    help="Treat each scan as a sample, and write a row for it; - prints the rows.",
 )
-@click.option("--long", "is_long", is_flag=True, help="Print all that is known, not one page.")
-@click.option("--strict", is_flag=True, help="Exit with 3 where there are reservations.")
+@click.option("--long", "is_long", is_flag=True, help="Print all results instead of one page.")
+@click.option("--strict", is_flag=True, help="Exit with 3 if there are reservations.")
 @click.pass_context
 def predict(
     context: click.Context,

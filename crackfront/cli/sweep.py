@@ -202,12 +202,12 @@ def _block(context: click.Context, parameter: click.Parameter, value: str | None
     "--ranks",
     type=whole(Range(1, 1e6)),
     default=1,
-    help="MPI ranks that simulate, beside one that hands out the work; 1 runs without MPI.",
+    help="MPI ranks that simulate, besides one that distributes work; 1 runs without MPI.",
 )
 @click.option(
     "--launcher",
     envvar="CRACKFRONT_LAUNCHER",
-    help="What starts the ranks, as in 'srun -K1 --mpi=pmi2'; also from CRACKFRONT_LAUNCHER.  "
+    help="Launcher of the ranks, as in 'srun -K1 --mpi=pmi2'; also from CRACKFRONT_LAUNCHER.  "
     "[default: mpiexec beside this Python]",
 )
 @click.option(
@@ -227,8 +227,8 @@ def simulate(
 ) -> None:
     """Run the simulations of a sweep that are not stored yet.
 
-    Ctrl-C and SIGTERM store running simulations as far as they are, and the exit code is 75. Run
-    the same command to continue.
+    After Ctrl-C or SIGTERM the states of running simulations are stored, and the exit code is 75.
+    Run the same command to continue.
     """
     from crackfront.sweep import parallel
 
@@ -363,7 +363,7 @@ def fill_store(
 @click.argument("folder", type=FILE)
 @as_json
 def status(folder: Path, as_json: bool) -> None:
-    """Show how far the sweep in a folder is, and which processes store simulations in it.
+    """Show the progress of the sweep in a folder, and which processes store simulations in it.
 
     Processes on other machines are shown where the file system passes their locks on; a batch
     system knows them all.

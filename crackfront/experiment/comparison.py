@@ -14,11 +14,11 @@ from crackfront.experiment.loop import MeasuredLoop
 from crackfront.topography.prediction.prediction import Prediction
 
 _WHAT_IS_LEFT = (
-    "Predicted is a quasi-static loop: no viscoelasticity, no ageing, and the preload does not "
-    "enter. Neither interval holds what the model leaves out: roughness that is finer than the "
-    "scans and areas that they do not show, dissipation at the moving edge (viscoelasticity: "
-    "repeat at a tenth of the speed), changes with time in contact (ageing, chemistry: repeat with "
-    "a longer rest), and a w_int other than the one given (measure it on a smooth surface)."
+    "The predicted loop is quasi-static: no viscoelasticity, no ageing, and the preload does not "
+    "enter. Neither interval covers what the model leaves out: roughness that is finer than the "
+    "scans or outside of them, dissipation at the moving edge (viscoelasticity: repeat at a tenth "
+    "of the speed), changes with time in contact (ageing, chemistry: repeat with a longer rest), "
+    "and a w_int other than the given one (measure it on a smooth surface)."
 )
 
 _FAR = 2.0
@@ -56,7 +56,7 @@ def comparison_lines(found: MeasuredLoop, predicted: Prediction) -> Iterator[str
     if ratio.value > _FAR:
         yield (
             f"The measured hysteresis is {ratio.value:.2g} times the predicted one; "
-            "docs/questions.md says which measurements tell the reasons apart."
+            "docs/questions.md says which measurements distinguish the causes."
         )
     yield _WHAT_IS_LEFT
 

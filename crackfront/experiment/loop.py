@@ -148,7 +148,7 @@ def analyse_loop(recording: Recording, rig: Rig) -> MeasuredLoop:
     first = _contact(recording, rig, known, zero)
     if zero != 0.0:
         remarks.append(
-            "The zero of the displacement is where each branch is nearest to one work of adhesion."
+            "The zero of the displacement was fitted, for the least varying works of adhesion."
         )
     appr, retr = (rows[np.isfinite(first.work[rows])] for rows in branches)
     branches = appr, retr
@@ -300,7 +300,11 @@ def _with_zero_force(recording: Recording) -> tuple[Recording, list[Array], list
     sides = [rows[rows < touching[0]], rows[rows > touching[-1]]]
     enough = [side.size >= _FEWEST_BASELINE for side in sides]
     if not any(enough):
-        return recording, [], ["The zero of the force is that of the file: no rows out of contact."]
+        return (
+            recording,
+            [],
+            ["The zero of the force is that of the file, as no rows are out of contact."],
+        )
     order = 1 if all(enough) else 0
     chosen = np.concatenate([side for side, use in zip(sides, enough, strict=True) if use])
     line, covariance = np.polyfit(chosen / force.size, force[chosen], order, cov=True)
@@ -311,7 +315,7 @@ def _with_zero_force(recording: Recording) -> tuple[Recording, list[Array], list
     errors = list((powers @ (directions * np.sqrt(np.maximum(squares, 0.0)))).T)
     largest = prefixed("N", float(np.max(np.abs(zero[touching]))))
     kind = "a drift and a zero" if order else "a zero"
-    sentence = f"{chosen.size} rows out of contact give {kind} of the force of up to {largest}."
+    sentence = f"{chosen.size} rows out of contact give {kind} of the force, up to {largest}."
     return replace(recording, force=force - zero), errors, [sentence]
 
 
@@ -485,7 +489,7 @@ def _modulus_remark(rig: Rig, fitted: Estimate[float]) -> list[str]:
     shown = prefixed("Pa", fitted.value, fitted.low, fitted.high)
     return [
         f"Force and contact radius fit a contact modulus of {shown}, not {prefixed('Pa', given)}: "
-        "leave --modulus out, or check the radius of the sphere and the zero of the force."
+        "leave out --modulus, or check the radius of the sphere and the zero of the force."
     ]
 
 

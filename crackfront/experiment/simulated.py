@@ -30,11 +30,11 @@ _REDUCED = Scales(1.0, WORK_OF_ADHESION, CONTACT_MODULUS)
 
 _ERRORS = (
     "The cycle was simulated: the works of adhesion are those along its rough front, and their "
-    "intervals hold the scatter of the states on this one surface."
+    "intervals include the scatter of the states on this one surface."
 )
 _UNITS = (
     "All numbers are in reduced units, R = 1, w_int = 1/pi, E' = 3/4; --radius, --modulus and "
-    "--work-of-adhesion give those of SI."
+    "--work-of-adhesion convert them to SI."
 )
 _OPEN = (
     "The energy lost is not known: the cycle does not lead from the first contact at penetration 0 "

@@ -295,43 +295,42 @@ class ReadingOptions(Options):
     """Part of the scan to use, as in 2um:8um,0um:5um."""
 
     detrend: Annotated[Detrend, BeforeValidator(_detrend)] = "curvature"
-    """What is taken off: center (mean), height (plane of least height), slope (that of least
+    """Trend to subtract: center (mean), height (plane of least height), slope (plane of least
     slope), curvature (paraboloid), or the polynomial of an order up to 9."""
 
     mask: Annotated[tuple[Region | Path, ...], BeforeValidator(_masks), REPEATED] = ()
-    """What the levelling leaves out and the map keeps: a part of the scan as in crop, or a file
-    with a number for each point, not zero there."""
+    """Points that the levelling ignores and the map keeps: a part of the scan as in crop, or a
+    file with a number for each point, which is not zero there."""
 
     surface: Annotated[Text | None, PER_SCAN] = None
     """Surface by name or number, for containers of contact.engineering with several."""
 
     unit: Annotated[Text | None, PER_SCAN] = None
-    """Unit of length of files that state none, as in um."""
+    """Unit of length of files that do not state it, as in um."""
 
     height_unit: Annotated[Text | None, PER_SCAN] = None
-    """Unit of the heights alone, as in nm, where a file states none or one that cannot be."""
+    """Unit of the heights, as in nm, if it differs or if that of the file is impossible."""
 
     size: Annotated[Annotated[tuple[float, ...], BeforeValidator(_sides)] | None, PER_SCAN] = None
-    """Sides of scans that state none, in --unit, as in 50,40; 50 for a square or a line."""
+    """Sides of scans that do not state them, in --unit, as in 50,40; 50 for a square or a line."""
 
     tip_radius: Annotated[Length | None, PER_SCAN] = None
-    """Radius of the tip that scanned it, as in 20nm; by default what the file says, and 10nm for
-    formats of scanning probes that do not."""
+    """Radius of the tip, as in 20nm; by default that of the file, or 10nm for formats of scanning
+    probes that do not state it."""
 
     shortest: Length | None = None
-    """Shortest wavelength to trust, as in 0.4um; by default found by resolution, noise, tip, and
+    """Shortest wavelength to trust, as in 0.4um; by default found from resolution, noise, tip and
     four pixels."""
 
     longest: Length | None = None
-    """Longest wavelength to trust; by default found by what is left of the form, and half a
-    side."""
+    """Longest wavelength to trust; by default found from the remaining form and half a side."""
 
 
 class PredictionOptions(Options):
     """What a prediction takes into account beside the surface and the sphere."""
 
     pull_off: Force | None = None
-    """Measured pull-off force, as in 0.4mN; the w_int that it implies is stated."""
+    """Measured pull-off force, as in 0.4mN, from which w_int is computed and printed."""
 
     range: Length | None = None
     """Range of the attraction, as in 0.3nm; by default 0.5nm, that of van der Waals forces."""
@@ -344,22 +343,22 @@ class PsdOptions(Options):
     """Series by name or number, for files with several."""
 
     psd_units: Text | None = None
-    """Units of both columns, as in 1/um,um^3, where their heads have none."""
+    """Units of both columns, as in 1/um,um^3, if their headings have none."""
 
     psd_kind: PsdKind | None = None
-    """What the density is of: 1d (profiles), 2d (isotropic), radial (its integral is the mean
-    square), q2d (q/pi times 2d); by default what its unit and head say."""
+    """Kind of the density: 1d (profiles), 2d (isotropic), radial (its integral is the mean
+    square), q2d (q/pi times 2d); by default from its unit and heading."""
 
     psd_abscissa: PsdAbscissa | None = None
-    """What the first column is: wavevector (2 pi / wavelength), frequency (1 / wavelength) or
-    wavelength; by default what its head says."""
+    """Quantity of the first column: wavevector (2 pi / wavelength), frequency (1 / wavelength) or
+    wavelength; by default from its heading."""
 
     psd_sides: Literal["one", "two"] | None = None
     """Whether a 1d density counts every wave once (one) or with its negative (two)."""
 
     psd_norm: Literal["2pi", "1"] | None = None
-    """Over what the density is integrated to the mean square: q/2pi (2pi) or q (1, as in
-    Gwyddion)."""
+    """Variable over which the integral of the density is the mean square: q/2pi (2pi) or q (1, as
+    in Gwyddion)."""
 
 
 class SelfAffineOptions(Options):
@@ -372,13 +371,13 @@ class SelfAffineOptions(Options):
     """Distance at which the autocorrelation of its heights is 1/e, as in 1um."""
 
     roll_off: Length | None = None
-    """Roll-off wavelength, in place of the correlation length."""
+    """Roll-off wavelength, instead of the correlation length."""
 
     hurst: Annotated[float, number(Range(1e-3, 1.0))] | None = None
     """Hurst exponent, as in 0.8."""
 
     short_cutoff: Length | None = None
-    """Shortest wavelength of the roughness, as in 10nm; by default 1nm where H is above 0.5."""
+    """Shortest wavelength of the roughness, as in 10nm; by default 1nm if H is above 0.5."""
 
 
 class SphereOptions(Options):

@@ -29,7 +29,7 @@ def commands() -> None:
 def validate(configuration: Path, output: Path | None) -> None:
     """Run rough spheres by boundary elements and by the crack front, and compare them.
 
-    Every load step of the boundary elements is on disk at once: a run that is killed goes on with
+    Every load step of the boundary elements is stored at once: a run that was killed continues with
     the next one. The tables grow with every finished case.
     """
     from crackfront.data.digests import forget_sums
@@ -56,9 +56,9 @@ def validate(configuration: Path, output: Path | None) -> None:
 @commands.command(epilog=examples("python -m studies boundary-elements numbers --keep"))
 @keep_option
 def numbers(keep: bool) -> None:
-    """Print the comparisons of docs/reference/validation that stand in the pages.
+    """Print the comparisons of docs/reference/validation for the pages.
 
-    What is kept holds the table of the package as well.
+    With --keep the table of the package, validity.csv, is written too.
     """
     from crackfront.analysis.validity import validity_text
     from crackfront.data.files import write_text

@@ -51,10 +51,10 @@ _tables = click.option(
 @_configurations
 @_output
 def fit(configurations: tuple[Path, ...], output: Path) -> None:
-    """Fit the law to straight fronts: of sweeps that have been run, or those of the last fit.
+    """Fit the law to straight fronts, of sweeps that have been run or of the last fit.
 
-    Writes cells.csv, a row for every spectrum, amplitude and spring, and law.json, the law. Kept as
-    studies/law/cells.csv and crackfront/analysis/law.json they are what predictions rest on.
+    Writes cells.csv, a row for every spectrum, amplitude and spring, and law.json, the law.
+    Predictions use the copies in studies/law/cells.csv and crackfront/analysis/law.json.
     """
     refuse_unwritable(output)
     cells = [cell for path in configurations for cell in law_cells(path)]
@@ -78,7 +78,7 @@ def fit(configurations: tuple[Path, ...], output: Path) -> None:
 @_tables
 @_output
 def spheres(configurations: tuple[Path, ...], tables: tuple[Path, ...], output: Path) -> None:
-    """Compare spheres with the law: of sweeps that have been run, or of tables.
+    """Compare spheres with the law, from sweeps that have been run or from tables.
 
     Of sweeps it writes spheres.csv, which is kept as docs/reference/spheres.csv.
     """
@@ -91,7 +91,7 @@ def spheres(configurations: tuple[Path, ...], tables: tuple[Path, ...], output: 
 @commands.command("held-out", epilog=examples("python -m studies law held-out"))
 @_output
 def held_out(output: Path) -> None:
-    """Simulate spheres that had no part in any fit, and compare them with the law.
+    """Simulate spheres to which nothing was fitted, and compare them with the law.
 
     Writes held-out.csv, with the spheres of docs/reference/si-5.nc, which is kept in
     docs/reference.
@@ -107,7 +107,7 @@ def held_out(output: Path) -> None:
 @_tables
 @output_option(default=Path("docs/figures"))
 def figure(tables: tuple[Path, ...], output: Path) -> None:
-    """Draw the law of the package with what it is fitted to and with spheres, as law.png."""
+    """Draw the law with the fronts to which it is fitted and with spheres, as law.png."""
     refuse_unwritable(output)
     points = sphere_points(read_spheres(tables))
     save_picture(law_figure(spectra_points(measured_cells()), points), output / "law.png")
@@ -118,6 +118,6 @@ def figure(tables: tuple[Path, ...], output: Path) -> None:
 @_tables
 @keep_option
 def numbers(tables: tuple[Path, ...], keep: bool) -> None:
-    """Print the numbers of the law of the package that stand in the pages."""
+    """Print the numbers of the law for the pages."""
     parts = law_parts(read_spheres(tables))
     tell("law", parts, "studies.law.page", "studies.law.spheres", keep=keep)

@@ -45,7 +45,7 @@ _PICTURES, _REFERENCE = Path("docs/experiments/figures"), Path("docs/reference")
     type=click.Choice(SCALES),
     default="quick",
     show_default=True,
-    help="Coarser lengths, minutes on two cores; or those of the paper.",
+    help="Coarser lengths, which take minutes on two cores, or those of the paper.",
 )
 @_output
 def compute_figure(configuration: Path, scale: str, output: Path) -> None:
@@ -74,7 +74,7 @@ def compute_figure(configuration: Path, scale: str, output: Path) -> None:
 )
 @click.argument("data", type=FILE)
 def draw_figure(data: Path) -> None:
-    """Draw a figure from its data, beside them, and its animation where it has one."""
+    """Draw a figure, and its animation if it has one, into the folder of its data."""
     shown, record = _figure_and_record(data)
     folder = data.absolute().parents[1]
     if str(data.absolute().relative_to(folder)) in read_sums(folder):
@@ -89,7 +89,7 @@ def draw_figure(data: Path) -> None:
 @commands.command("check", epilog=examples("python -m studies paper check"))
 @_output
 def check_figures(output: Path) -> None:
-    """Compare the data of all figures with what the paper states, in checks.md."""
+    """Compare the data of all figures with the statements of the paper, in checks.md."""
     lines: list[str] = []
     failed: list[str] = []
     counts: Counter[Result] = Counter()
@@ -122,9 +122,11 @@ def check_figures(output: Path) -> None:
 
 @commands.command(epilog=examples("python -m studies paper gallery"))
 @_output
-@click.option("--pictures", type=FILE, default=_PICTURES, show_default=True, help="Their folder.")
+@click.option(
+    "--pictures", type=FILE, default=_PICTURES, show_default=True, help="Folder of the pictures."
+)
 def gallery(output: Path, pictures: Path) -> None:
-    """Keep all figures and their checks for the pages.
+    """Store all figures and their checks for the pages.
 
     Of each figure the paper's scale is kept if it is there; an animation is that of the results.
     """
@@ -155,7 +157,7 @@ def gallery(output: Path, pictures: Path) -> None:
 @output_option(default=Path("docs/figures"))
 @keep_option
 def experiment(output: Path, keep: bool) -> None:
-    """Compare the measured hysteresis on nanodiamond with all that stands against it."""
+    """Compare the measured hysteresis on nanodiamond with the predicted ones."""
     refuse_unwritable(output)
     path = _REFERENCE / "main-5bc.nc"
     shown = hystereses(_figure_and_record(path)[1])

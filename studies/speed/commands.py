@@ -73,7 +73,7 @@ def solvers(groups: tuple[Group, ...], repeats: int, seed: int, output: Path, ke
 @_output
 @keep_option
 def profile(output: Path, keep: bool) -> None:
-    """Share out the time of default simulations by kernel, by Linux's perf."""
+    """Measure the share of each kernel in default simulations, with Linux's perf."""
     refuse_unwritable(output)
     try:
         rows = kernels.shares()
@@ -102,9 +102,9 @@ def needs(output: Path, keep: bool) -> None:
 @commands.command(epilog=examples("python -m studies speed costs"))
 @_output
 def costs(output: Path) -> None:
-    """Measure the runs that the cost model is fitted to and held against.
+    """Measure the runs for the fit and the tests of the cost model.
 
-    The table costs.csv, copied to crackfront/simulate, is what `crackfront plan` predicts from.
+    `crackfront plan` takes its times from costs.csv, once it is copied to crackfront/simulate.
     """
     refuse_unwritable(output)
     compile_solver("newton")
@@ -123,6 +123,6 @@ def costs(output: Path) -> None:
 @_output
 @keep_option
 def scaling(output: Path, keep: bool) -> None:
-    """Measure dispatch, the start of a job and what follows; play a million simulations through."""
+    """Measure dispatch, start of jobs and later commands; simulate a sweep of a million runs."""
     refuse_unwritable(output)
     _write(output / "scaling", "How a sweep scales", sweeps.parts(), keep=keep)

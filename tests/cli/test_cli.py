@@ -531,7 +531,7 @@ def test_any_command_that_is_told_to_end_says_so_with_the_same_exit_code(
     monkeypatch.setattr(main.commands["law"], "callback", interrupted)
     result = run("law")
     assert result.exit_code == StoppedError.exit_code
-    assert result.stderr.startswith("Interrupted. Nothing is half-written; run the same command")
+    assert result.stderr.startswith("Interrupted. No file is incomplete; run the same command")
     assert signal.getsignal(signal.SIGTERM) is signal.SIG_DFL
 
 

@@ -124,7 +124,7 @@ def test_each_outcome_has_its_exit_code(predict, tmp_path):
     told = run("predict", "--help").output
     for text in ("Exit code 0: a prediction", "(3 with --strict)", "4: the theory does not"):
         assert text in " ".join(told.split())
-    assert "  4   predict: the theory does not apply" in run("--help").output
+    assert "  4   predict, samples: the theory does not apply" in run("--help").output
 
 
 def test_a_modulus_far_too_low_is_refused_with_what_would_do(predict):
@@ -158,7 +158,7 @@ def test_the_text_says_what_was_read_predicted_and_drawn(predict, tmp_path):
         "taken off             the paraboloid",
         "The theory applies with 1 reservation",
         "inside by a factor of",
-        "taken for 0.5 nm",
+        "assumed to be 0.5 nm",
     ):
         assert text in result.output
     assert sorted(path.name for path in tmp_path.iterdir()) == ["figure.pdf", "figure.png"]

@@ -123,8 +123,8 @@ def _condition(
     sentence = f"{name} fails: {found}, {beyond} the limit of {limit}; {reason}."
     if severity == "undecided":
         sentence = (
-            f"{name} cannot be decided: {found}, and the limit of {limit} lies within what is "
-            f"known of them; beyond it {reason}."
+            f"{name} cannot be decided: {found}, and the limit of {limit} lies within the "
+            f"uncertainty; beyond it {reason}."
         )
     return Remark(name, severity, sentence, remedies, comparison)
 
@@ -144,7 +144,7 @@ def _energy_conditions(surface: Surface, scales: Scales) -> Iterator[Remark]:
     yield _condition(
         "full conformity",
         f"e_el of {prefixed('J/m2', e_el)} against w_int of {prefixed('J/m2', w_int)}",
-        "no contact conforms to the roughness",
+        "the contact does not conform to the roughness",
         Comparison(e_el, w_int, w_int, "J/m2", best_case=e_el / energy.low),
         _lower_energy(scales, e_el / w_int),
     )
@@ -152,8 +152,8 @@ def _energy_conditions(surface: Surface, scales: Scales) -> Iterator[Remark]:
     yield _condition(
         "attraction nearly everywhere",
         f"w_loc negative on {share:.2%} of the surface",
-        "the linearisation of the roughness is not to be trusted where w_loc is negative, and "
-        "boundary elements were compared up to there alone",
+        "the linearisation of the roughness cannot be trusted where w_loc is negative, and "
+        "the comparison with boundary elements ends there",
         Comparison(
             share,
             _negative_share(max(row.elastic_energy for row in shipped_validity())),
@@ -173,7 +173,7 @@ def _contact_conditions(surface: Surface, scales: Scales) -> Iterator[Remark]:
     yield _condition(
         "contact small against the sphere",
         f"contact of {prefixed('m', contact)} on a sphere of {prefixed('m', radius)}",
-        "the paraboloid that stands for the sphere departs from it",
+        "the paraboloid that approximates the sphere deviates from it",
         Comparison(contact, _CONTACT[0] * radius, _CONTACT[1] * radius, "m"),
         # a / R goes as the cube root of w_int / (E' R).
         (_modulus("above", modulus, part**3), _radius_above(radius * part**3)),
@@ -183,7 +183,7 @@ def _contact_conditions(surface: Surface, scales: Scales) -> Iterator[Remark]:
     yield _condition(
         "roughness fine against the contact",
         f"waves that matter to e_el of {waves} under a contact of {prefixed('m', contact)}",
-        "the contact holds too few of them for an average",
+        "the contact has too few of them for an average",
         Comparison(half.longest, contact, contact * half.longest / half.shortest, "m"),
         (
             _radius_above(radius * part**1.5),
@@ -232,7 +232,7 @@ def _roughness_conditions(surface: Surface) -> Iterator[Remark]:
     yield _condition(
         "small slopes",
         f"rms slope of {slope:.3g}",
-        "linear elasticity leaves the square of slopes out",
+        "linear elasticity neglects the square of slopes",
         Comparison(slope, *_SLOPES, "1", best_case=slope / rms.low),
         (f"slopes lower by a factor of {slope / _SLOPES[1]:.3g}",),
     )
@@ -243,7 +243,7 @@ def _roughness_conditions(surface: Surface) -> Iterator[Remark]:
     yield _condition(
         "random roughness",
         found if part else "no wave stands out",
-        "k is that of random surfaces, and grooves pin a front otherwise",
+        "k is that of random surfaces, and grooves pin a front differently",
         Comparison(part, MOST_PERIODIC, _MOST_PERIODIC, "1"),
         ("another place or direction without the grooves",),
         is_share=True,
@@ -282,7 +282,9 @@ def _energy_remarks(surface: Surface, scales: Scales) -> Iterator[Remark]:
     energy = surface.conformity_energy(scales.contact_modulus)
     shown = prefixed("J/m2", energy.value, energy.low, energy.high)
     if energy.value < scales.work_of_adhesion <= energy.high:
-        sentence = f"The interval of e_el reaches w_int, where no contact conforms: {shown}."
+        sentence = (
+            f"The interval of e_el reaches w_int, where the contact does not conform: {shown}."
+        )
         yield Remark("e_el", "reservation", sentence)
     elif energy.high > _MOST_UNSURE * energy.low:
         sentence = f"e_el is not known to a factor of {_MOST_UNSURE:g}: {shown}."
@@ -292,7 +294,7 @@ def _energy_remarks(surface: Surface, scales: Scales) -> Iterator[Remark]:
 _ASSUMPTION = Remark(
     "range of attraction",
     "note",
-    f"The range of attraction is unknown and taken for {1e9 * ASSUMED_RANGE:g} nm, that of van der "
-    "Waals forces; --range names another.",
+    f"The range of attraction is unknown and assumed to be {1e9 * ASSUMED_RANGE:g} nm, that of van "
+    "der Waals forces; --range gives another.",
 )
 """What is said where no range of attraction is given."""

@@ -108,7 +108,7 @@ def prediction_page(prediction: Prediction) -> str:
             *map(remark_text, others),
             remark_text(measure_next(surface)),
             "Quasi-static: rate, viscoelasticity, ageing and the preload do not enter.",
-            "Intervals hold 95%; --long says all.",
+            "Intervals are 95% intervals; --long prints all results.",
         ]
     )
 
@@ -123,7 +123,7 @@ def _law_remarks(found: Works) -> Iterator[Remark]:
         "k",
         "note",
         "k is that of a straight front on springs of the length L_kappa, by the law that was "
-        "fitted to simulations of such fronts; its interval holds the errors of both.",
+        "fitted to simulations of such fronts; its interval includes the errors of both.",
     )
     _, largest = shipped_law().size
     if factors.size > largest:

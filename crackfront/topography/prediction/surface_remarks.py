@@ -89,8 +89,8 @@ def _treatments(one: Scan) -> Iterator[str]:
     if item.missing > 0:
         yield (
             f"{item.path}: {item.missing:.2%} of the points were missing and interpolated, "
-            f"{one.missing_weight:.1%} by the weight of the window; what this takes from the "
-            "density is given back, as much as it takes from random surfaces of this density."
+            f"{one.missing_weight:.1%} by the weight of the window; the density is corrected for "
+            "the interpolation, by its effect on random surfaces of the same density."
         )
     if item.is_line:
         yield (
@@ -98,33 +98,36 @@ def _treatments(one: Scan) -> Iterator[str]:
             "this projection."
         )
     elif max(item.pixels) > 1.001 * min(item.pixels):
-        yield f"{item.path}: the pixels are oblong; its density covers what both sides resolve."
+        yield (
+            f"{item.path}: the pixels are oblong; the density covers the waves that both sides "
+            "resolve."
+        )
     if item.tip_is_assumed:
         yield (
-            f"{item.path}: the file does not say what its tip is, which is taken for one of "
-            f"{1e9 * item.tip_radius:g} nm; --tip-radius names another."
+            f"{item.path}: the file does not state the radius of the tip, which is assumed to be "
+            f"{1e9 * item.tip_radius:g} nm; --tip-radius gives another."
         )
     if most := item.log_hidden_energy:
         yield (
-            f"{item.path}: valleys are deep; by what the tip does not reach in narrow ones "
-            f"e_el may be {np.exp(most):.1g} times as large, which its interval holds."
+            f"{item.path}: valleys are deep, and the tip may not reach into narrow ones; e_el may "
+            f"be {np.exp(most):.1g} times as large, which its interval includes."
         )
     if one.unevenness > _LEAST_UNEVEN:
         yield (
-            f"{item.path}: parts of it differ more than those of a Gaussian surface, so that "
+            f"{item.path}: parts of the scan differ more than those of a Gaussian surface, so that "
             f"e_el is known to {one.unevenness:.1%} at best."
         )
     for axis in one.band.stripes:
         yield (
-            f"{item.path}: waves along {'xy'[axis]} alone have another density than all "
-            "others, as of rows that are shifted or levelled one by one; they are left out."
+            f"{item.path}: the density of waves along {'xy'[axis]} differs from that of all "
+            "others, as if rows were shifted or levelled one by one; these waves are left out."
         )
 
 
 def measure_next(surface: Surface) -> Remark:
     """Note on which scan would narrow the interval of e_el, and by how much."""
     if isinstance(surface, StatedSurface):
-        sentence = "Measure next: a scan, which gives e_el an interval and shows what else it has."
+        sentence = "Measure next: a scan, which gives e_el an interval and shows missing waves."
         return Remark("next scan", "note", sentence)
     joint = surface.joint
     known, (longer, shorter) = joint.draws.factor, joint.draws.factors_with
@@ -188,8 +191,8 @@ def channel_remarks(surface: Surface) -> Iterator[Remark]:
             yield Remark(
                 str(item.path),
                 "reservation",
-                f"{item.path}: channel {item.channel} has a unit of length, but the name of "
-                "another quantity than heights; --list-channels shows them all.",
+                f"{item.path}: channel {item.channel} has a unit of length, but the name of a "
+                "quantity other than heights; --list-channels lists all channels.",
             )
 
 
@@ -235,7 +238,7 @@ def disagreements(surface: Surface) -> Iterator[Remark]:
                 "reservation",
                 f"{path} disagrees with the other scans: its density is {level.value:.2g} "
                 f"({level.low:.2g} to {level.high:.2g}) times theirs where they overlap; the "
-                "intervals hold that.",
+                "intervals include this difference.",
             )
 
 
@@ -243,8 +246,8 @@ def _spectrum_doubts(joint: JointSpectrum) -> Iterator[str]:
     """Sentences on what is not measured, and on intervals that are not settled."""
     if joint.shares.measured < _LEAST_MEASURED:
         yield (
-            f"Only {joint.shares.measured:.0%} of e_el is measured, the rest is continued by a "
-            "model; add a scan of the waves that are missing."
+            f"Only {joint.shares.measured:.0%} of e_el is measured, the rest comes from a model; "
+            "add a scan of the missing waves."
         )
     if joint.draws.unsettled > _MOST_UNSETTLED:
         yield (
@@ -255,15 +258,15 @@ def _spectrum_doubts(joint: JointSpectrum) -> Iterator[str]:
     hurst = joint.fit.hurst.value
     if min(hurst, 1 - hurst) < _EDGE and joint.shares.continued > _MATTERS:
         yield (
-            f"The Hurst exponent of the shortest waves, {hurst:.2g}, is at the edge of what is "
-            f"fitted, 0 to 1: the model that continues {joint.shares.continued:.0%} of e_el may "
-            "not be what the surface is."
+            f"The Hurst exponent of the shortest waves, {hurst:.2g}, is at the edge of the fitted "
+            f"range, 0 to 1: {joint.shares.continued:.0%} of e_el comes from a model that may not "
+            "describe the surface."
         )
     if not joint.fit.has_roll_off:
         yield (
             "The density shows no plateau within the trusted wavelengths: longer waves have about "
-            f"{joint.shares.continued_long:.0%} of e_el, and its interval holds roll-offs of up to "
-            "four sides of the scan; add a larger scan."
+            f"{joint.shares.continued_long:.0%} of e_el, and its interval includes roll-offs of up "
+            "to four sides of the scan; add a larger scan."
         )
     if joint.shares.missing_short > _MOST_UNMEASURED:
         yield (

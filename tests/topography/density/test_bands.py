@@ -164,7 +164,7 @@ def test_surfaces_that_are_not_gaussian_are_told_and_known_less_well(found):
     assert [*scan_remarks([film])] == []
     for one, sentence in (
         (deep, "differ more than those of a Gaussian"),
-        (scanned, "in narrow ones e_el may be 2 times as large"),
+        (scanned, "into narrow ones; e_el may be 2 times as large"),
     ):
         assert any(sentence in remark.sentence for remark in scan_remarks([one]))
 

@@ -50,7 +50,7 @@ def test_the_range_of_attraction_is_held_against_sphere_and_roughness(surface):
         assert zone == pytest.approx(np.pi / 4 * modulus * reach**2 / w)
     for reach, is_assumed in ((None, True), (1e-9, False)):
         notes = theory_verdict(surface, SCENE, reach).of("note")
-        assert any("taken for 0.5 nm" in one.sentence for one in notes) == is_assumed
+        assert any("assumed to be 0.5 nm" in one.sentence for one in notes) == is_assumed
 
 
 @pytest.mark.parametrize(

@@ -111,7 +111,7 @@ def test_a_fit_at_the_edge_of_its_range_is_told_where_it_continues_much(surface,
         found = [
             one.sentence
             for one in spectrum_remarks(other)
-            if "at the edge of what is fitted" in one.sentence
+            if "at the edge of the fitted range" in one.sentence
         ]
         assert [f", {hurst:g}, is" in text for text in found] == [True] * (told and continued > 0.1)
 

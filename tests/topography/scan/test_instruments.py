@@ -144,7 +144,9 @@ def test_a_channel_of_lengths_that_is_named_after_another_quantity_is_in_doubt(t
     path.write_text(path.read_text().replace("Channel: Main", "Channel: AmplitudeTrace"))
     assert "(height, by its name another quantity)" in str(cf.list_channels(path)[0])
     [told] = channel_remarks(read_surface([path], [ReadingOptions()]))
-    assert "channel 'AmplitudeTrace' has a unit of length, but the name of another" in told.sentence
+    assert (
+        "channel 'AmplitudeTrace' has a unit of length, but the name of a quantity" in told.sentence
+    )
 
 
 def test_heights_have_a_unit_of_their_own_where_none_is_stated_or_it_cannot_be(tmp_path, noise):
