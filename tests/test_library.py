@@ -449,7 +449,7 @@ def test_loads_that_cannot_be_are_refused(surface, loads, sentence):
 def test_scales_take_texts_with_units():
     given = cf.Scales("1.25mm", "63mJ/m2", contact_modulus="0.9333333333333333 MPa")
     assert asdict(given) == pytest.approx(asdict(SPHERE), rel=1e-12)
-    with pytest.raises(ValueError, match=r"0\.0007 Pa, where all flows; was '0.7MPa' meant"):
+    with pytest.raises(ValueError, match=r"0\.0007 Pa, too soft to be solid; was '0.7MPa' meant"):
         cf.Scales("1mm", "63mJ/m2", "0.7mPa")
     with pytest.raises(ValueError, match="radius is '1kg', which is no length; write a number"):
         cf.Scales("1kg", 1, 1)
@@ -486,9 +486,9 @@ def test_a_scan_is_a_surface_to_press_on_that_says_what_was_done_to_it():
     assert float(found.x[144]) == 0
     told = found.attrs
     assert told["source"].startswith(f"{SCAN}, al3d, checksum ")
-    assert told["levelling"].startswith("the paraboloid was taken off")
-    assert told["tile"].startswith("mirrored at its edges, where a scan does not go on")
-    assert told["waves"].startswith("those shorter than 400 nm were taken away")
+    assert told["levelling"].startswith("the paraboloid was subtracted")
+    assert told["tile"].startswith("the scan mirrored at its edges")
+    assert told["waves"].startswith("those shorter than 400 nm were removed")
     assert "is smaller than the contact" in told["notes"]
 
 

@@ -66,7 +66,9 @@ def si_value(text: str, unit: str, *, what: str) -> float:
         raise ValueError(f"{what} is {text!r}; it must be positive and finite")
     if found[2].startswith("mPa"):
         meant = text.replace("mPa", "MPa")
-        raise ValueError(f"{what} is {text!r}, {value:g} Pa, where all flows; was {meant!r} meant?")
+        raise ValueError(
+            f"{what} is {text!r}, {value:g} Pa, too soft to be solid; was {meant!r} meant?"
+        )
     refuse_outside(what, value, SI[unit], unit)
     return value
 
@@ -88,7 +90,7 @@ def unit_value(given: str, unit: str) -> float:
     try:
         return _converted(1.0, _plain(given), unit)
     except ValueError as error:
-        raise ValueError(f"a {given} is not to be had in {unit}") from error
+        raise ValueError(f"the unit {given} cannot be converted to {unit}") from error
 
 
 def is_unit(given: str, unit: str) -> bool:

@@ -53,8 +53,8 @@ def _hold(file: IO[bytes], shard: Shard, announce: Callable[[str], None]) -> boo
                 announce(
                     f"another process simulates realisations {block[0]} to {block[-1]} of "
                     f"{shard.item.name} in {file.name.rpartition('/')[0]} already; waiting for "
-                    "what it stores. If a launcher started this command several times, leave that "
-                    "to --ranks and --launcher"
+                    "its results. If a launcher started this command several times, start it once "
+                    "with --ranks and --launcher instead"
                 )
             waited = True
             if stop_is_requested():

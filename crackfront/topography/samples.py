@@ -177,7 +177,7 @@ def read_samples(path: Path, common: Mapping[str, Any]) -> tuple[Sample, ...]:
             one = _sample(path.parent, row, common)
             if one.name in found:
                 raise ValueError(
-                    f"the sample {one.name!r} stands in line {found[one.name][0]} as well; write "
+                    f"the sample {one.name!r} is in line {found[one.name][0]} as well; write "
                     "one row for each, with | between its scans"
                 )
         except (TypeError, ValueError) as error:

@@ -46,12 +46,12 @@ def scan_surface(scan: Scan, sphere: Scales) -> DataArray:
         heights / sphere.vertical,
         pixel / sphere.lateral,
         source=f"{measurement.path}, {measurement.format}, checksum {measurement.checksum}",
-        levelling=f"{measurement.levelling} was taken off: form and tilt are no roughness",
-        tile="the scan as it stands, as its file says that it is periodic"
+        levelling=f"{measurement.levelling} was subtracted: form and tilt are no roughness",
+        tile="the scan itself, as its file states that it is periodic"
         if measurement.periodic
-        else "mirrored at its edges, where a scan does not go on: twice its sides",
-        waves=f"those shorter than {prefixed('m', measurement.shortest)} were taken away, as they "
-        "are not to be trusted",
+        else "the scan mirrored at its edges, with twice its sides",
+        waves=f"those shorter than {prefixed('m', measurement.shortest)} were removed, as they "
+        "cannot be trusted",
         notes=" ".join(map(remark_text, notes)),
     )
 

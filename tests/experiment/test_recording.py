@@ -63,7 +63,7 @@ def test_columns_are_named_and_units_given_by_options(tmp_path):
         (table(head=("Force (mN)", "Load (mN)")), "2 columns of force"),
         (table().replace("60.5", "60.x"), "'60.x' in row 2"),
         (table(";").replace("60.5", "60,5"), "decimal points and with decimal commas"),
-        (table(head=("Force (mN)", "Radius (kg)")), "a kg is not to be had in m"),
+        (table(head=("Force (mN)", "Radius (kg)")), "the unit kg cannot be converted to m"),
         ("nothing here\n", "no line with two numbers"),
         ("", "no line with two numbers"),
     ],

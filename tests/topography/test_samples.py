@@ -80,7 +80,7 @@ def test_a_sample_may_have_several_scans_psds_and_units(tmp_path):
     [
         ("A,polished,20", "A,polished,20kg", "line 3: rms is '20kg', which is no length"),
         ("B,rough,40", "B,rough,", "line 4: a surface of numbers needs rms and hurst, and one"),
-        ("B,rough", "A,rough", "line 4: the sample 'A' stands in line 3 as well"),
+        ("B,rough", "A,rough", "line 4: the sample 'A' is in line 3 as well"),
         ("B,rough", ",rough", "line 4: there is no name; write it in the column 'sample'"),
         ("0.8,20nm,,", "1.8,20nm,,", "line 4: hurst is 1.8; it must lie between"),
         ("hurst", "hurts", "line 3: there is no column 'hurts'; was hurst meant"),

@@ -167,8 +167,8 @@ def raw_scan(path: Path, options: ReadingOptions, height_scale: float = 1.0) -> 
         heights, sides = level.heights(), tuple(map(float, level.physical_sizes))
         if channel.unit is not None and are_possible_heights(heights, sides):
             raise ValueError(
-                f"{path} states heights in {channel.unit}, which may be; leave --height-unit "
-                f"{options.height_unit} out"
+                f"{path} states heights in {channel.unit}, which are possible; leave out "
+                f"--height-unit {options.height_unit}"
             )
         [factor] = in_metres(height_unit, 1.0)
         heights = factor * raw.heights()

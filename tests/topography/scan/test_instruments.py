@@ -164,7 +164,7 @@ def test_heights_have_a_unit_of_their_own_where_none_is_stated_or_it_cannot_be(t
     assert np.std(found[0].heights) == pytest.approx(np.std(noise), rel=0.1)
     assert "--height-unit kg is no unit of length" in refusal(nanometres, height_unit="kg", **PLAIN)
     path.write_text(path.read_text().replace("units: µm", "units: nm"))
-    assert "states heights in nm, which may be; leave" in refusal(path, height_unit="um")
+    assert "states heights in nm, which are possible; leave" in refusal(path, height_unit="um")
 
 
 def test_unequally_spaced_lines_are_refused(rng, tmp_path):
