@@ -582,4 +582,4 @@ def _page(loop: MeasuredLoop) -> Iterator[str]:
         f"{counts[0]} rows of approach, {counts[1]} of retraction"
     )
     yield from loop.remarks
-    yield "Intervals hold 95%."
+    yield "Intervals are 95% intervals."

@@ -119,8 +119,8 @@ def _treatments(one: Scan) -> Iterator[str]:
         )
     for axis in one.band.stripes:
         yield (
-            f"{item.path}: the density of waves along {'xy'[axis]} differs from that of all "
-            "others, as if rows were shifted or levelled one by one; these waves are left out."
+            f"{item.path}: the density of waves along {'xy'[axis]} alone differs from that of "
+            "all others, as if rows were shifted or levelled one by one; these waves are left out."
         )
 
 
