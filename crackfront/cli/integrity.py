@@ -85,7 +85,7 @@ def repair(places: tuple[Path, ...], output: Path | None) -> None:
             folder, sentences = place, set_aside_damaged(place)
         else:
             _, store, _ = opened(place, output)
-            folder, sentences = store.folder, store.renewed(place)
+            folder, sentences = store.folder, store.repair(place)
         date_back(folder)
         for sentence in sentences:
             click.echo(sentence)

@@ -110,7 +110,7 @@ def pack_paths(folder: Path, spectrum: str | None = None, block: range | None = 
     return found
 
 
-def renew_packs(paths: Iterable[Path]) -> Iterator[str]:
+def repair_packs(paths: Iterable[Path]) -> Iterator[str]:
     """Set damaged packs that no process writes aside but for their whole files; a sentence each."""
     for path in paths:
         whole, n_damaged = checked(path)

@@ -40,7 +40,7 @@ from crackfront.simulate.costs import expected_cost
 from crackfront.simulate.files import read_simulation
 from crackfront.simulate.run import SimulationResult
 from crackfront.simulate.simulation import Simulation, stems
-from crackfront.sweep.journal import RowIndex, new_pack, pack_paths, renew_packs
+from crackfront.sweep.journal import RowIndex, new_pack, pack_paths, repair_packs
 from crackfront.sweep.rows import COMPLETE, sweep_row
 from crackfront.sweep.shards import (
     FinishedShard,
@@ -304,7 +304,7 @@ class Store:
             )
         return {name: str(value) for name, value in about.items()}
 
-    def renewed(self, configuration: Path) -> Iterator[str]:
+    def repair(self, configuration: Path) -> Iterator[str]:
         """Set aside what is damaged, and remove shards whose curves are gone, to be made anew.
 
         Yields a sentence for every such file.
@@ -317,7 +317,7 @@ class Store:
                 path.unlink()
                 yield f"{path} is made anew, as no file beside it states its checksum"
         yield from set_aside_damaged(self.folder)
-        yield from renew_packs(pack_paths(self.curves))
+        yield from repair_packs(pack_paths(self.curves))
         if (self.folder / "shards").is_dir() and not self.configuration.is_file():
             write_text(self.configuration, movable_text(configuration))
         known = {one.name for path in pack_paths(self.curves) for one in members(path)[0]}

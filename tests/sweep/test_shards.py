@@ -134,7 +134,7 @@ def test_a_shard_without_its_checksum_is_not_believed_and_made_anew(path, damage
         beside.write_bytes(contents[damage])
     assert finished_shard(path) is None
     configuration = Path(__file__).parents[2] / "config/test.yaml"
-    [sentence] = store.renewed(configuration)
+    [sentence] = store.repair(configuration)
     assert sentence.startswith(str(path))
     assert "made anew" in sentence
     assert not path.exists()

@@ -452,7 +452,7 @@ def whole(made, store):
 
 
 def test_nothing_is_taken_back_of_a_store_that_is_whole(whole, tmp_path):
-    assert list(whole.renewed(tmp_path / "none.yaml")) == []
+    assert list(whole.repair(tmp_path / "none.yaml")) == []
     assert len(list((whole.folder / "shards").glob("*.nc"))) == 2
 
 
@@ -460,7 +460,7 @@ def test_nothing_is_taken_back_of_a_store_that_is_whole(whole, tmp_path):
 def test_the_shard_of_a_curve_that_is_damaged_or_gone_is_taken_back(whole, tmp_path, damage):
     [path, _] = pack_paths(whole.curves)
     flip_curve(whole, FLAT[0]) if damage == "flipped" else without(whole, f"{FLAT[0].stem}.nc")
-    told = list(whole.renewed(tmp_path / "none.yaml"))
+    told = list(whole.repair(tmp_path / "none.yaml"))
     assert any(f"{path} is damaged" in line for line in told) == (damage == "flipped")
     assert "flat.nc is made anew, as it lacks 1 curve of its simulations" in told[-1]
     assert [path.name for path in (whole.folder / "shards").glob("flat*")] == []
@@ -476,7 +476,7 @@ def test_a_damaged_file_is_set_aside_and_told(whole, tmp_path, name, damage):
     else:
         path.write_bytes(path.read_bytes()[:-40])
     (tmp_path / "sweep.yaml").write_text("text")
-    [first, *_] = whole.renewed(tmp_path / "sweep.yaml")
+    [first, *_] = whole.repair(tmp_path / "sweep.yaml")
     assert first.startswith(f"{path} is damaged; it is made anew, and set aside as {path.name}.dam")
     assert path.exists() == (name == "configuration.yaml")
     assert path.with_name(f"{path.name}.damaged").exists()
