@@ -281,7 +281,7 @@ def simulate(
             fill_store(store, missing, origin, checkpoint)
         except KeyboardInterrupt as stop:
             # A second Ctrl-C, which ends the process at once, has no sentence.
-            if not (str(stop) and parallel.launcher_knows_of_stop()):
+            if not (str(stop) and parallel.report_stop_to_launcher()):
                 raise
             StoppedError(str(stop)).show()
             return

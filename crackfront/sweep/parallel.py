@@ -78,8 +78,8 @@ def is_launched() -> bool:
     return _STOP_FILE in os.environ
 
 
-def launcher_knows_of_stop() -> bool:
-    """Write into the file of the launcher that this rank stops on request; whether there is one.
+def report_stop_to_launcher() -> bool:
+    """Write into the launcher's file that this rank stops on request; return whether it has one.
 
     The rank then ends with 0, as MPI reports any other exit code as a failure.
     """
