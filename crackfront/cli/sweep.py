@@ -278,7 +278,7 @@ def simulate(
         if waited:
             missing = store.unfinished(sweep, shards).missing
         try:
-            fill_store(store, missing, origin, checkpoint)
+            run_missing(store, missing, origin, checkpoint)
         except KeyboardInterrupt as stop:
             # A second Ctrl-C, which ends the process at once, has no sentence.
             if not (str(stop) and parallel.report_stop_to_launcher()):
@@ -321,7 +321,7 @@ def _refuse_unfinished(
     )
 
 
-def fill_store(
+def run_missing(
     store: Store,
     missing: tuple[Simulation, ...],
     origin: Provenance,
@@ -332,7 +332,7 @@ def fill_store(
 
     from crackfront.sweep.parallel import deferring_stops
     from crackfront.sweep.rows import COMPLETE
-    from crackfront.sweep.tasks import NotStoredError, fill
+    from crackfront.sweep.tasks import NotStoredError, run_and_store
 
     if missing:
         announce_compilation()
@@ -340,7 +340,7 @@ def fill_store(
     try:
         with (
             deferring_stops(),
-            closing(fill(store, missing, origin, checkpoint_seconds)) as outcomes,
+            closing(run_and_store(store, missing, origin, checkpoint_seconds)) as outcomes,
             tqdm(total=total, unit="simulation", disable=not terminal, file=sys.stderr) as bar,
         ):
             for count, (simulation, finished) in enumerate(outcomes, start=1):

@@ -42,7 +42,7 @@ class NotStoredError(OSError):
     """The machine could not compute a simulation or store it."""
 
 
-def fill(
+def run_and_store(
     store: Store,
     simulations: Sequence[Simulation],
     origin: Provenance,
