@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from crackfront.simulate.costs import Cost
     from crackfront.simulate.simulation import Simulation
     from crackfront.sweep.expectation import Expectation
-    from crackfront.sweep.journal import Writer
+    from crackfront.sweep.result_packs import Writer
     from crackfront.sweep.store import Inventory, Store
     from crackfront.sweep.sweep import Shard, Sweep
 
@@ -369,7 +369,7 @@ def status(folder: Path, as_json: bool) -> None:
     system knows them all.
     """
     from crackfront.sweep.configuration import load_configuration
-    from crackfront.sweep.journal import writers
+    from crackfront.sweep.result_packs import writers
     from crackfront.sweep.store import Store
 
     store = Store(folder)

@@ -40,7 +40,7 @@ from crackfront.simulate.costs import expected_cost
 from crackfront.simulate.files import read_simulation
 from crackfront.simulate.run import SimulationResult
 from crackfront.simulate.simulation import Simulation, stems
-from crackfront.sweep.journal import RowIndex, new_pack, pack_paths, repair_packs
+from crackfront.sweep.result_packs import RowIndex, new_pack, pack_paths, repair_packs
 from crackfront.sweep.rows import COMPLETE, sweep_row
 from crackfront.sweep.shards import (
     FinishedShard,

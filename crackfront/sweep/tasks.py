@@ -21,7 +21,7 @@ from crackfront.simulate.run import PartialRun, SimulationResult, compile_solver
 from crackfront.simulate.simulation import Simulation
 from crackfront.sweep import parallel
 from crackfront.sweep.checkpoints import CheckpointFile
-from crackfront.sweep.journal import Entry
+from crackfront.sweep.result_packs import Entry
 from crackfront.sweep.rows import failed_row, row_fingerprint, sweep_row
 from crackfront.sweep.store import Store
 

@@ -29,7 +29,7 @@ from crackfront.simulate.files import write_checkpoint
 from crackfront.simulate.run import run_simulation
 from crackfront.sweep import tasks
 from crackfront.sweep.configuration import load_configuration
-from crackfront.sweep.journal import Entry, RowIndex, new_pack, pack_paths
+from crackfront.sweep.result_packs import Entry, RowIndex, new_pack, pack_paths
 from crackfront.sweep.rows import failed_row, row_fingerprint
 from crackfront.sweep.store import Store
 from crackfront.sweep.verification import mixture_sentences, verification
@@ -182,7 +182,7 @@ def test_what_a_job_reads_before_it_starts_is_that_of_its_own_block(store, monke
     run_and_store(store, list(SWEEP.simulations()))
     read = []
     monkeypatch.setattr(
-        "crackfront.sweep.journal.members", lambda path: (read.append(path), members(path))[1]
+        "crackfront.sweep.result_packs.members", lambda path: (read.append(path), members(path))[1]
     )
     more = replace(SWEEP, n_realisation=3)
     assert len(store.inventory(more.simulations(more.spectra[0], range(2, 3))).missing) == 2

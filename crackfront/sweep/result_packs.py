@@ -1,4 +1,4 @@
-"""The packs of a store, to which the process of each job appends, and the index of what they hold.
+"""The packs of a store, to which the process of each job appends, and the index of their rows.
 
 A finished simulation is two files in a pack: its curve as netCDF, where it has one, and its row as
 JSON.

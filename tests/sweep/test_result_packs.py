@@ -8,7 +8,7 @@ import pytest
 
 from crackfront.data.packs import LONGEST_NAME, checked, record
 from crackfront.sweep.configuration import load_configuration
-from crackfront.sweep.journal import Entry, RowIndex, new_pack, pack_paths, repair_packs
+from crackfront.sweep.result_packs import Entry, RowIndex, new_pack, pack_paths, repair_packs
 from crackfront.sweep.rows import failed_row, row_fingerprint
 
 SWEEP = load_configuration(Path(__file__).parents[2] / "config/test.yaml")
