@@ -60,10 +60,10 @@ def plan(configuration: Path, output: Path | None, block: int | None, as_json: b
     """Print what a sweep would run, shard by shard, what is stored and what the rest costs."""
     from crackfront.sweep.expectation import doubts, expectations
     from crackfront.sweep.library import opened
-    from crackfront.sweep.needs import postprocessing_costs
+    from crackfront.sweep.postprocessing import postprocessing_costs
 
     sweep, store, _ = opened(configuration, output)
-    shards, late = sweep.shards(block), postprocessing_costs(sweep)
+    shards, postprocessing = sweep.shards(block), postprocessing_costs(sweep)
     expected = expectations(sweep)
     progress = {item.name: store.progress(sweep, item) for item in sweep.spectra}
     missing = [one for found in progress.values() for one in found.missing]
@@ -80,9 +80,9 @@ def plan(configuration: Path, output: Path | None, block: int | None, as_json: b
         "expected": expected,
         "doubts": (doubtful := [*doubts(sweep)]),
         **_costs(missing),
-        "late": late,
+        "late": postprocessing,
     }
-    lines = _plan_lines(sweep, store, shards, progress, expected, late)
+    lines = _plan_lines(sweep, store, shards, progress, expected, postprocessing)
     echo_answer(content, [*lines, *doubtful], as_json=as_json)
 
 
@@ -92,7 +92,7 @@ def _plan_lines(
     shards: Sequence[Shard],
     progress: Mapping[str, Inventory],
     expected: Mapping[str, Sequence[Expectation]],
-    late: Mapping[str, Cost],
+    postprocessing: Mapping[str, Cost],
 ) -> Iterator[str]:
     """Tables of the spectra of a sweep and of what is left to run, and its sizes."""
     from crackfront.sweep.store import NOTHING, mixture_sentence
@@ -128,7 +128,7 @@ def _plan_lines(
     yield from filter(None, (everything.stale_sentence(), mixture_sentence(everything.arithmetic)))
     yield ""
     left.append(_left("all", len(shards), everything.missing))
-    for name, cost in late.items():
+    for name, cost in postprocessing.items():
         hours, seconds = f"{cost.seconds / 3600:.3g}", f"{cost.seconds:.3g}"
         left.append((name, "-", "-", hours, seconds, f"{cost.memory / 1e6:.0f}", "-"))
     yield from table(
