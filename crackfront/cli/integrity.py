@@ -77,7 +77,7 @@ def repair(places: tuple[Path, ...], output: Path | None) -> None:
     whose curves are gone are removed, and files that are dated in the future get the date of now.
     `make` begins with it; nothing else of the workflow changes results before its jobs run.
     """
-    from crackfront.data.files import date_back, set_aside_damaged
+    from crackfront.data.files import reset_future_dates, set_aside_damaged
     from crackfront.sweep.library import opened
 
     for place in places:
@@ -86,7 +86,7 @@ def repair(places: tuple[Path, ...], output: Path | None) -> None:
         else:
             _, store, _ = opened(place, output)
             folder, sentences = store.folder, store.repair(place)
-        date_back(folder)
+        reset_future_dates(folder)
         for sentence in sentences:
             click.echo(sentence)
 

@@ -18,11 +18,11 @@ from crackfront.analysis.table import SweepRow, SweepTable
 from crackfront.data.bounds import counted
 from crackfront.data.digests import (
     SUMS,
-    digest_beside,
+    digest_path,
     forget_sums,
-    place_of_digest,
     read_sums,
     result_files,
+    stated_digest,
     sums_text,
 )
 from crackfront.data.files import (
@@ -312,7 +312,7 @@ class Store:
         if not self.folder.is_dir():
             return
         for path in sorted((self.folder / "shards").glob("*.nc")):
-            if digest_beside(path) is None:
+            if stated_digest(path) is None:
                 forget_sums(self.folder)
                 path.unlink()
                 yield f"{path} is made anew, as no file beside it states its checksum"
@@ -325,7 +325,7 @@ class Store:
             if lost := [name for name in curve_names(path) if name not in known]:
                 forget_sums(self.folder)
                 path.unlink()
-                place_of_digest(path).unlink(missing_ok=True)
+                digest_path(path).unlink(missing_ok=True)
                 curves = counted(len(lost), "curve")
                 yield f"{path} is made anew, as it lacks {curves} of its simulations"
 
