@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.fft import fftfreq, irfftn, rfftfreq, rfftn
 
-from crackfront.topography.scan.levelling import Array
+from crackfront.core.arrays import Array
 from crackfront.topography.scan.reading import Measurement
 
 _BINS_PER_DECADE = 20

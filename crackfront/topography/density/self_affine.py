@@ -17,8 +17,8 @@ import scipy
 from numpy.typing import NDArray
 from scipy.special import expit
 
+from crackfront.core.arrays import Array
 from crackfront.topography.density.densities import Density
-from crackfront.topography.scan.levelling import Array
 
 N_SHAPE = 5
 """Parameters of P: logarithm of the plateau, Hurst exponents at longer and at shorter waves,

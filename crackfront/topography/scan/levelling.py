@@ -8,9 +8,9 @@ import numpy as np
 from numpy.polynomial.legendre import legvander
 from numpy.typing import NDArray
 
+from crackfront.core.arrays import Array
 from crackfront.topography.options import Detrend
 
-Array = NDArray[np.float64]
 PointMask = NDArray[np.bool_]
 
 _ORDERS = {"center": 0, "height": 1, "slope": 1, "curvature": 2}

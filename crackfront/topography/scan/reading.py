@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from crackfront.core.arrays import Array
 from crackfront.data.bounds import counted
 from crackfront.data.written_units import prefixed
 from crackfront.topography.options import ReadingOptions, Region
@@ -27,7 +28,7 @@ from crackfront.topography.scan.instruments import (
     shown_sides,
     surface_library,
 )
-from crackfront.topography.scan.levelling import Array, PointMask, levelled, order_of, taken_off
+from crackfront.topography.scan.levelling import PointMask, levelled, order_of, taken_off
 from crackfront.topography.scan.outliers import outliers
 
 _PIXELS_PER_WAVE = 4

@@ -15,9 +15,9 @@ import numpy as np
 import scipy
 
 from crackfront.analysis.estimate import Estimate, quantiles
+from crackfront.core.arrays import Array
 from crackfront.topography.density.bands import Scan
 from crackfront.topography.density.densities import Density, bin_numbers
-from crackfront.topography.scan.levelling import Array
 from crackfront.topography.spectrum.fit import Continuation, Fit, fit_of
 from crackfront.topography.spectrum.quadrature import Quadrature
 

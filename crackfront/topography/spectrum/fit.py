@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from crackfront.analysis.estimate import Estimate, quantiles
+from crackfront.core.arrays import Array
 from crackfront.topography.density.densities import Density
 from crackfront.topography.density.self_affine import (
     BEND,
@@ -26,7 +27,6 @@ from crackfront.topography.density.self_affine import (
     shape_limits,
     weighted_residuals,
 )
-from crackfront.topography.scan.levelling import Array
 from crackfront.topography.spectrum.quadrature import Quadrature, States
 
 _FAR = 2.0
