@@ -14,7 +14,12 @@ from crackfront.core.arrays import Array
 from crackfront.data.bounds import counted
 from crackfront.data.written_units import prefixed
 from crackfront.topography.options import ReadingOptions, Region
-from crackfront.topography.scan.containers import Member, contained_surfaces, surface_of, unpacked
+from crackfront.topography.scan.containers import (
+    ContainedMeasurement,
+    contained_surfaces,
+    surface_of,
+    unpacked,
+)
 from crackfront.topography.scan.files import checksum, refuse_unreadable
 from crackfront.topography.scan.instruments import (
     RawScan,
@@ -166,7 +171,9 @@ def _measurements(path: Path, options: ReadingOptions) -> Iterator[Measurement]:
     yield from found[1:]
 
 
-def _member_options(file: Path, member: Member, options: ReadingOptions) -> ReadingOptions:
+def _member_options(
+    file: Path, member: ContainedMeasurement, options: ReadingOptions
+) -> ReadingOptions:
     """Options of a measurement in a container, with what this states and the data file does not."""
     changes: dict[str, Any] = {}
     if options.channel is None and member.is_original and member.data_source is not None:
