@@ -153,10 +153,13 @@ class Scan:
         return self.density.within(self.band.shortest_fitted, self.band.longest.wavelength)
 
 
-def scan(
+def analysed_scan(
     measurement: Measurement, shortest: float | None = None, longest: float | None = None
 ) -> Scan:
-    """A measurement with its trusted band, refused if narrow; its ends may be named (Units: m)."""
+    """A measurement with its density and its trusted band, whose ends may be given (Units: m).
+
+    ValueError if the band is narrower than an octave, or has too few values of the density.
+    """
     pairs, pixel = surrogate_pairs(measurement), max(measurement.pixels)
     waves = restored_periodogram(measurement, pairs)
     periodic = periodic_part(waves, measurement.shortest, measurement.longest)
