@@ -58,7 +58,7 @@ output_option = click.option(
 @as_json
 def plan(configuration: Path, output: Path | None, block: int | None, as_json: bool) -> None:
     """Print what a sweep would run, shard by shard, what is stored and what the rest costs."""
-    from crackfront.sweep.expectation import doubts, expectations
+    from crackfront.sweep.expectation import expectations, steady_part_warnings
     from crackfront.sweep.library import opened
     from crackfront.sweep.postprocessing import postprocessing_costs
 
@@ -78,12 +78,12 @@ def plan(configuration: Path, output: Path | None, block: int | None, as_json: b
         "shards": [shard.name for shard in shards],
         "unit_of_lengths": "reduced" if sweep.scales is None else "m",
         "expected": expected,
-        "doubts": (doubtful := [*doubts(sweep)]),
+        "doubts": (warnings := [*steady_part_warnings(sweep)]),
         **_costs(missing),
         "late": postprocessing,
     }
     lines = _plan_lines(sweep, store, shards, progress, expected, postprocessing)
-    echo_answer(content, [*lines, *doubtful], as_json=as_json)
+    echo_answer(content, [*lines, *warnings], as_json=as_json)
 
 
 def _plan_lines(
@@ -238,7 +238,7 @@ def simulate(
         return
     # MPI has to begin before what reads a sweep is imported.
     from crackfront.sweep.claims import claimed
-    from crackfront.sweep.expectation import doubts
+    from crackfront.sweep.expectation import steady_part_warnings
     from crackfront.sweep.library import opened
 
     sweep, store, origin = opened(configuration, output)
@@ -261,7 +261,7 @@ def simulate(
             "use fewer ranks, coarser numerics or a smaller tile",
         )
         announce_cost(costs["core_seconds"])
-        for sentence in doubts(sweep):
+        for sentence in steady_part_warnings(sweep):
             click.echo(f"Warning: {sentence}", err=True)
         if busy > 1:
             arguments = ["simulate", str(configuration), "--ranks", str(busy)]
