@@ -449,7 +449,7 @@ def test_loads_that_cannot_be_are_refused(surface, loads, sentence):
 def test_scales_take_texts_with_units():
     given = cf.Scales("1.25mm", "63mJ/m2", contact_modulus="0.9333333333333333 MPa")
     assert asdict(given) == pytest.approx(asdict(SPHERE), rel=1e-12)
-    with pytest.raises(ValueError, match=r"0\.0007 Pa, where all flows; was '0.7MPa' meant"):
+    with pytest.raises(ValueError, match=r"0\.0007 Pa, softer than any solid; was '0.7MPa' meant"):
         cf.Scales("1mm", "63mJ/m2", "0.7mPa")
     with pytest.raises(ValueError, match="radius is '1kg', which is no length; write a number"):
         cf.Scales("1kg", 1, 1)

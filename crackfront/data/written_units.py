@@ -66,7 +66,9 @@ def si_value(text: str, unit: str, *, what: str) -> float:
         raise ValueError(f"{what} is {text!r}; it must be positive and finite")
     if found[2].startswith("mPa"):
         meant = text.replace("mPa", "MPa")
-        raise ValueError(f"{what} is {text!r}, {value:g} Pa, where all flows; was {meant!r} meant?")
+        raise ValueError(
+            f"{what} is {text!r}, {value:g} Pa, softer than any solid; was {meant!r} meant?"
+        )
     refuse_outside(what, value, SI[unit], unit)
     return value
 

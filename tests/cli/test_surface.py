@@ -274,7 +274,7 @@ def test_a_surface_alone_has_no_energy_and_with_a_sphere_it_has(surface):
         ({"modulus": "0.7"}, "--modulus is '0.7', without a unit"),
         (
             {"modulus": "0.7mPa"},
-            "--modulus is '0.7mPa', 0.0007 Pa, where all flows; was '0.7MPa'",
+            "--modulus is '0.7mPa', 0.0007 Pa, softer than any solid; was '0.7MPa'",
         ),
         ({"radius": "1.25MPa"}, "--radius is '1.25MPa', which is no length"),
         ({"work_of_adhesion": "63mJ"}, "--work-of-adhesion is '63mJ', which is no energy per area"),
