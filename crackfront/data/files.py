@@ -47,7 +47,7 @@ class UnreadableFileError(ValueError):
 
 
 class FileSystemError(OSError):
-    """What the file system cannot do or does not allow now, with its remedy."""
+    """An operation that the file system does not allow; the message states the remedy."""
 
 
 _LOCKING = "HDF5_USE_FILE_LOCKING"
@@ -63,7 +63,7 @@ def refuse_failing_system(path: Path, error: Exception) -> None:
 
 
 def _refuse_without_locks(path: Path, number: int, error: Exception) -> None:
-    """Raise if an open file cannot be locked, as HDF5 does it, for the sake of a path."""
+    """Raise if HDF5 could not lock an open file, with the path in the message."""
     if os.environ.get(_LOCKING, "").upper() in ("FALSE", "0"):
         return
     try:
@@ -206,9 +206,9 @@ def _is_of_system(error: Exception) -> bool:
 
 
 def leftover_parts(folder: Path) -> Iterator[Path]:
-    """Files that writers began in a folder and did not finish within the last hour.
+    """Unfinished files of a folder that are older than an hour.
 
-    Their age is that against a file which is created now, by the clock of the file system.
+    Their age is the difference to the date of a new file, by the clock of the file system.
     """
     with tempfile.NamedTemporaryFile(prefix=".", suffix=".part", dir=folder) as new:
         now = Path(new.name).stat().st_mtime

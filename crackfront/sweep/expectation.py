@@ -15,10 +15,7 @@ from crackfront.simulate.simulation import Simulation
 from crackfront.sweep.sweep import Sweep
 
 _LAST_SITE = 1.0
-"""Distance by which the last site lags behind the mean, over the rms of the front.
-
-It separates 144 runs that became steady from those that did not.
-"""
+"""Lag of the last site behind the mean of a front, over its rms; from 144 runs."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -93,7 +93,7 @@ def finished_shard(path: Path) -> FinishedShard | None:
     OSError if the system cannot read it.
     """
     try:
-        # HDF5 never sees a damaged file: it may believe it, or not return.
+        # HDF5 may read a damaged file as valid, or never return from it.
         if stated_digest(path) != file_digest(path):
             return None
         with utf8_path(path) as named, netCDF4.Dataset(named) as file:
