@@ -1,4 +1,4 @@
-"""What is taken off the heights of a scan: polynomials, fitted where they are to be fitted."""
+"""Trends that are taken off the heights of a scan: polynomials, fitted to some of its points."""
 
 from __future__ import annotations
 

@@ -29,7 +29,7 @@ _SPIKE = 30.0
 """Height of a spike over the nearest neighbour in height, in rms differences of neighbours."""
 
 _SHARP = 4.0
-"""The same in what half of the neighbours spread over, which is more at a peak that is resolved."""
+"""The same over the interquartile range of the neighbours, which is large at a resolved peak."""
 
 _RMS_OF_QUANTILE = 1.0 / 1.645
 """Standard deviation of a normal distribution over the 90% quantile of its modulus."""
