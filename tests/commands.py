@@ -8,7 +8,7 @@ from click.testing import CliRunner
 
 from crackfront.cli import main
 from crackfront.data.packs import members
-from crackfront.sweep.journal import pack_paths
+from crackfront.sweep.result_packs import pack_paths
 
 slow = functools.partial(pytest.param, marks=pytest.mark.slow)
 """Parameters whose test is left to the night."""

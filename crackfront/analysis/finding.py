@@ -35,8 +35,8 @@ def stated_breadths() -> dict[str, float]:
 def finding(departure: str) -> str:
     """The sentences, with the numbers of the shipped law.
 
-    The departure says how far whose k are from the law. It follows "The law was measured on
-    straight fronts held by springs".
+    The departure ends the sentence "The law was measured on straight fronts held by springs". It
+    names further fronts and how far their k depart from the law.
 
     Examples
     --------

@@ -26,13 +26,13 @@ if TYPE_CHECKING:
     from crackfront.core.spectrum import Spectrum
 
 _CIRCLE = 0.02
-"""Relative error of k as a circle's period, 13 to 31 springs, and its curvature are neglected.
+"""Relative error of k by neglecting the curvature of a circle and its period of 13 to 31 springs.
 
-Simulated spheres (docs/law.md) depart by so much more from the law than the fronts that it is of.
+Simulated spheres depart from the law by so much more than straight fronts do (docs/law.md).
 """
 
 _LEAST_ADHESION = 0.02
-"""Work of adhesion, in units of w_int, of an approach that disorder all but stops."""
+"""Least work of adhesion of a branch, in units of w_int, where strong disorder leaves none."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -124,7 +124,7 @@ def _mean(one: Estimate[float], other: Estimate[float]) -> Estimate[float]:
 
 
 def _on_a_circle(found: PinningFactor) -> PinningFactor:
-    """Factor of a straight front with the model error of a front that is none."""
+    """Factor of a straight front with the additional model error of a circular one."""
     value, low = found.factor.value, found.factor.low
     error = math.hypot(found.factor.standard_error, _CIRCLE * value)
     wider = normal_estimate(value, error)

@@ -12,7 +12,7 @@ FEWEST_STATES = 3
 """Steady states from which a standard error is computed."""
 
 _DEPTHS = 3.0
-"""Rms deviations of a front from its mean after which it forgets; docs/model.md has the measure."""
+"""Distance between independent states, in rms deviations of a front; docs/model.md measures it."""
 
 
 def standard_error(

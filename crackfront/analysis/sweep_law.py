@@ -21,7 +21,7 @@ from crackfront.core.adhesion import FieldKind, larkin_length
 from crackfront.core.arrays import Array
 
 LARGE = 1.0
-"""Sizes g above this are those that the law is held to."""
+"""Size g above which measured k are compared with the law."""
 
 _UNKNOWN = Estimate(*(math.nan,) * 4)
 
@@ -31,7 +31,7 @@ _CURVE = 40
 
 @dataclass(frozen=True, slots=True)
 class SweepLaw:
-    """How the fronts of a sweep are held: all that the law needs beside the disorder."""
+    """The law at the spectra and amplitudes of a sweep, by the springs that hold its fronts."""
 
     table: SweepTable
     kind: FieldKind

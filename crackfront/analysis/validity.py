@@ -26,7 +26,7 @@ _MODEL_ERROR = 0.05
 disorder from 2 to 4 differ by between the measured amplitudes."""
 
 _NOTHING = 1.005
-"""Ratio below which a division by it shows in no digit."""
+"""Smallest ratio that changes a printed digit."""
 
 _EXTRAPOLATION = 0.5
 """Relative standard error of what the law says beyond the measured energies."""
@@ -107,7 +107,7 @@ def excess_coefficient(rows: Sequence[ValidityRow]) -> tuple[float, float]:
 
 
 def size_error(rows: Sequence[ValidityRow]) -> float:
-    """Standard error of the change of c with the logarithm of g, which the law has as none.
+    """Standard error of the slope of c in ln g; the law sets this slope to zero.
 
     Examples
     --------

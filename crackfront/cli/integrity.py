@@ -77,7 +77,7 @@ def repair(places: tuple[Path, ...], output: Path | None) -> None:
     are removed, and files that are dated in the future get the present date. `make` begins with
     this command; no other part of the workflow changes results before its jobs run.
     """
-    from crackfront.data.files import date_back, set_aside_damaged
+    from crackfront.data.files import reset_future_dates, set_aside_damaged
     from crackfront.sweep.library import opened
 
     for place in places:
@@ -85,8 +85,8 @@ def repair(places: tuple[Path, ...], output: Path | None) -> None:
             folder, sentences = place, set_aside_damaged(place)
         else:
             _, store, _ = opened(place, output)
-            folder, sentences = store.folder, store.renewed(place)
-        date_back(folder)
+            folder, sentences = store.folder, store.repair(place)
+        reset_future_dates(folder)
         for sentence in sentences:
             click.echo(sentence)
 

@@ -14,12 +14,11 @@ from typing import Any
 
 @contextlib.contextmanager
 def output_that_may_close() -> Iterator[None]:
-    """Let what is printed go nowhere where the reader of a pipe or a terminal is gone.
+    """Discard output once the reader of a pipe or a terminal is gone.
 
-    Names of files are printed as they are, also where they are no UTF-8.
-
-    A stream that was closed before the start goes nowhere, too: a file that is opened later would
-    else have its number, and get what is printed.
+    Names of files are printed as they are, also where they are no UTF-8. A stream that was closed
+    before the start is opened on the null device, as a file that is opened later would otherwise
+    get its number and the output.
     """
     for number in range(3):
         try:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import click
 
 from crackfront.cli.report import FILE, announce_cost, as_json, examples, with_progress
-from crackfront.cli.sweep import configuration_argument, fill_store, output_option
+from crackfront.cli.sweep import configuration_argument, output_option, run_missing
 
 if TYPE_CHECKING:
     from crackfront.analysis.result import SweepFit
@@ -80,7 +80,7 @@ def figures(configuration: Path, output: Path | None) -> None:
     # Its file may have gone since the table was made.
     missing = store.inventory([simulation]).missing
     announce_cost(sum(expected_cost(one).seconds for one in missing))
-    fill_store(store, missing, origin)
+    run_missing(store, missing, origin)
     result = store.result(simulation)
     drawn = {
         "hysteresis": hysteresis_figure(fitted),

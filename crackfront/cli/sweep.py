@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from crackfront.simulate.costs import Cost
     from crackfront.simulate.simulation import Simulation
     from crackfront.sweep.expectation import Expectation
-    from crackfront.sweep.journal import Writer
+    from crackfront.sweep.result_packs import Writer
     from crackfront.sweep.store import Inventory, Store
     from crackfront.sweep.sweep import Shard, Sweep
 
@@ -58,12 +58,12 @@ output_option = click.option(
 @as_json
 def plan(configuration: Path, output: Path | None, block: int | None, as_json: bool) -> None:
     """Print what a sweep would run, shard by shard, what is stored and what the rest costs."""
-    from crackfront.sweep.expectation import doubts, expectations
+    from crackfront.sweep.expectation import expectations, steady_part_warnings
     from crackfront.sweep.library import opened
-    from crackfront.sweep.needs import postprocessing_costs
+    from crackfront.sweep.postprocessing import postprocessing_costs
 
     sweep, store, _ = opened(configuration, output)
-    shards, late = sweep.shards(block), postprocessing_costs(sweep)
+    shards, postprocessing = sweep.shards(block), postprocessing_costs(sweep)
     expected = expectations(sweep)
     progress = {item.name: store.progress(sweep, item) for item in sweep.spectra}
     missing = [one for found in progress.values() for one in found.missing]
@@ -78,12 +78,12 @@ def plan(configuration: Path, output: Path | None, block: int | None, as_json: b
         "shards": [shard.name for shard in shards],
         "unit_of_lengths": "reduced" if sweep.scales is None else "m",
         "expected": expected,
-        "doubts": (doubtful := [*doubts(sweep)]),
+        "doubts": (warnings := [*steady_part_warnings(sweep)]),
         **_costs(missing),
-        "late": late,
+        "late": postprocessing,
     }
-    lines = _plan_lines(sweep, store, shards, progress, expected, late)
-    echo_answer(content, [*lines, *doubtful], as_json=as_json)
+    lines = _plan_lines(sweep, store, shards, progress, expected, postprocessing)
+    echo_answer(content, [*lines, *warnings], as_json=as_json)
 
 
 def _plan_lines(
@@ -92,7 +92,7 @@ def _plan_lines(
     shards: Sequence[Shard],
     progress: Mapping[str, Inventory],
     expected: Mapping[str, Sequence[Expectation]],
-    late: Mapping[str, Cost],
+    postprocessing: Mapping[str, Cost],
 ) -> Iterator[str]:
     """Tables of the spectra of a sweep and of what is left to run, and its sizes."""
     from crackfront.sweep.store import NOTHING, mixture_sentence
@@ -128,7 +128,7 @@ def _plan_lines(
     yield from filter(None, (everything.stale_sentence(), mixture_sentence(everything.arithmetic)))
     yield ""
     left.append(_left("all", len(shards), everything.missing))
-    for name, cost in late.items():
+    for name, cost in postprocessing.items():
         hours, seconds = f"{cost.seconds / 3600:.3g}", f"{cost.seconds:.3g}"
         left.append((name, "-", "-", hours, seconds, f"{cost.memory / 1e6:.0f}", "-"))
     yield from table(
@@ -238,7 +238,7 @@ def simulate(
         return
     # MPI has to begin before what reads a sweep is imported.
     from crackfront.sweep.claims import claimed
-    from crackfront.sweep.expectation import doubts
+    from crackfront.sweep.expectation import steady_part_warnings
     from crackfront.sweep.library import opened
 
     sweep, store, origin = opened(configuration, output)
@@ -261,7 +261,7 @@ def simulate(
             "use fewer ranks, coarser numerics or a smaller tile",
         )
         announce_cost(costs["core_seconds"])
-        for sentence in doubts(sweep):
+        for sentence in steady_part_warnings(sweep):
             click.echo(f"Warning: {sentence}", err=True)
         if busy > 1:
             arguments = ["simulate", str(configuration), "--ranks", str(busy)]
@@ -278,10 +278,10 @@ def simulate(
         if waited:
             missing = store.unfinished(sweep, shards).missing
         try:
-            fill_store(store, missing, origin, checkpoint)
+            run_missing(store, missing, origin, checkpoint)
         except KeyboardInterrupt as stop:
             # A second Ctrl-C, which ends the process at once, has no sentence.
-            if not (str(stop) and parallel.launcher_knows_of_stop()):
+            if not (str(stop) and parallel.report_stop_to_launcher()):
                 raise
             StoppedError(str(stop)).show()
             return
@@ -321,7 +321,7 @@ def _refuse_unfinished(
     )
 
 
-def fill_store(
+def run_missing(
     store: Store,
     missing: tuple[Simulation, ...],
     origin: Provenance,
@@ -332,7 +332,7 @@ def fill_store(
 
     from crackfront.sweep.parallel import deferring_stops
     from crackfront.sweep.rows import COMPLETE
-    from crackfront.sweep.tasks import NotStoredError, fill
+    from crackfront.sweep.tasks import NotStoredError, run_and_store
 
     if missing:
         announce_compilation()
@@ -340,7 +340,7 @@ def fill_store(
     try:
         with (
             deferring_stops(),
-            closing(fill(store, missing, origin, checkpoint_seconds)) as outcomes,
+            closing(run_and_store(store, missing, origin, checkpoint_seconds)) as outcomes,
             tqdm(total=total, unit="simulation", disable=not terminal, file=sys.stderr) as bar,
         ):
             for count, (simulation, finished) in enumerate(outcomes, start=1):
@@ -369,7 +369,7 @@ def status(folder: Path, as_json: bool) -> None:
     system knows them all.
     """
     from crackfront.sweep.configuration import load_configuration
-    from crackfront.sweep.journal import writers
+    from crackfront.sweep.result_packs import writers
     from crackfront.sweep.store import Store
 
     store = Store(folder)

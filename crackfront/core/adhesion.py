@@ -154,7 +154,7 @@ def correlation_length(kind: FieldKind, spectrum: Spectrum) -> float:
 
 
 def larkin_length(kind: FieldKind, spectrum: Spectrum, w_rms: float) -> float:
-    r"""Length over which weak disorder bends the front by as much as its force is correlated over.
+    r"""Larkin length: weak disorder bends a front over it by the correlation length of the force.
 
     .. math:: \ell = 2 \pi \, \frac{w_{int}\, \xi_u}{f_2}, \quad
               \xi_u^2 = \frac{\Delta(0)}{-\Delta''(0)}, \quad

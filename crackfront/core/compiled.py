@@ -48,9 +48,9 @@ def jit(function: Callable[..., Any] | None = None, *, cache: bool = True, **opt
 
 
 kernel = functools.partial(jit, _nrt=False)
-"""The same without reference counts, for inner functions that only use arrays they are given.
+"""As :func:`jit` without reference counts, for inner functions that use only arrays passed to them.
 
-Counting references to the arrays of a field took three quarters of the time of the inner loops.
+Reference counts of the arrays of a field would take three quarters of the time of inner loops.
 """
 
 Function = TypeVar("Function", bound=Callable[..., Any])

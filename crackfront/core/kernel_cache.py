@@ -1,9 +1,9 @@
 """The cache of compiled kernels: a file for every kernel and every type of its arguments.
 
-It lies in a folder that bears the fingerprint of the solver, to which all kernels belong: numba's
-own cache looks for changes only in the file that holds a kernel, not in those that it calls from
-other files. What lies there is executed, so nobody but this user may write to it. What is missing
-or damaged is compiled anew.
+The name of its folder ends with the fingerprint of the solver, which covers the sources of all
+kernels; numba's own cache checks only the file of a kernel, not the files of the kernels that it
+calls. Cached files are executed, so the folder is writable for this user alone. Kernels whose
+files are missing or damaged are compiled anew.
 
 This module uses private functions of numba; `pyproject.toml` bounds its version.
 """

@@ -1,7 +1,7 @@
-"""The cache of the user: folders that nobody else can write to, and files that prove themselves.
+"""The user's cache: folders that only this user can write to, and files with checksums.
 
-What lies there may be lost or damaged at any time. Each file begins with the digest of what
-follows, so that what was truncated or changed is not believed.
+Files may be lost or damaged at any time. Each begins with the digest of its content, by which a
+truncated or changed file is recognised.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""What the fields of a record say of themselves in a file: names, units and dimensions."""
+"""Names, units and dimensions of the fields of records, as files state them."""
 
 from __future__ import annotations
 

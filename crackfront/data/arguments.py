@@ -1,4 +1,4 @@
-"""Arguments of the library: what is said of one that is of another type than it must be."""
+"""Refusals of arguments of the library that have a wrong type."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from numbers import Real
 from typing import Any
 
 _SAYS_ITSELF = (str, int, float, bool, type(None))
-"""Types whose values say more than their names."""
+"""Types of which a message shows the value; of all others it names the type."""
 
 
 def refuse_other_type(

@@ -72,7 +72,7 @@ _KINDS = {"d": "a folder", "p": "a pipe", "s": "a socket", "c": "a device", "b":
 
 
 class TooLargeError(ValueError):
-    """What needs more memory or time than there is."""
+    """A computation needs more memory or time than there is."""
 
 
 def refuse_outside(what: str, value: float, bounds: Range, unit: str = "") -> None:
@@ -95,8 +95,8 @@ def refuse_outside(what: str, value: float, bounds: Range, unit: str = "") -> No
 def refuse_beyond_memory(what: str, needed: float, remedy: str, *, anywhere: bool = False) -> None:
     """Raise TooLargeError if something needs more memory than there is for this process.
 
-    The error states what is needed (Units: bytes), what there is, and the remedy. With `anywhere`,
-    refuse only what no machine holds: it is not this one on which it will be needed.
+    The error states the memory that is needed (Units: bytes), the memory of this process and the
+    remedy. With `anywhere` only the largest machine is the limit, as another one will compute it.
     """
     at_hand = memory_at_hand()
     if needed > (max(at_hand, MOST_MEMORY) if anywhere else at_hand):

@@ -18,14 +18,14 @@ from crackfront.data.packs import PACK, File, members
 from crackfront.data.provenance import Provenance
 
 _COSTS = {"s", "byte"}
-"""Units of what no two runs share."""
+"""Units of costs, which differ between any two runs."""
 
 _OF_ONE_RUN = {"date", "history", "key", "seconds", "cpu_seconds", "sweep_fingerprint"}
 _OF_ONE_RUN |= {item.name for item in fields(Provenance)}
 """Attributes that say where, when and how a file was made."""
 
 _KEY = re.compile(r"-[0-9a-f]{16}(?=\.nc$)")
-"""What the name of a file has of the sources that made it."""
+"""The key in the name of a file, which changes with the sources."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,8 +12,8 @@ from pathlib import Path
 SUMS = "SHA256SUMS"
 """Name of the list of checksums in a folder."""
 
-_BESIDE = ".sha256"
-"""What follows the name of a file in that of the list which states its checksum alone."""
+_DIGEST_SUFFIX = ".sha256"
+"""Ending of the name of the file that states the checksum of one other file."""
 
 DAMAGED_SUFFIX = ".damaged"
 """Ending of the name of a file that was set aside."""
@@ -40,15 +40,15 @@ def file_digest(path: Path) -> str:
         return hashlib.file_digest(file, "sha256").hexdigest()
 
 
-def place_of_digest(path: Path) -> Path:
-    """File beside another one that states its checksum, as `sha256sum --check` reads it."""
-    return path.with_name(path.name + _BESIDE)
+def digest_path(path: Path) -> Path:
+    """Path of the file that states the checksum of one file, as `sha256sum --check` reads it."""
+    return path.with_name(path.name + _DIGEST_SUFFIX)
 
 
-def digest_beside(path: Path) -> str | None:
-    """Checksum that the file beside one states of it; None without such a file."""
+def stated_digest(path: Path) -> str | None:
+    """Checksum of a file as the one at its :func:`digest_path` states it; None without one."""
     try:
-        return place_of_digest(path).read_text(encoding="utf-8", errors="replace").partition(" ")[0]
+        return digest_path(path).read_text(encoding="utf-8", errors="replace").partition(" ")[0]
     except FileNotFoundError:
         return None
 

@@ -21,12 +21,12 @@ from crackfront.data.bounds import TooLargeError, refuse_beyond_memory
 from crackfront.data.digests import (
     DAMAGED_SUFFIX,
     SUMS,
-    digest_beside,
+    digest_path,
     file_digest,
     forget_sums,
-    place_of_digest,
     read_sums,
     result_files,
+    stated_digest,
     sums_text,
 )
 from crackfront.data.packs import PACK, File, checked, is_locked
@@ -47,7 +47,7 @@ class UnreadableFileError(ValueError):
 
 
 class FileSystemError(OSError):
-    """What the file system cannot do or does not allow now, with its remedy."""
+    """An operation that the file system does not allow; the message states the remedy."""
 
 
 _LOCKING = "HDF5_USE_FILE_LOCKING"
@@ -63,7 +63,7 @@ def refuse_failing_system(path: Path, error: Exception) -> None:
 
 
 def _refuse_without_locks(path: Path, number: int, error: Exception) -> None:
-    """Raise if an open file cannot be locked, as HDF5 does it, for the sake of a path."""
+    """Raise if HDF5 could not lock an open file, with the path in the message."""
     if os.environ.get(_LOCKING, "").upper() in ("FALSE", "0"):
         return
     try:
@@ -88,15 +88,15 @@ def write_dataset(path: Path, dataset: xr.Dataset, origin: Provenance) -> None:
     stamped, encoding = _stamped(dataset, origin)
 
     def write(part: Path) -> None:
-        with library_path(part) as named:
+        with utf8_path(part) as named:
             stamped.to_netcdf(named, engine="netcdf4", encoding=encoding)
 
     replace_atomically(path, write)
 
 
 @contextlib.contextmanager
-def library_path(path: Path) -> Iterator[Path]:
-    """A path in UTF-8 of a file whose folder may have a name that is none, for netCDF4."""
+def utf8_path(path: Path) -> Iterator[Path]:
+    """Path of a file for netCDF4, which reads UTF-8 alone, also in a folder of another encoding."""
     try:
         str(path).encode()
     except UnicodeEncodeError:
@@ -150,7 +150,7 @@ def write_digest(path: Path) -> None:
     The checksums of HDF5 leave the metadata of a file open: a flipped bit there may change what is
     read, and HDF5 does not return from some of them.
     """
-    write_text(place_of_digest(path), sums_text({path.name: file_digest(path)}))
+    write_text(digest_path(path), sums_text({path.name: file_digest(path)}))
 
 
 def replace_atomically(path: Path, write: Callable[[Path], Any]) -> None:
@@ -206,9 +206,9 @@ def _is_of_system(error: Exception) -> bool:
 
 
 def leftover_parts(folder: Path) -> Iterator[Path]:
-    """Files that writers began in a folder and did not finish within the last hour.
+    """Unfinished files of a folder that are older than an hour.
 
-    Their age is that against a file which is created now, by the clock of the file system.
+    Their age is the difference to the date of a new file, by the clock of the file system.
     """
     with tempfile.NamedTemporaryFile(prefix=".", suffix=".part", dir=folder) as new:
         now = Path(new.name).stat().st_mtime
@@ -235,9 +235,7 @@ def read_dataset(
     if source is None:
         raise UnreadableFileError(f"{path} {_DAMAGED}")
     try:
-        opened = (
-            library_path(source) if isinstance(source, Path) else contextlib.nullcontext(source)
-        )
+        opened = utf8_path(source) if isinstance(source, Path) else contextlib.nullcontext(source)
         with (
             opened as named,
             xr.open_dataset(named, engine="netcdf4", decode_times=False) as dataset,
@@ -269,7 +267,7 @@ def is_damaged(path: Path, digest: str | None) -> bool:
     Without one, the arrays of a netCDF file are checked, which have their own, and the files in a
     pack; whatever else is there counts as whole.
     """
-    known = digest_beside(path) if digest is None else digest
+    known = stated_digest(path) if digest is None else digest
     if known is not None:
         return file_digest(path) != known
     if path.suffix == PACK:
@@ -318,10 +316,10 @@ def set_aside_damaged(folder: Path) -> Iterator[str]:
             yield f"{path} is damaged; it is made anew, and set aside as {set_aside(path).name}"
 
 
-def date_back(folder: Path) -> None:
-    """Give files of a folder that are dated in the future, but packs, the date of now.
+def reset_future_dates(folder: Path) -> None:
+    """Give the files of a folder with a date in the future the date of now, except packs.
 
-    Snakemake refuses to make anything of them.
+    Snakemake refuses inputs that are dated in the future.
     """
     now = time.time()
     for path in folder.rglob("[!.]*"):

@@ -1,4 +1,4 @@
-"""What variables say of themselves in files and datasets, by the CF conventions."""
+"""Attributes of variables in files and datasets, by the CF conventions."""
 
 from __future__ import annotations
 

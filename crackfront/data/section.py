@@ -27,8 +27,8 @@ def refusal(message: str) -> PydanticCustomError:
     return PydanticCustomError("section", "{message}", {"message": message})
 
 
-def within(bounds: Range) -> AfterValidator:
-    """What refuses a number that is not within bounds."""
+def bounds_validator(bounds: Range) -> AfterValidator:
+    """Validator that refuses numbers outside of bounds."""
 
     def bounded(value: float) -> float:
         if not bounds.least <= value <= bounds.most:
@@ -39,12 +39,12 @@ def within(bounds: Range) -> AfterValidator:
     return AfterValidator(bounded)
 
 
-Positive = Annotated[float, Field(gt=0, allow_inf_nan=False), within(NUMBER)]
-Plateau = Annotated[float, Field(gt=0, allow_inf_nan=False), within(PLATEAU)]
-Density = Annotated[float, Field(gt=0, allow_inf_nan=False), within(DENSITY)]
-Count = Annotated[int, Field(ge=1), within(COUNT)]
-Seed = Annotated[int, Field(ge=0), within(SEED)]
-Energy = Annotated[float, Field(gt=0, lt=1), within(NUMBER)]
+Positive = Annotated[float, Field(gt=0, allow_inf_nan=False), bounds_validator(NUMBER)]
+Plateau = Annotated[float, Field(gt=0, allow_inf_nan=False), bounds_validator(PLATEAU)]
+Density = Annotated[float, Field(gt=0, allow_inf_nan=False), bounds_validator(DENSITY)]
+Count = Annotated[int, Field(ge=1), bounds_validator(COUNT)]
+Seed = Annotated[int, Field(ge=0), bounds_validator(SEED)]
+Energy = Annotated[float, Field(gt=0, lt=1), bounds_validator(NUMBER)]
 
 _MOST_BYTES = 5e5
 """Size of a file; that of a person has some thousands."""
@@ -56,12 +56,12 @@ _MOST_SENTENCES = 20
 """Refusals of one file that are printed."""
 
 
-def beside(path: Path, info: ValidationInfo) -> Path:
+def resolved_path(path: Path, info: ValidationInfo) -> Path:
     """Path that a configuration names; a relative one begins in the folder of the configuration."""
     return Path(info.context or "") / path
 
 
-InputFile = Annotated[Path, Field(strict=False), AfterValidator(beside)]
+InputFile = Annotated[Path, Field(strict=False), AfterValidator(resolved_path)]
 """A file that a configuration names; a relative path begins in the folder of the configuration."""
 
 _HOME = "# Relative paths begin in "
@@ -72,7 +72,7 @@ _PRINTED = "".join(map(chr, range(32, 127))).replace("%", "")
 
 
 def movable_text(path: Path) -> str:
-    """Text of a configuration that means the same wherever it is stored."""
+    """Text of a configuration, its relative paths kept valid in whatever folder it is stored."""
     text = path.read_text(encoding="utf-8")
     if text.startswith(_HOME) or not re.search(r"\bsurface\s*:", text):
         return text
@@ -82,7 +82,7 @@ def movable_text(path: Path) -> str:
 
 
 class ConfigurationError(ValueError):
-    """What is wrong with a configuration, one sentence a line."""
+    """A configuration that cannot be used; each line is a sentence on one fault."""
 
 
 class Section(BaseModel):
@@ -95,10 +95,10 @@ Kind = TypeVar("Kind", bound=Section)
 
 
 def validated(path: Path, content: object, schema: type[Kind]) -> Kind:
-    """Section of a schema that the content of a file, as of :func:`content_of`, fills.
+    """Section of a schema, filled with the content of a file that :func:`yaml_mapping` has read.
 
-    Refusals name the file: ConfigurationError if anything is unknown, missing or out of range; one
-    sentence for each.
+    ConfigurationError, with a sentence that names the file for each key that is unknown, missing
+    or out of range.
     """
     try:
         first, *_ = path.read_text(encoding="utf-8").splitlines() or [""]
@@ -148,7 +148,7 @@ class _Constructor(SafeConstructor):
 _Constructor.add_constructor("tag:yaml.org,2002:int", _Constructor.construct_yaml_int)
 
 
-def content_of(path: Path) -> dict[str, Any]:
+def yaml_mapping(path: Path) -> dict[str, Any]:
     """Mapping that a YAML file holds, with tuples for lists.
 
     ConfigurationError if the file cannot be read, holds no mapping, or is too large or deep for

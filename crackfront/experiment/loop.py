@@ -320,10 +320,10 @@ def _with_zero_force(recording: Recording) -> tuple[Recording, list[Array], list
 
 
 def _touches(recording: Recording) -> NDArray[np.bool_]:
-    """Rows in contact: of a positive radius, else between the first and the last that has a force.
+    """Whether each row is in contact: its radius is positive, or, without radii, a force acts.
 
-    Without a radius a force is one beyond a part of the largest and beyond the noise of the first
-    rows, from their median.
+    A force acts from the first to the last row whose deviation from the median of the first rows is
+    above their noise and above a part of the largest deviation.
     """
     if recording.radius is not None:
         touches = recording.radius > 0
@@ -433,10 +433,10 @@ def _estimates(
     shifted: Iterable[Recording],
     apart: Iterable[Array] = (),
 ) -> list[Estimate[float]]:
-    """Numbers that are found from the rows of both branches, with their 95% intervals.
+    """Estimates, with 95% intervals, of numbers that a function finds from rows of both branches.
 
-    The shifted recordings are off by a standard error of the force's zero each. Apart are numbers
-    that are off by a standard error for another reason.
+    Each recording of `shifted` has its force shifted by a standard error of the zero. Each entry of
+    `apart` has the numbers changed by a standard error of another cause.
     """
     value = found(averaged, rig)
     count = min(_BLOCKS, min(rows.size for rows in averaged) // 2)

@@ -19,7 +19,7 @@ from crackfront.core.geometry.line import LineState
 from crackfront.core.geometry.sphere import ContactState
 from crackfront.core.outcome import Status
 from crackfront.core.variables import FORCE, LATERAL
-from crackfront.plots.parts import Series, draw_arrow
+from crackfront.plots.parts import PointStyle, draw_arrow
 from crackfront.plots.style import BLUE, COLUMN, PAGE, VERMILION, blank_figure, house_style
 from crackfront.plots.units import REDUCED, AxisUnits
 
@@ -57,7 +57,7 @@ class LoopStates(Protocol):
 
 
 _BRANCHES = {
-    direction: Series(colour, marker, ContactState.branch_names[direction])
+    direction: PointStyle(colour, marker, ContactState.branch_names[direction])
     for direction, colour, marker in ((1, BLUE, "o"), (-1, VERMILION, "s"))
 }
 """How the branch of each direction is drawn."""

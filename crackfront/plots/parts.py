@@ -54,7 +54,7 @@ def draw_arrow(axes: Axes, abscissa: Array, ordinate: Array, colour: str) -> Non
 
 
 @dataclass(frozen=True, slots=True)
-class Series:
+class PointStyle:
     """How points of one kind are drawn, and their entry in a legend; empty for none."""
 
     colour: str
@@ -62,7 +62,7 @@ class Series:
     label: str
 
 
-def sweep_series(table: SweepTable) -> tuple[Series, ...]:
+def spectrum_styles(table: SweepTable) -> tuple[PointStyle, ...]:
     """Colours and markers of all spectra of a sweep.
 
     Straight fronts of one spectrum on several springs share a colour and differ by marker.
@@ -74,7 +74,7 @@ def sweep_series(table: SweepTable) -> tuple[Series, ...]:
         if table.on_springs:
             colour, marker = family, families[:index].count(family)
             label = "" if marker else label
-        found.append(Series(spectrum_colour(colour), spectrum_marker(marker), label))
+        found.append(PointStyle(spectrum_colour(colour), spectrum_marker(marker), label))
     return tuple(found)
 
 
@@ -94,13 +94,13 @@ def spring_label(fit: SweepFit, index: int) -> str:
 
 
 def draw_estimates(
-    axes: Axes, series: Series, abscissa: Array, estimate: Estimate, filled: NDArray[np.bool_]
+    axes: Axes, style: PointStyle, abscissa: Array, estimate: Estimate, filled: NDArray[np.bool_]
 ) -> None:
     """Points of one spectrum with their intervals, filled or open."""
-    colour = series.colour
+    colour = style.colour
     reach = np.nan_to_num(estimate.high - estimate.value)
     for chosen, face, edge, name in (
-        (filled, colour, "white", series.label),
+        (filled, colour, "white", style.label),
         (~filled, "white", colour, ""),
     ):
         if not np.any(chosen):
@@ -110,7 +110,7 @@ def draw_estimates(
             estimate.value[chosen],
             yerr=reach[chosen],
             linestyle="none",
-            marker=series.marker,
+            marker=style.marker,
             color=colour,
             markerfacecolor=face,
             markeredgecolor=edge,
@@ -147,11 +147,11 @@ def draw_law(
     """Curves of k by the law, one a spectrum, of points that are made of e_el and k."""
     law = SweepLaw(fit.table, fit.kind, fit.uncorrelated)
     drawn = False
-    for index, series in enumerate(sweep_series(fit.table)):
+    for index, style in enumerate(spectrum_styles(fit.table)):
         abscissa, ordinate = curve(*law.curve(index))
         if np.any(np.isfinite(ordinate)):
             drawn = True
-            axes.plot(abscissa, ordinate, color=series.colour, linewidth=0.6, zorder=1.5)
+            axes.plot(abscissa, ordinate, color=style.colour, linewidth=0.6, zorder=1.5)
     if drawn:
         axes.plot([], [], color="0.5", linewidth=0.6, label="law of $k$ (coloured)")
 

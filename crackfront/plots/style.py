@@ -113,7 +113,7 @@ def shown_axes() -> Iterator[Axes]:
 
 
 _DATES = {".pdf": "CreationDate", ".png": "Software", ".svg": "Date"}
-"""What a figure of a format says of when or by what it was made; it is left out."""
+"""Metadata in which each format states the date or the program of a figure; they are left out."""
 
 
 def save_figure(figure: Figure, stem: Path) -> tuple[Path, ...]:

@@ -30,7 +30,7 @@ from crackfront.analysis.result import SweepFit
 from crackfront.analysis.sweep_law import LARGE
 from crackfront.core.arrays import Array
 from crackfront.plots.parts import (
-    Series,
+    PointStyle,
     draw_below,
     draw_estimates,
     draw_fit,
@@ -42,8 +42,8 @@ from crackfront.plots.parts import (
     spectrum_families,
     spectrum_label,
     spectrum_marker,
+    spectrum_styles,
     spring_label,
-    sweep_series,
 )
 from crackfront.plots.style import BLACK, COLUMN, PAGE, blank_figure, explain, house_style
 
@@ -99,11 +99,11 @@ def _draw_line_factors(left: Axes, right: Axes, fit: SweepFit) -> None:
     families = spectrum_families(table)
     for index, family in enumerate(families):
         label = "" if family in families[:index] else spectrum_label(table, index)
-        series = Series(spectrum_colour(family), spectrum_marker(family), label)
+        style = PointStyle(spectrum_colour(family), spectrum_marker(family), label)
         s = np.zeros_like(cells.w_rms[index]) if fit.uncorrelated else cells.w_rms[index]
         shown = np.nan_to_num(cells.size[index]) > LARGE
         row = cells.infinite_factor.at(index).only(shown)
-        draw_estimates(right, series, s, row, fit.in_range)
+        draw_estimates(right, style, s, row, fit.in_range)
     right.legend(*legend_entries(right), loc="lower left")
     right.set_ylabel(r"$k$, infinite contact (points: $g>1$)")
     left.set_ylim(0.0, 1.1 * PERTURBATION_FACTOR)
@@ -122,10 +122,10 @@ def draw_factor_by_size(axes: Axes, fit: SweepFit) -> None:
         s = 0.0 if fit.uncorrelated else 2 * np.sqrt(energy)
         colour = to_hex(shades[amplitude])
         for index, family in enumerate(families):
-            series = Series(colour, spectrum_marker(family), "")
+            style = PointStyle(colour, spectrum_marker(family), "")
             cell = fit.cells.factor.at(([index], amplitude))
             here = fit.in_range[[amplitude]]
-            draw_estimates(axes, series, size[[index], amplitude], cell, here)
+            draw_estimates(axes, style, size[[index], amplitude], cell, here)
         curve, label = law_value(law.coefficients, s, abscissa, breadth), 2 * np.sqrt(energy)
         axes.plot(abscissa, curve, color=colour, linewidth=0.8, label=rf"law, $s={label:.3g}$")
     for family in dict.fromkeys(families):
@@ -164,12 +164,12 @@ def draw_hysteresis(axes: Axes, fit: SweepFit) -> None:
     above = np.nan_to_num(hysteresis.value) > floor
     reach = np.fmax(hysteresis.low[above], floor)
     lowest = min(float(np.min(reach, initial=np.inf)), PAPER_FACTOR / 2 * ends[0]) / 1.6
-    for index, series in enumerate(sweep_series(fit.table)):
+    for index, style in enumerate(spectrum_styles(fit.table)):
         row = hysteresis.at(index)
         below = np.nan_to_num(row.value, nan=np.inf) <= floor
-        draw_below(axes, index, series.colour, variance[index, below])
+        draw_below(axes, index, style.colour, variance[index, below])
         shown = row.only(~below)
-        draw_estimates(axes, series, variance[index], shown, fit.in_range)
+        draw_estimates(axes, style, variance[index], shown, fit.in_range)
     draw_law(axes, fit, lambda energy, factor: (4 * energy, 2 * factor * energy))
     draw_theory(axes, ends, ends / 2)
     axes.set(xscale="log", yscale="log", xlim=ends)
@@ -181,7 +181,7 @@ def draw_hysteresis(axes: Axes, fit: SweepFit) -> None:
     handles, labels = legend_entries(axes)
     for index, family in enumerate(spectrum_families(fit.table)):
         if family == 0 and np.all(np.isfinite(fit.table.spring[index])):
-            marker = sweep_series(fit.table)[index].marker
+            marker = spectrum_styles(fit.table)[index].marker
             handles.append(Line2D([], [], color="0.4", linestyle="none", marker=marker))
             labels.append(spring_label(fit, index))
     axes.legend(handles, labels, loc="upper left")
@@ -220,9 +220,9 @@ def draw_factor_by_disorder(axes: Axes, fit: SweepFit) -> None:
     """
     energy, n_spectrum = fit.cells.e_el, fit.table.spectrum.size
     aside = 1 + 0.12 * (np.arange(n_spectrum) - (n_spectrum - 1) / 2) / max(n_spectrum - 1, 1)
-    for index, series in enumerate(sweep_series(fit.table)):
+    for index, style in enumerate(spectrum_styles(fit.table)):
         abscissa = energy[index] * aside[index]
-        draw_estimates(axes, series, abscissa, fit.cells.factor.at(index), fit.in_range)
+        draw_estimates(axes, style, abscissa, fit.cells.factor.at(index), fit.in_range)
     draw_law(axes, fit, lambda energy, factor: (energy, factor))
     ends = _ends(energy, 1.4)
     draw_fit(axes, fit)
@@ -242,9 +242,9 @@ def draw_factor_by_length(axes: Axes, fit: SweepFit) -> None:
         family = np.flatnonzero(shapes == shape)
         family = family[np.argsort(length[family])]
         axes.plot(length[family], factor.value[family], color="0.6", linewidth=0.6, zorder=1)
-    for index, series in enumerate(sweep_series(fit.table)):
+    for index, style in enumerate(spectrum_styles(fit.table)):
         here = factor.at([index])
-        draw_estimates(axes, replace(series, label=""), length[[index]], here, np.array([True]))
+        draw_estimates(axes, replace(style, label=""), length[[index]], here, np.array([True]))
     ends = _ends(length, 1.6)
     draw_theory(axes, ends)
     axes.set(xscale="log", xlim=ends)

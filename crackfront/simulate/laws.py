@@ -126,9 +126,9 @@ class _Interpolation:
     """Measured shapes, and the parts that they have in the error."""
     lowest: float
     highest: float
-    """End, with `lowest`, of the amplitudes e_el / w_int of which the largest error counts."""
+    """Ends of a range of e_el / w_int; the largest error among its amplitudes counts."""
     independent: float
-    """Part of the cutoffs along a front that are so, relative to the fronts of the laws."""
+    """Share of independent cutoffs along a front, relative to the fronts of the laws."""
 
 
 @functools.cache

@@ -34,9 +34,9 @@ class LoopSetup:
     seconds: float
     """Processor time that they will take, roughly."""
     tolerance: float
-    """That of the solver."""
+    """Tolerance of the solver."""
     measures: TileMeasures
-    """Those of the tile."""
+    """Measures of the tile."""
     period: float | None = None
     """Period of the tile over which the branches are averaged at most; None for steady parts."""
     simulation: Simulation | None = None
@@ -45,7 +45,7 @@ class LoopSetup:
     """Stiffness of the load against a front that is held, where a load step loses half of it times
     the square of the step. (Units: reduced energy / length**2)"""
     remark: str = ""
-    """What the result leaves to be desired, in words; empty where there is nothing."""
+    """A reservation about the result, as a sentence; empty if there is none."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,4 +1,4 @@
-"""What a kind of contact is in a simulation: the methods that its loads have."""
+"""The interface of a kind of contact in simulations: a class of its loads."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
 """Claims: which realisations a process simulates, so that another one waits for them.
 
-A launcher that this package does not know starts a command several times, and a controller that
-was killed leaves jobs beside which the next one starts the same.
+Two processes have the same realisations where an unknown launcher starts a command several times,
+or where a controller starts jobs that an earlier, killed one has left running.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from crackfront.sweep.parallel import stop_is_requested
 from crackfront.sweep.sweep import Shard
 
 _SECONDS = 0.5
-"""Time between two looks at whether another process has ended."""
+"""Time between two attempts to lock realisations that another process holds. (Units: s)"""
 
 
 @contextlib.contextmanager

@@ -20,9 +20,9 @@ from crackfront.data.section import (
     Count,
     Section,
     Seed,
-    content_of,
     refusal,
     validated,
+    yaml_mapping,
 )
 from crackfront.simulate.costs import expected_cost, refuse_oversized
 from crackfront.simulate.laws import Knobs
@@ -127,7 +127,7 @@ def load_configuration(path: Path) -> Sweep:
     ConfigurationError if the file cannot be read, is no YAML mapping, or anything in it is unknown,
     missing or out of range; one sentence for each.
     """
-    configuration = validated(path, content_of(path), Configuration)
+    configuration = validated(path, yaml_mapping(path), Configuration)
     try:
         sweep = configuration.sweep()
         _refuse_infeasible(sweep)

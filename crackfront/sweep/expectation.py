@@ -1,4 +1,4 @@
-"""What a sweep will find: k by the law, and which loads leave its branches without steady part."""
+"""Expected results of a sweep: k by the law, and penetrations that leave no steady part."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from crackfront.simulate.simulation import Simulation
 from crackfront.sweep.sweep import Sweep
 
 _LAST_SITE = 1.0
-"""Rms of a front by which its last site lags behind, by 144 runs that became steady or not."""
+"""Lag of the last site behind the mean of a front, over its rms; from 144 runs."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,8 +75,8 @@ def expectations(sweep: Sweep) -> dict[str, list[Expectation]]:
     }
 
 
-def doubts(sweep: Sweep) -> Iterator[str]:
-    """A sentence for each spectrum of a sweep that may have no steady part, with what to do."""
+def steady_part_warnings(sweep: Sweep) -> Iterator[str]:
+    """A sentence for each spectrum that may have no steady part, with the penetration it needs."""
     vertical, name = (1.0, "") if sweep.scales is None else (sweep.scales.vertical, " m")
     for spectrum, expected in expectations(sweep).items():
         needed = {

@@ -24,7 +24,7 @@ from crackfront.sweep.parallel import deferring_stops
 from crackfront.sweep.rows import COMPLETE
 from crackfront.sweep.store import Store
 from crackfront.sweep.sweep import Sweep
-from crackfront.sweep.tasks import fill
+from crackfront.sweep.tasks import run_and_store
 
 
 def opened(configuration: Path, output: Path | None) -> tuple[Sweep, Store, Provenance]:
@@ -83,7 +83,7 @@ def run_sweep(
         bar = held.enter_context(
             tqdm(total=len(missing), unit="simulation", disable=not shown, file=sys.stderr)
         )
-        for _ in held.enter_context(contextlib.closing(fill(store, missing, origin))):
+        for _ in held.enter_context(contextlib.closing(run_and_store(store, missing, origin))):
             bar.update()
         for shard in shards:
             store.finish_shard(found, shard, origin)

@@ -38,7 +38,7 @@ _ENDED = "ended"
 """What the manager writes into it before it stops."""
 
 _ALIVE = b"\n"
-"""What the process that starts a launcher writes into the input of the ranks and then holds."""
+"""First byte on the standard input of the ranks, which the process of the launcher keeps open."""
 
 _SIZES = (
     *("PMI_SIZE", "MPI_LOCALNRANKS", "OMPI_COMM_WORLD_SIZE", "MV2_COMM_WORLD_SIZE"),
@@ -53,10 +53,10 @@ _RANKS = (
     *("PMI_RANK", "PMIX_RANK", "MPI_LOCALRANKID", "OMPI_COMM_WORLD_RANK", "MV2_COMM_WORLD_RANK"),
     *("SLURM_PROCID", "PALS_RANKID", "ALPS_APP_PE", "JSM_NAMESPACE_RANK", "FLUX_TASK_RANK"),
 )
-"""Those in which they number the processes, from 0; some state nothing else."""
+"""Environment variables in which launchers number processes from 0; some launchers set no other."""
 
 _LOOK = 0.02
-"""Time between two looks at a launcher. (Units: s)"""
+"""Time between two polls of a launcher. (Units: s)"""
 
 _GRACE = 10.0
 """Time that a launcher has to end its ranks before it is killed. (Units: s)"""
@@ -78,8 +78,8 @@ def is_launched() -> bool:
     return _STOP_FILE in os.environ
 
 
-def launcher_knows_of_stop() -> bool:
-    """Write into the file of the launcher that this rank stops on request; whether there is one.
+def report_stop_to_launcher() -> bool:
+    """Write into the launcher's file that this rank stops on request; return whether it has one.
 
     The rank then ends with 0, as MPI reports any other exit code as a failure.
     """
@@ -189,7 +189,7 @@ def _stated(name: str) -> int:
 
 def _end_with_launcher(abort: Callable[[int], object]) -> None:
     """End all ranks when the process that started the launcher is gone, which closes this input."""
-    # Where the launcher passes no input on, it ends before the sign with which that begins.
+    # A launcher that passes no input on closes it before the first byte: its end then says nothing.
     if os.read(0, 1) == _ALIVE:
         while os.read(0, 1):
             pass

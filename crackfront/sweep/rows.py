@@ -62,7 +62,7 @@ def sweep_row(result: SimulationResult) -> SweepRow:
 
 
 def failed_row(simulation: Simulation, status: str, sentence: str) -> SweepRow:
-    """The same about a simulation that cannot be done, and why, in a word and in a sentence."""
+    """Row of a simulation that failed, with its status and the reason as a sentence."""
     unknown: dict[str, Any] = {item.name: math.nan for item in fields(SweepRow)}
     nothing = dict.fromkeys(("iterations", "n_step", "n_approach", "n_retraction"), 0)
     known = {"status": status, "status_sentence": sentence, "seed": simulation.seed, "curve": ""}

@@ -32,9 +32,9 @@ from crackfront.data.section import (
     InputFile,
     Positive,
     Section,
-    beside,
+    bounds_validator,
     refusal,
-    within,
+    resolved_path,
 )
 from crackfront.simulate.laws import Knobs
 from crackfront.simulate.line.loads import LAW_LENGTH, LineLoad, SpringUnit
@@ -52,9 +52,9 @@ Rms = Annotated[float, Field(gt=0, lt=2, allow_inf_nan=False)]
 class ScalesSection(Section):
     """Scene in SI units."""
 
-    radius: Annotated[float, within(SI["m"])]
-    work_of_adhesion: Annotated[float, within(SI["J/m^2"])]
-    contact_modulus: Annotated[float, within(SI["Pa"])]
+    radius: Annotated[float, bounds_validator(SI["m"])]
+    work_of_adhesion: Annotated[float, bounds_validator(SI["J/m^2"])]
+    contact_modulus: Annotated[float, bounds_validator(SI["Pa"])]
 
 
 _READING_KEYS: Any = {
@@ -77,11 +77,11 @@ class SurfaceSection(_ReadingSection):
 
     @field_validator("mask")
     @classmethod
-    def _beside(cls, given: Any, info: ValidationInfo) -> Any:
+    def _resolved_masks(cls, given: Any, info: ValidationInfo) -> Any:
         """Parts of a scan as they are, and files relative to the configuration."""
         masks = given if isinstance(given, tuple) else (given,)
         return tuple(
-            str(beside(Path(one), info)) if isinstance(one, str) and ":" not in one else one
+            str(resolved_path(Path(one), info)) if isinstance(one, str) and ":" not in one else one
             for one in masks
         )
 
@@ -222,13 +222,13 @@ class NumericsSection(Section):
     """An error or a resolution, and the solver, as in `Numerics`."""
 
     error: Annotated[float, Field(gt=0, lt=1)] | None = None
-    angles: Annotated[int, within(SITES)] | None = None
+    angles: Annotated[int, bounds_validator(SITES)] | None = None
     angles_per_cutoff: Density | None = None
     samples_per_cutoff: Density | None = None
     interpolation: Interpolation | None = None
-    pixels_per_cutoff: Annotated[float, within(PIXELS)] | None = None
+    pixels_per_cutoff: Annotated[float, bounds_validator(PIXELS)] | None = None
     tile: TileSection
-    tolerance: Annotated[float, within(TOLERANCE)] | None = None
+    tolerance: Annotated[float, bounds_validator(TOLERANCE)] | None = None
     max_sweeps: Count
     solver: str
 
@@ -330,7 +330,7 @@ class FitSection(Section):
 
     lowest_elastic_energy: Positive
     highest_elastic_energy: Energy
-    bootstrap: Annotated[int, within(Range(FEWEST_BOOTSTRAP, 10**7))]
+    bootstrap: Annotated[int, bounds_validator(Range(FEWEST_BOOTSTRAP, 10**7))]
 
     @model_validator(mode="after")
     def _ordered(self) -> FitSection:

@@ -13,11 +13,11 @@ from numpy.typing import NDArray
 
 from crackfront.analysis.table import PLACE, SweepRow
 from crackfront.core.variables import variables
-from crackfront.data.digests import digest_beside, file_digest
+from crackfront.data.digests import file_digest, stated_digest
 from crackfront.data.files import (
-    library_path,
     read_dataset,
     refuse_failing_system,
+    utf8_path,
     write_dataset,
     write_digest,
 )
@@ -93,10 +93,10 @@ def finished_shard(path: Path) -> FinishedShard | None:
     OSError if the system cannot read it.
     """
     try:
-        # HDF5 never sees a damaged file: it may believe it, or not return.
-        if digest_beside(path) != file_digest(path):
+        # HDF5 may read a damaged file as valid, or never return from it.
+        if stated_digest(path) != file_digest(path):
             return None
-        with library_path(path) as named, netCDF4.Dataset(named) as file:
+        with utf8_path(path) as named, netCDF4.Dataset(named) as file:
             return FinishedShard(
                 path=path,
                 spectrum=str(file.spectrum_name),
@@ -119,7 +119,7 @@ def shard_columns(shard: FinishedShard, taken: range) -> dict[str, NDArray[np.ge
     """
     first = shard.realisations.start
     columns = {}
-    with library_path(shard.path) as named, netCDF4.Dataset(named) as file:
+    with utf8_path(shard.path) as named, netCDF4.Dataset(named) as file:
         file.set_auto_maskandscale(False)
         file.set_auto_chartostring(False)
         for item in variables(SweepRow):

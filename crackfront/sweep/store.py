@@ -18,11 +18,11 @@ from crackfront.analysis.table import SweepRow, SweepTable
 from crackfront.data.bounds import counted
 from crackfront.data.digests import (
     SUMS,
-    digest_beside,
+    digest_path,
     forget_sums,
-    place_of_digest,
     read_sums,
     result_files,
+    stated_digest,
     sums_text,
 )
 from crackfront.data.files import (
@@ -40,7 +40,7 @@ from crackfront.simulate.costs import expected_cost
 from crackfront.simulate.files import read_simulation
 from crackfront.simulate.run import SimulationResult
 from crackfront.simulate.simulation import Simulation, stems
-from crackfront.sweep.journal import RowIndex, new_pack, pack_paths, renew_packs
+from crackfront.sweep.result_packs import RowIndex, new_pack, pack_paths, repair_packs
 from crackfront.sweep.rows import COMPLETE, sweep_row
 from crackfront.sweep.shards import (
     FinishedShard,
@@ -304,7 +304,7 @@ class Store:
             )
         return {name: str(value) for name, value in about.items()}
 
-    def renewed(self, configuration: Path) -> Iterator[str]:
+    def repair(self, configuration: Path) -> Iterator[str]:
         """Set aside what is damaged, and remove shards whose curves are gone, to be made anew.
 
         Yields a sentence for every such file.
@@ -312,12 +312,12 @@ class Store:
         if not self.folder.is_dir():
             return
         for path in sorted((self.folder / "shards").glob("*.nc")):
-            if digest_beside(path) is None:
+            if stated_digest(path) is None:
                 forget_sums(self.folder)
                 path.unlink()
                 yield f"{path} is made anew, as no file beside it states its checksum"
         yield from set_aside_damaged(self.folder)
-        yield from renew_packs(pack_paths(self.curves))
+        yield from repair_packs(pack_paths(self.curves))
         if (self.folder / "shards").is_dir() and not self.configuration.is_file():
             write_text(self.configuration, movable_text(configuration))
         known = {one.name for path in pack_paths(self.curves) for one in members(path)[0]}
@@ -325,7 +325,7 @@ class Store:
             if lost := [name for name in curve_names(path) if name not in known]:
                 forget_sums(self.folder)
                 path.unlink()
-                place_of_digest(path).unlink(missing_ok=True)
+                digest_path(path).unlink(missing_ok=True)
                 curves = counted(len(lost), "curve")
                 yield f"{path} is made anew, as it lacks {curves} of its simulations"
 

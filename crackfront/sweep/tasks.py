@@ -21,7 +21,7 @@ from crackfront.simulate.run import PartialRun, SimulationResult, compile_solver
 from crackfront.simulate.simulation import Simulation
 from crackfront.sweep import parallel
 from crackfront.sweep.checkpoints import CheckpointFile
-from crackfront.sweep.journal import Entry
+from crackfront.sweep.result_packs import Entry
 from crackfront.sweep.rows import failed_row, row_fingerprint, sweep_row
 from crackfront.sweep.store import Store
 
@@ -30,7 +30,7 @@ _STOPPED, _NOT_STORED = "stopped", "not_stored"
 
 
 @dataclass(frozen=True, slots=True)
-class Finished:
+class SimulationOutcome:
     """How a simulation ended: status of its row, wall time, and what was wrong, if anything."""
 
     status: str
@@ -42,12 +42,12 @@ class NotStoredError(OSError):
     """The machine could not compute a simulation or store it."""
 
 
-def fill(
+def run_and_store(
     store: Store,
     simulations: Sequence[Simulation],
     origin: Provenance,
     checkpoint_seconds: float = 60.0,
-) -> Generator[tuple[Simulation, Finished], None, None]:
+) -> Generator[tuple[Simulation, SimulationOutcome], None, None]:
     """Run simulations, the longest first, and store each as soon as it is finished.
 
     Yields each simulation with how it ended, in the order in which they end. Close the generator to
@@ -73,19 +73,19 @@ def fill(
         store.packs(simulations) as packs,
         closing(parallel.run_tasks(_run_task, tasks, functools.partial(_keep, packs))) as outcomes,
     ):
-        for count, (task, finished) in enumerate(outcomes):
+        for count, (task, outcome) in enumerate(outcomes):
             stored = f"{count} of {len(tasks)} simulations"
-            if finished.status == _STOPPED:
+            if outcome.status == _STOPPED:
                 raise KeyboardInterrupt(
                     f"{stored} are finished; they and the states of running ones are stored; the "
                     "same call continues"
                 )
-            if finished.status == _NOT_STORED:
+            if outcome.status == _NOT_STORED:
                 raise NotStoredError(
-                    f"{task.simulation.label}: {finished.sentence}; {stored} were stored, and the "
+                    f"{task.simulation.label}: {outcome.sentence}; {stored} were stored, and the "
                     "same call continues with the others"
                 )
-            yield task.simulation, finished
+            yield task.simulation, outcome
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,33 +101,35 @@ class _Task:
 
 
 @dataclass(frozen=True, slots=True)
-class _Outcome:
+class _TaskResult:
     """What the process that ran a task hands to the one that stores it."""
 
-    finished: Finished
+    outcome: SimulationOutcome
     entry: Entry | None = None
     curve: bytes = b""
 
 
-def _keep(packs: Mapping[str, Pack], task: _Task, outcome: _Outcome) -> Finished:
-    """Store a simulation that has ended, and remove its checkpoint; how it ended."""
-    if outcome.entry is not None:
+def _keep(packs: Mapping[str, Pack], task: _Task, result: _TaskResult) -> SimulationOutcome:
+    """Store a simulation that has ended and remove its checkpoint; return how it ended."""
+    if result.entry is not None:
         try:
-            packs[task.simulation.spectrum_name].append(outcome.entry.files(outcome.curve))
+            packs[task.simulation.spectrum_name].append(result.entry.files(result.curve))
             task.store.checkpoint(task.simulation).unlink(missing_ok=True)
         except OSError as error:
             return _not_stored(error)
-    return outcome.finished
+    return result.outcome
 
 
-def _not_stored(error: Exception) -> Finished:
-    """That the machine could not compute a simulation or store it."""
+def _not_stored(error: Exception) -> SimulationOutcome:
+    """Outcome of a simulation that the machine could not compute or store."""
     sentence = f"the machine could not compute or store it ({error}); free disk, memory or "
-    return Finished(_NOT_STORED, sentence=f"{sentence}threads and run the same command again")
+    return SimulationOutcome(
+        _NOT_STORED, sentence=f"{sentence}threads and run the same command again"
+    )
 
 
 def _result(task: _Task) -> tuple[SimulationResult, str]:
-    """Result of a task, from its checkpoint on if that is of use, and why it was of none."""
+    """Result of a task, and why its checkpoint could not be used; empty where it was or is none."""
     simulation = task.simulation
     file = CheckpointFile(task.store.checkpoint(simulation), task.checkpoint_seconds)
 
@@ -140,31 +142,31 @@ def _result(task: _Task) -> tuple[SimulationResult, str]:
         try:
             resume = read_checkpoint(file.path, simulation)
             return run_simulation(simulation, resume=resume, keep=keep), ""
-        except (*_OF_PHYSICS, LookupError, TypeError) as error:
+        except (*_REPRODUCIBLE_ERRORS, LookupError, TypeError) as error:
             wrong = f"begun anew without its checkpoint: {error}"
     return run_simulation(simulation, keep=keep), wrong
 
 
-def _run_task(task: _Task) -> _Outcome:
-    """Run one simulation; what the machine could not do has no entry."""
+def _run_task(task: _Task) -> _TaskResult:
+    """Run one simulation; failures of the machine (memory, disk) are not stored as results."""
     if parallel.stop_is_requested():
-        return _Outcome(Finished(_STOPPED))
+        return _TaskResult(SimulationOutcome(_STOPPED))
     try:
         return _run(task)
     except _StopRequestedError:
-        return _Outcome(Finished(_STOPPED))
+        return _TaskResult(SimulationOutcome(_STOPPED))
     except (MemoryError, TooLargeError):
         sentence = "the memory does not suffice; start fewer ranks"
-        return _Outcome(Finished(_NOT_STORED, sentence=sentence))
+        return _TaskResult(SimulationOutcome(_NOT_STORED, sentence=sentence))
     except (OSError, RuntimeError, SystemError, NumbaError) as error:
-        return _Outcome(_not_stored(error))
+        return _TaskResult(_not_stored(error))
 
 
-_OF_PHYSICS = (ValueError, ArithmeticError, DefectError)
-"""What ends a simulation in the same way on every machine."""
+_REPRODUCIBLE_ERRORS = (ValueError, ArithmeticError, DefectError)
+"""Errors that end a simulation in the same way on every machine."""
 
 
-def _run(task: _Task) -> _Outcome:
+def _run(task: _Task) -> _TaskResult:
     """Run one simulation to its row and its curve."""
     simulation = task.simulation
     origin = task.origin.here()
@@ -172,7 +174,7 @@ def _run(task: _Task) -> _Outcome:
         result, wrong = _result(task)
     except TooLargeError:
         raise
-    except _OF_PHYSICS as error:
+    except _REPRODUCIBLE_ERRORS as error:
         # The surface or the load cannot be simulated, or the solver found a defect in itself.
         status = "refused" if isinstance(error, ValueError) else "defect"
         sentence = str(error) or type(error).__name__
@@ -183,7 +185,7 @@ def _run(task: _Task) -> _Outcome:
         row, sentence, seconds = sweep_row(result), wrong, result.measures.seconds
     named = simulation.stem, simulation.parts, row_fingerprint()
     entry = Entry(*named, row, origin.arithmetic)
-    return _Outcome(Finished(row.status, seconds, sentence), entry, curve)
+    return _TaskResult(SimulationOutcome(row.status, seconds, sentence), entry, curve)
 
 
 class _StopRequestedError(Exception):

@@ -18,7 +18,7 @@ from crackfront.data.files import (
 )
 from crackfront.data.packs import members
 from crackfront.sweep.configuration import load_configuration
-from crackfront.sweep.journal import pack_paths
+from crackfront.sweep.result_packs import pack_paths
 from crackfront.sweep.shards import curve_names, finished_shard
 from crackfront.sweep.store import Store, lost_curves
 from crackfront.sweep.table import SWEEP_FINGERPRINT

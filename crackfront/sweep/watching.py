@@ -12,7 +12,7 @@ from crackfront.sweep.store import Store
 from crackfront.sweep.sweep import Sweep
 
 _LEAST_WAIT, _SHARE = 1.0, 0.1
-"""Shortest time between two looks at the folder (Units: s), and the part of the time they take."""
+"""Shortest time between two reads of the folder (Units: s), and largest share of time for them."""
 
 
 class SweepBar:

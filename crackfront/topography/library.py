@@ -12,7 +12,7 @@ from xarray import DataArray
 from crackfront.core.units import Scales
 from crackfront.data.arguments import refuse_other_type
 from crackfront.simulate.si_units import refuse_no_scales
-from crackfront.topography.density.bands import scan
+from crackfront.topography.density.bands import analysed_scan
 from crackfront.topography.options import (
     PredictionOptions,
     PsdOptions,
@@ -77,7 +77,7 @@ def read_scan(path: File, sphere: Scales, **options: Any) -> DataArray:
     measured, *others = read_measurements([file], reading)
     if others:
         raise ValueError(f"{file} holds {1 + len(others)} measurements; name the file of one")
-    return scan_surface(scan(measured, reading.shortest, reading.longest), sphere)
+    return scan_surface(analysed_scan(measured, reading.shortest, reading.longest), sphere)
 
 
 def _path(scan: File) -> Path:

@@ -10,13 +10,13 @@ import numpy as np
 import scipy
 from scipy.fft import fftfreq, irfft2, rfft2
 
+from crackfront.core.arrays import Array
 from crackfront.core.units import Scales
 from crackfront.data.written_units import prefixed
 from crackfront.topography.density.bands import Scan
 from crackfront.topography.prediction.conditions import zero_load_radius
 from crackfront.topography.prediction.remarks import remark_text
 from crackfront.topography.prediction.surface_remarks import scan_remarks
-from crackfront.topography.scan.levelling import Array
 from crackfront.topography.scan.reading import Measurement
 
 if TYPE_CHECKING:

@@ -10,7 +10,7 @@ import numpy as np
 
 from crackfront.analysis.estimate import Estimate
 from crackfront.core.arrays import Array
-from crackfront.topography.density.bands import scan
+from crackfront.topography.density.bands import analysed_scan
 from crackfront.topography.scan.reading import Measurement
 from crackfront.topography.spectrum.draws import BATCH
 from crackfront.topography.spectrum.joining import joint_spectrum
@@ -59,7 +59,7 @@ def _ends(
     measurements: Sequence[Measurement], seed: int | None, numbers: Sequence[int] | None = None
 ) -> tuple[Array, int]:
     """Logarithms of the ends and the median of the interval, and the number of draws."""
-    found = joint_spectrum([scan(one) for one in measurements], seed, numbers).draws
+    found = joint_spectrum([analysed_scan(one) for one in measurements], seed, numbers).draws
     energy = found.mean_square(0.5)
     return np.log([energy.low, energy.value, energy.high]), found.weight.size
 

@@ -20,7 +20,7 @@ from crackfront.core.fingerprint import fingerprint
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.synthesis import gaussian_field
 from crackfront.data.bounds import NUMBER, Range
-from crackfront.data.section import Positive, Section, refusal, within
+from crackfront.data.section import Positive, Section, bounds_validator, refusal
 from studies.boundary_elements.contact import HalfSpaceContact, half_space_contact
 
 _STEADY = (0.25, 0.75)
@@ -56,7 +56,7 @@ class Loads(Section):
 
     max_penetration: Positive
     step: Positive
-    shown_penetration: Annotated[float, within(Range(-NUMBER.most, NUMBER.most))]
+    shown_penetration: Annotated[float, bounds_validator(Range(-NUMBER.most, NUMBER.most))]
     steady: SteadyBranches | None = None
 
     @model_validator(mode="after")

@@ -10,7 +10,7 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from crackfront.data.bounds import refuse_beyond_memory
-from crackfront.data.section import Count, Positive, Section, Seed, content_of, refusal, validated
+from crackfront.data.section import Count, Positive, Section, Seed, refusal, validated, yaml_mapping
 from studies.boundary_elements.cases import Case, Loads
 from studies.boundary_elements.contact import refuse_unresolved
 
@@ -88,7 +88,7 @@ def load_validation(path: Path) -> ValidationParameters:
 
     A ConfigurationError has a sentence for whatever is unknown, missing or out of range.
     """
-    return validated(path, content_of(path), ValidationParameters)
+    return validated(path, yaml_mapping(path), ValidationParameters)
 
 
 def validation_cases(parameters: ValidationParameters) -> tuple[Case, ...]:

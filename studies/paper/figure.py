@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from crackfront.analysis.estimate import with_error
 from crackfront.core.fingerprint import fingerprint
-from crackfront.data.section import ConfigurationError, Section, content_of, validated
+from crackfront.data.section import ConfigurationError, Section, validated, yaml_mapping
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure as Drawing
@@ -183,7 +183,7 @@ def load_figure(path: Path, scale: str) -> Section:
         raise ConfigurationError(
             f"there is no figure {path.stem!r}; the names of the files are {', '.join(FIGURES)}"
         )
-    content = content_of(path)
+    content = yaml_mapping(path)
     sections = ("parameters", *SCALES)
     for key in content.keys() ^ set(sections):
         what = f"unknown key {key}" if key in content else f"key {key} is missing"
@@ -203,7 +203,7 @@ def load_figure(path: Path, scale: str) -> Section:
 def sweep_of_figure(path: Path, scale: str) -> Path:
     """Sweep that a figure shows at a scale, without the modules that compute the figure."""
     try:
-        return Path(content_of(path)[scale]["sweep"])
+        return Path(yaml_mapping(path)[scale]["sweep"])
     except (LookupError, TypeError):
         load_figure(path, scale)  # says what is wrong
         raise

@@ -29,9 +29,9 @@ from crackfront.simulate.files import simulation_dataset
 from crackfront.simulate.run import run_simulation
 from crackfront.simulate.simulation import stems
 from crackfront.sweep.configuration import load_configuration
-from crackfront.sweep.journal import Entry
-from crackfront.sweep.needs import postprocessing_costs
 from crackfront.sweep.parallel import default_launcher
+from crackfront.sweep.postprocessing import postprocessing_costs
+from crackfront.sweep.result_packs import Entry
 from crackfront.sweep.rows import row_fingerprint, sweep_row
 from crackfront.sweep.shards import write_shard
 from crackfront.sweep.store import Store

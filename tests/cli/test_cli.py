@@ -27,7 +27,7 @@ from crackfront.core.outcome import Status
 from crackfront.core.solver.relax import named_solver
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.sweep.configuration import load_configuration
-from crackfront.sweep.journal import Entry, new_pack
+from crackfront.sweep.result_packs import Entry, new_pack
 from crackfront.sweep.rows import failed_row, row_fingerprint
 from tests.commands import curves, refused, run
 

@@ -29,8 +29,8 @@ from crackfront.core.variables import variables
 from crackfront.data.files import (
     FileSystemError,
     UnreadableFileError,
-    date_back,
     read_dataset,
+    reset_future_dates,
     write_dataset,
     write_text,
 )
@@ -165,7 +165,7 @@ def test_files_of_the_future_get_one_date_of_now_and_others_keep_theirs(tmp_path
         (tmp_path / name).write_text("text")
         os.utime(tmp_path / name, (moment, moment))
     before = time.time()
-    date_back(tmp_path)
+    reset_future_dates(tmp_path)
     found = {path.name: path.stat().st_mtime for path in tmp_path.iterdir()}
     assert before <= found["a.nc"] == found["b.nc"] <= time.time()
     assert (found["old.nc"], found["flat.tar"]) == (1e9, 4e9)

@@ -13,7 +13,7 @@ from crackfront.core.spectrum import TabulatedSpectrum
 from crackfront.core.units import Scales
 from crackfront.data.files import write_dataset
 from crackfront.data.provenance import provenance
-from crackfront.data.section import ConfigurationError, content_of, movable_text
+from crackfront.data.section import ConfigurationError, movable_text, yaml_mapping
 from crackfront.simulate.laws import Knobs
 from crackfront.simulate.sphere.steady import SteadySchedule
 from crackfront.sweep.configuration import load_configuration
@@ -656,7 +656,7 @@ def test_yaml_that_nobody_writes_is_refused_with_a_sentence(tmp_path, case):
 
 def test_numbers_and_words_are_those_of_yaml_1_2(tmp_path):
     path = written(tmp_path, "a: [1e-3, 0.5, 1E+2, 0o10, 0x10, 1:30, on, No, yes, 0, 0.10, true]\n")
-    found = content_of(path)["a"]
+    found = yaml_mapping(path)["a"]
     assert found == (0.001, 0.5, 100.0, 8, 16, "1:30", "on", "No", "yes", 0, 0.1, True)
     assert [type(one) for one in found[:4]] == [float, float, float, int]
 

@@ -50,9 +50,9 @@ def stored(folder):
     return {name: content for name, content in curves(folder).items() if content is not None}
 
 
-def renewed(configuration, folder):
+def repaired(configuration, folder):
     """Sentences about what the workflow sets aside before it plans."""
-    return list(Store(folder).renewed(configuration))
+    return list(Store(folder).repair(configuration))
 
 
 def rerun(configuration, folder, *more):
@@ -287,7 +287,7 @@ def test_what_a_truncated_pack_lost_is_computed_anew_and_no_more(
     path = min((copied / "curves").glob("*.tar"))
     path.write_bytes(path.read_bytes()[:left])
     assert run_command("verify", copied).exit_code == 1
-    assert renewed(configuration, copied)
+    assert repaired(configuration, copied)
     assert rerun(configuration, copied) == lost
     assert same(copied)
     assert run_command("verify", copied).exit_code == 0
@@ -335,7 +335,7 @@ def test_a_file_that_lost_its_content_is_found_not_archived_and_made_anew(
     assert archived.exit_code == 2
     assert f"the first is {path}" in archived.stderr
     # What the workflow does before it plans, and the command of the file then.
-    assert any(str(path) in told for told in renewed(configuration, folder))
+    assert any(str(path) in told for told in repaired(configuration, folder))
     command = {"curves": "simulate", "shards": "simulate", "configuration": "fit"}
     command |= {"fit": "fit", "hysteresis": "aggregate", "summary": "summary"}
     made_by = command.get(path.relative_to(folder).parts[0].partition(".")[0], "figures")
@@ -359,6 +359,6 @@ def test_a_clock_that_jumps_makes_nothing_older_or_newer(configuration, same, co
     assert rerun(configuration, copied) == 0
     lost = min((copied / "curves").glob("*.tar"))
     lost.unlink()
-    assert "it lacks 6 curves of its simulations" in renewed(configuration, copied)[-1]
+    assert "it lacks 6 curves of its simulations" in repaired(configuration, copied)[-1]
     assert rerun(configuration, copied) == 6
     assert same(copied)

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from crackfront.data.digests import file_digest, place_of_digest
+from crackfront.data.digests import digest_path, file_digest
 from crackfront.data.files import damaged_files, read_dataset
 from crackfront.data.provenance import provenance
 from crackfront.sweep import shards
@@ -120,7 +120,7 @@ def test_no_flipped_bit_and_no_lost_sector_of_a_shard_is_believed_and_hdf5_sees_
 
 @pytest.mark.parametrize("damage", ["removed", "emptied", "of another", "flipped"])
 def test_a_shard_without_its_checksum_is_not_believed_and_made_anew(path, damage):
-    beside, store = place_of_digest(path), Store(path.parents[1])
+    beside, store = digest_path(path), Store(path.parents[1])
     stated = beside.read_bytes()
     assert stated.decode() == f"{file_digest(path)}  flat.nc\n"
     contents = {
@@ -134,7 +134,7 @@ def test_a_shard_without_its_checksum_is_not_believed_and_made_anew(path, damage
         beside.write_bytes(contents[damage])
     assert finished_shard(path) is None
     configuration = Path(__file__).parents[2] / "config/test.yaml"
-    [sentence] = store.renewed(configuration)
+    [sentence] = store.repair(configuration)
     assert sentence.startswith(str(path))
     assert "made anew" in sentence
     assert not path.exists()

@@ -29,7 +29,7 @@ from crackfront.simulate.files import write_checkpoint
 from crackfront.simulate.run import run_simulation
 from crackfront.sweep import tasks
 from crackfront.sweep.configuration import load_configuration
-from crackfront.sweep.journal import Entry, RowIndex, new_pack, pack_paths
+from crackfront.sweep.result_packs import Entry, RowIndex, new_pack, pack_paths
 from crackfront.sweep.rows import failed_row, row_fingerprint
 from crackfront.sweep.store import Store
 from crackfront.sweep.verification import mixture_sentences, verification
@@ -46,15 +46,15 @@ def store(tmp_path):
     return Store(tmp_path / "sweep")
 
 
-def fill(store, simulations):
+def run_and_store(store, simulations):
     """Fill a store and return how the simulations ended."""
-    return list(tasks.fill(store, simulations, provenance("text")))
+    return list(tasks.run_and_store(store, simulations, provenance("text")))
 
 
 def finish(store, sweep=SWEEP):
     """Run a whole sweep to the file of its rows."""
     for shard in sweep.shards():
-        fill(store, list(sweep.simulations(shard.item, shard.realisations)))
+        run_and_store(store, list(sweep.simulations(shard.item, shard.realisations)))
         store.finish_shard(sweep, shard, provenance("text"))
     store.aggregate(sweep, provenance("text"))
 
@@ -74,7 +74,7 @@ def flip_curve(store, simulation, place=0.5):
 
 
 def test_a_filled_store_lacks_nothing_and_holds_one_curve_a_simulation_in_one_file(store):
-    outcomes = fill(store, FLAT)
+    outcomes = run_and_store(store, FLAT)
     assert {finished.status for _, finished in outcomes} == {"lost_contact"}
     assert {simulation for simulation, _ in outcomes} == set(FLAT)
     assert store.inventory(FLAT).missing == ()
@@ -83,23 +83,25 @@ def test_a_filled_store_lacks_nothing_and_holds_one_curve_a_simulation_in_one_fi
 
 
 def test_the_longest_simulations_start_first(store):
-    costs = [expected_cost(simulation).seconds for simulation, _ in fill(store, FLAT[::-1])]
+    costs = [
+        expected_cost(simulation).seconds for simulation, _ in run_and_store(store, FLAT[::-1])
+    ]
     assert costs == sorted(costs, reverse=True)
 
 
 def test_a_simulation_is_stored_before_the_next_one_starts(store):
-    filling = tasks.fill(store, FLAT, provenance())
+    filling = tasks.run_and_store(store, FLAT, provenance())
     first, _ = next(filling)
     assert set(curves(store.folder)) == {f"{first.stem}.nc"}
 
 
 def test_added_realisations_are_all_that_is_missing(store):
-    fill(store, FLAT)
+    run_and_store(store, FLAT)
     before = curves(store.folder)
     more = replace(SWEEP, n_realisation=3)
     missing = store.inventory(more.simulations(more.spectra[0])).missing
     assert {simulation.realisation for simulation in missing} == {2}
-    fill(store, missing)
+    run_and_store(store, missing)
     assert before.items() < curves(store.folder).items()
 
 
@@ -112,7 +114,7 @@ def test_added_realisations_are_all_that_is_missing(store):
     ],
 )
 def test_what_is_stale_is_told_with_what_has_changed(store, change, part):
-    fill(store, FLAT[:2])
+    run_and_store(store, FLAT[:2])
     inventory = store.inventory([replace(FLAT[0], **change), FLAT[1]])
     assert inventory.missing[0].label == FLAT[0].label
     assert inventory.stale_sentence() == f"1 stored simulations are stale: 1 as {part} changed"
@@ -120,7 +122,7 @@ def test_what_is_stale_is_told_with_what_has_changed(store, change, part):
 
 
 def test_a_new_solver_makes_all_stale_by_its_sources(store, monkeypatch):
-    fill(store, FLAT[:2])
+    run_and_store(store, FLAT[:2])
     monkeypatch.setattr("crackfront.simulate.simulation.simulation_fingerprint", lambda _: "newer")
     inventory = store.inventory(FLAT)
     assert len(inventory.missing) == 4
@@ -128,7 +130,7 @@ def test_a_new_solver_makes_all_stale_by_its_sources(store, monkeypatch):
 
 
 def test_a_store_of_mixed_origin_is_told_where_it_is_planned_and_verified(store):
-    fill(store, FLAT[:1])
+    run_and_store(store, FLAT[:1])
     here = provenance().arithmetic
     assert "numpy" in here
     assert store.inventory(FLAT).arithmetic == {here}
@@ -159,28 +161,28 @@ def test_spectra_of_one_shape_and_two_names_have_rows_of_their_own(store, monkey
     twins = [FLAT[0], replace(FLAT[0], spectrum_name="twin")]
     assert twins[0].key == twins[1].key
     monkeypatch.setattr(tasks, "run_simulation", refuse)
-    fill(store, twins)
+    run_and_store(store, twins)
     rows = [held.row for held in store.stored_results(twins)]
     assert [row.status for row in rows] == ["refused", "refused"]
 
 
 def test_a_curve_without_a_row_counts(store):
-    fill(store, FLAT)
+    run_and_store(store, FLAT)
     without(store, ".json")
     assert store.inventory(FLAT).missing == ()
 
 
 def test_a_row_without_its_curve_does_not_count(store):
-    fill(store, FLAT)
+    run_and_store(store, FLAT)
     without(store, f"{FLAT[2].stem}.nc")
     assert store.inventory(FLAT).missing == (FLAT[2],)
 
 
 def test_what_a_job_reads_before_it_starts_is_that_of_its_own_block(store, monkeypatch):
-    fill(store, list(SWEEP.simulations()))
+    run_and_store(store, list(SWEEP.simulations()))
     read = []
     monkeypatch.setattr(
-        "crackfront.sweep.journal.members", lambda path: (read.append(path), members(path))[1]
+        "crackfront.sweep.result_packs.members", lambda path: (read.append(path), members(path))[1]
     )
     more = replace(SWEEP, n_realisation=3)
     assert len(store.inventory(more.simulations(more.spectra[0], range(2, 3))).missing) == 2
@@ -191,7 +193,7 @@ def test_what_a_job_reads_before_it_starts_is_that_of_its_own_block(store, monke
 
 def test_a_failed_simulation_is_stored_with_its_status(store):
     limited = replace(FLAT[0], solver=replace(FLAT[0].solver, max_sweeps=1))
-    [(_, finished)] = fill(store, [limited])
+    [(_, finished)] = run_and_store(store, [limited])
     assert finished.status == "step_limit"
     assert store.result(limited).record.status.name == "STEP_LIMIT"
     assert store.inventory([limited]).missing == ()
@@ -200,7 +202,7 @@ def test_a_failed_simulation_is_stored_with_its_status(store):
 def test_a_simulation_that_cannot_be_done_is_a_row_and_is_not_tried_again(store):
     impossible = replace(FLAT[0], elastic_energy=0.999999, sweep_seed=5)
     energies = [replace(impossible, realisation=number) for number in range(8)]
-    outcomes = fill(store, [*energies, FLAT[0]])
+    outcomes = run_and_store(store, [*energies, FLAT[0]])
     refused = [one for one, finished in outcomes if finished.status == "refused"]
     assert refused
     assert not {f"{one.stem}.nc" for one in refused} & set(curves(store.folder))
@@ -237,18 +239,18 @@ def test_what_the_machine_could_not_do_is_never_stored_as_what_physics_did(
     with monkeypatch.context() as patched:
         patched.setattr(tasks, place, fail)
         with pytest.raises(tasks.NotStoredError, match="; 0 of 2 simulations were st") as caught:
-            fill(store, FLAT[:2])
+            run_and_store(store, FLAT[:2])
     assert str(error) in str(caught.value) or "start fewer ranks" in str(caught.value)
     assert store.inventory(FLAT[:2]).missing == FLAT[:2]
-    assert {finished.status for _, finished in fill(store, FLAT[:2])} == {"lost_contact"}
+    assert {finished.status for _, finished in run_and_store(store, FLAT[:2])} == {"lost_contact"}
 
 
 def test_an_incomplete_sweep_is_not_aggregated(store):
-    fill(store, FLAT[1:])
+    run_and_store(store, FLAT[1:])
     flat, rough = SWEEP.shards()
     with pytest.raises(ValueError, match=r"1 of 4 simulations are missing .*, the first is flat"):
         store.finish_shard(SWEEP, flat, provenance())
-    fill(store, list(SWEEP.simulations(rough.item)))
+    run_and_store(store, list(SWEEP.simulations(rough.item)))
     store.finish_shard(SWEEP, rough, provenance())
     with pytest.raises(ValueError, match="4 of 8 simulations are in no finished shard"):
         store.aggregate(SWEEP, provenance())
@@ -312,13 +314,13 @@ def test_an_archive_holds_what_was_archived_under_checksums_that_fit(store, tmp_
 
 
 def test_what_a_killed_process_left_half_written_is_removed_by_the_next_run(store):
-    fill(store, FLAT[:1])
+    run_and_store(store, FLAT[:1])
     old, new = (store.folder / "curves" / f".{name}.part" for name in ("old", "new"))
     for path in (old, new):
         path.write_text("half")
     moment = old.stat().st_mtime - 7200
     os.utime(old, (moment, moment))
-    fill(store, FLAT[1:2])
+    run_and_store(store, FLAT[1:2])
     assert not old.exists()
     assert new.exists()
 
@@ -330,7 +332,10 @@ def test_a_defect_that_the_solver_finds_in_itself_is_a_row_and_the_others_run(st
         return run_simulation(simulation, **options)
 
     monkeypatch.setattr(tasks, "run_simulation", defective)
-    ended = {one: (finished.status, finished.sentence) for one, finished in fill(store, FLAT[:3])}
+    ended = {
+        one: (finished.status, finished.sentence)
+        for one, finished in run_and_store(store, FLAT[:3])
+    }
     assert ended.pop(FLAT[1]) == ("defect", "the solver moved a site past its equilibrium")
     assert {status for status, _ in ended.values()} == {"lost_contact"}
 
@@ -340,7 +345,7 @@ import os, sys
 from pathlib import Path
 from crackfront.data.provenance import provenance
 from crackfront.sweep.store import Store
-from crackfront.sweep.tasks import fill
+from crackfront.sweep.tasks import run_and_store
 
 store, origin = Store(Path(sys.argv[1])), provenance("text")
 signal, hold = os.pipe()
@@ -350,7 +355,7 @@ for _ in range(50):
     if starts[-1] == 0:
         os.close(hold)
         os.read(signal, 1)
-        list(fill(store, [], origin))
+        list(run_and_store(store, [], origin))
         os._exit(0)
 os.close(hold)
 sys.exit(any([os.waitpid(start, 0)[1] for start in starts]))
@@ -376,7 +381,7 @@ def flip(path, place=0.5):
 @pytest.mark.parametrize("rows", [True, False])
 @pytest.mark.parametrize("place", [0.0, 0.3, 0.6, 0.999])
 def test_a_curve_with_a_flipped_bit_is_named_and_computed_anew(store, rows, place):
-    fill(store, FLAT[:2])
+    run_and_store(store, FLAT[:2])
     expected = [held.row for held in store.stored_results(FLAT[:2])]
     if not rows:
         without(store, ".json")
@@ -386,13 +391,13 @@ def test_a_curve_with_a_flipped_bit_is_named_and_computed_anew(store, rows, plac
     [sentence] = inventory.unreadable
     assert str(member) in sentence
     assert "is damaged, its checksum is wrong" in sentence
-    fill(store, inventory.missing)
+    run_and_store(store, inventory.missing)
     found = [held.row for held in store.stored_results(FLAT[:2])]
     assert [row.w_retr for row in found] == [row.w_retr for row in expected]
 
 
 def test_a_valid_file_of_another_simulation_is_not_believed(store):
-    fill(store, FLAT[:2])
+    run_and_store(store, FLAT[:2])
     first, second = (f"{one.stem}.nc" for one in FLAT[:2])
     [path], content = pack_paths(store.curves), curves(store.folder)[first]
     path.write_bytes(record(first, content) + record(second, content))
@@ -417,7 +422,7 @@ def damaging(checkpoint):
 
 
 def test_a_checkpoint_that_is_of_no_use_costs_time_and_no_refusal_is_stored(store):
-    fill(store, FLAT[:1])
+    run_and_store(store, FLAT[:1])
     [expected] = [held.row for held in store.stored_results(FLAT[:1])]
     kept = []
     run_simulation(FLAT[0], keep=lambda make: kept.append(make()))
@@ -427,7 +432,7 @@ def test_a_checkpoint_that_is_of_no_use_costs_time_and_no_refusal_is_stored(stor
         shutil.rmtree(store.folder)
         path.parent.mkdir(parents=True)
         path.write_bytes(content)
-        [(_, finished)] = fill(store, FLAT[:1])
+        [(_, finished)] = run_and_store(store, FLAT[:1])
         assert finished.status == "lost_contact"
         assert finished.sentence.startswith("begun anew without its checkpoint: ")
         [held] = store.stored_results(FLAT[:1])
@@ -452,7 +457,7 @@ def whole(made, store):
 
 
 def test_nothing_is_taken_back_of_a_store_that_is_whole(whole, tmp_path):
-    assert list(whole.renewed(tmp_path / "none.yaml")) == []
+    assert list(whole.repair(tmp_path / "none.yaml")) == []
     assert len(list((whole.folder / "shards").glob("*.nc"))) == 2
 
 
@@ -460,7 +465,7 @@ def test_nothing_is_taken_back_of_a_store_that_is_whole(whole, tmp_path):
 def test_the_shard_of_a_curve_that_is_damaged_or_gone_is_taken_back(whole, tmp_path, damage):
     [path, _] = pack_paths(whole.curves)
     flip_curve(whole, FLAT[0]) if damage == "flipped" else without(whole, f"{FLAT[0].stem}.nc")
-    told = list(whole.renewed(tmp_path / "none.yaml"))
+    told = list(whole.repair(tmp_path / "none.yaml"))
     assert any(f"{path} is damaged" in line for line in told) == (damage == "flipped")
     assert "flat.nc is made anew, as it lacks 1 curve of its simulations" in told[-1]
     assert [path.name for path in (whole.folder / "shards").glob("flat*")] == []
@@ -476,7 +481,7 @@ def test_a_damaged_file_is_set_aside_and_told(whole, tmp_path, name, damage):
     else:
         path.write_bytes(path.read_bytes()[:-40])
     (tmp_path / "sweep.yaml").write_text("text")
-    [first, *_] = whole.renewed(tmp_path / "sweep.yaml")
+    [first, *_] = whole.repair(tmp_path / "sweep.yaml")
     assert first.startswith(f"{path} is damaged; it is made anew, and set aside as {path.name}.dam")
     assert path.exists() == (name == "configuration.yaml")
     assert path.with_name(f"{path.name}.damaged").exists()
@@ -591,7 +596,7 @@ def test_a_folder_with_files_of_different_sweeps_is_told_and_not_archived(whole,
 
 def test_the_curves_of_the_table_are_unpacked_without_those_of_other_numerics(whole, tmp_path):
     finer = replace(FLAT[0], solver=replace(FLAT[0].solver, tolerance=1e-5))
-    fill(whole, [finer])
+    run_and_store(whole, [finer])
     assert f"{finer.stem}.nc" in curves(whole.folder)
     folder = tmp_path / "curves"
     result = CliRunner().invoke(main, ["curves", str(whole.folder), "--output", str(folder)])
@@ -642,7 +647,7 @@ def test_the_fit_of_a_sweep_that_was_interrupted_is_that_of_an_undisturbed_one(
     shutil.rmtree(whole.folder / "shards")
     missing = whole.inventory(simulations).missing
     assert len(missing) > 4
-    assert len(fill(whole, missing)) == len(missing)
+    assert len(run_and_store(whole, missing)) == len(missing)
     for shard in SWEEP.shards():
         whole.finish_shard(SWEEP, shard, provenance())
     folders = (undisturbed, whole.folder)

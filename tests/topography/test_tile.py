@@ -10,7 +10,7 @@ from crackfront.core.adhesion import rough_adhesion
 from crackfront.core.synthesis import gaussian_field
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.simulate.user_surface import surface_adhesion
-from crackfront.topography.density.bands import scan as scan_of
+from crackfront.topography.density.bands import analysed_scan
 from crackfront.topography.options import ReadingOptions
 from crackfront.topography.scan.reading import read_measurements
 from crackfront.topography.tile import scan_surface
@@ -66,7 +66,7 @@ def test_the_tile_of_a_map_is_its_mirror_images_around_it(scan):
     assert adhesion.pixel * SCENE.lateral == pytest.approx(SIDE / 128)
     mean = np.mean(adhesion.work_of_adhesion) / WORK_OF_ADHESION
     assert mean == pytest.approx(1 - adhesion.e_el)
-    measured = SCENE.contact_modulus / 4 * measured_mean_square(scan_of(measurement), 0.5)
+    measured = SCENE.contact_modulus / 4 * measured_mean_square(analysed_scan(measurement), 0.5)
     found = adhesion.e_el * SCENE.work_of_adhesion
     assert found == pytest.approx(measured, rel=0.25)
     # The sum over x leaves a function of y alone, even about the edges of the scan.
@@ -102,7 +102,7 @@ def test_a_map_of_odd_and_unequal_sides_has_a_tile(tmp_path, rng):
     adhesion = measured_adhesion(measurement, SCENE)
     assert adhesion.work_of_adhesion.shape == (200, 142)
     found = adhesion.e_el * SCENE.work_of_adhesion
-    measured = SCENE.contact_modulus / 4 * measured_mean_square(scan_of(measurement), 0.5)
+    measured = SCENE.contact_modulus / 4 * measured_mean_square(analysed_scan(measurement), 0.5)
     assert found == pytest.approx(measured, rel=0.4)
 
 

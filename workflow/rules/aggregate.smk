@@ -9,8 +9,8 @@ rule aggregate:
         f"{RESULTS}/benchmarks/aggregate.tsv"
     resources:
         cpus_per_task=1,
-        mem_mb=megabytes(NEEDS["aggregate"].memory),
-        runtime=minutes(NEEDS["aggregate"].seconds),
+        mem_mb=megabytes(POSTPROCESSING["aggregate"].memory),
+        runtime=minutes(POSTPROCESSING["aggregate"].seconds),
     params:
         sources=fingerprint("crackfront.sweep.table"),
         sweep=SWEEP.fingerprint,

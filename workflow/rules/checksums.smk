@@ -19,7 +19,7 @@ rule checksums:
         f"{RESULTS}/benchmarks/checksums.tsv"
     resources:
         cpus_per_task=1,
-        mem_mb=megabytes(NEEDS["aggregate"].memory),
+        mem_mb=megabytes(POSTPROCESSING["aggregate"].memory),
         runtime=30,
     params:
         results=folder,

@@ -12,7 +12,7 @@ sys.path.insert(0, str(BASE))  # where the studies stand
 from crackfront.core.fingerprint import fingerprint
 from crackfront.simulate.costs import expected_cost
 from crackfront.sweep.configuration import load_configuration, results_folder
-from crackfront.sweep.needs import postprocessing_costs
+from crackfront.sweep.postprocessing import postprocessing_costs
 from crackfront.sweep.shards import shard_fingerprint
 from crackfront.sweep.store import Store
 from crackfront.sweep.watching import SweepBar
@@ -72,7 +72,7 @@ except ValueError as error:
 SWEEP_FIGURES = ["hysteresis", "loop", "factor"]
 PAPER = f"results/figures/{SCALE}"
 ACCURACY = "results/accuracy"
-NEEDS = postprocessing_costs(SWEEP)
+POSTPROCESSING = postprocessing_costs(SWEEP)
 FIRSTS = {item.name: SWEEP.one_per_amplitude(item) for item in SWEEP.spectra}
 RANK_BYTES = max(
     expected_cost(one).memory for firsts in FIRSTS.values() for one in firsts

@@ -18,8 +18,8 @@ rule sweep_figures:
         f"{RESULTS}/benchmarks/figures.tsv"
     resources:
         cpus_per_task=1,
-        mem_mb=megabytes(NEEDS["figures"].memory),
-        runtime=minutes(NEEDS["figures"].seconds),
+        mem_mb=megabytes(POSTPROCESSING["figures"].memory),
+        runtime=minutes(POSTPROCESSING["figures"].seconds),
     params:
         sources=fingerprint(
             "crackfront.analysis.steady",

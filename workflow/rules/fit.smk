@@ -9,8 +9,8 @@ rule fit:
         f"{RESULTS}/benchmarks/fit.tsv"
     resources:
         cpus_per_task=1,
-        mem_mb=megabytes(NEEDS["fit"].memory),
-        runtime=minutes(NEEDS["fit"].seconds),
+        mem_mb=megabytes(POSTPROCESSING["fit"].memory),
+        runtime=minutes(POSTPROCESSING["fit"].seconds),
     params:
         sources=fingerprint(
             "crackfront.analysis.sweep",
@@ -41,8 +41,8 @@ rule summary:
         f"{RESULTS}/benchmarks/summary.tsv"
     resources:
         cpus_per_task=1,
-        mem_mb=megabytes(NEEDS["summary"].memory),
-        runtime=minutes(NEEDS["summary"].seconds),
+        mem_mb=megabytes(POSTPROCESSING["summary"].memory),
+        runtime=minutes(POSTPROCESSING["summary"].seconds),
     params:
         sources=fingerprint(
             "crackfront.analysis.sweep",

@@ -60,8 +60,8 @@ rule figure_of_sweep:
         f"{PAPER}/benchmarks/si-5-data.tsv"
     resources:
         cpus_per_task=1,
-        mem_mb=megabytes(NEEDS["fit"].memory),
-        runtime=minutes(NEEDS["fit"].seconds),
+        mem_mb=megabytes(POSTPROCESSING["fit"].memory),
+        runtime=minutes(POSTPROCESSING["fit"].seconds),
     params:
         sources=lambda wildcards: figure_fingerprint("si-5"),
         fit=lambda wildcards: fingerprint("crackfront.analysis.sweep"),

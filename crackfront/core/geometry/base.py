@@ -1,4 +1,4 @@
-r"""What a geometry is: functions that kernels dispatch on by its type, and what is recorded of it.
+r"""The interface of a geometry: functions that kernels dispatch on its type, and records of states.
 
 A site of a front moves along its ray; its place is its distance along it. At rest, per site,
 

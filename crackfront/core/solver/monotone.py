@@ -62,7 +62,10 @@ _SWEEPS = 30
 """Sweeps among needles before the first step of the whole front."""
 
 _WASTE = 0.5
-"""Most pairs of FFTs, over the sweeps, that went into steps shorter than as many sweeps."""
+"""Largest ratio of wasted pairs of FFTs to sweeps.
+
+Pairs of a step are wasted if it moves the front less than as many sweeps do.
+"""
 
 _SLOW, _STIFF = 0.1, 8.0
 """Way of a step, over that of as many sweeps without a field, below which needles hold it.

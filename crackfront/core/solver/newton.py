@@ -40,16 +40,16 @@ _MOST_PAIRS = 100
 """Pairs of FFTs after which conjugate gradients are given up."""
 
 _TRIALS = 6
-"""Times that the system is solved for stiffnesses that hold over the step."""
+"""Largest number of solves per step, each with stiffnesses that hold over the step before it."""
 
 _FALL = 0.8
-"""Factor of the softening used, where the matrix is not positive definite."""
+"""Factor that lowers the share of the softening where the matrix is not positive definite."""
 
 _RISE = 1.1
-"""Factor of the softening used, from one step to the next."""
+"""Factor that raises the share of the softening from one step to the next."""
 
 _LEAST_SOFTENING = 0.2
-"""Part of the softening below which none is used."""
+"""Smallest share of the softening; below it the softening is left out."""
 
 
 class Workspace(NamedTuple):

@@ -51,9 +51,9 @@ _LEAD_IN, _FEWEST_STEADY = 1.0, 9.0
 """States of a branch before it is steady; the fewest of an approach."""
 
 _NOISE, _SHARED = 0.6, 0.17
-"""Variance of k from state to state, relative to that of as many independent sites as the front has
-correlation lengths; e_el below which both branches share most of it, over that length: a contact of
-fewer sites is pinned as a whole."""
+"""Constants of the variance of k from state to state, _NOISE / ((e_el + _SHARED l) n), on a front
+of n lengths l; l is the correlation length times :func:`integral_breadth`. Below e_el = _SHARED l
+both branches share most of the variance: a contact of few such lengths is pinned as a whole."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -46,7 +46,10 @@ NYQUIST = 2.0
 """Points in the shortest wave that pixels hold."""
 
 _BLUNTEST = 32.0
-"""Points in the longest wave of which an optic may take a fifth; beyond, the surface falls so."""
+"""Longest wavelength, in points, of which an optic may take a fifth of the density.
+
+A fall at longer waves is that of the surface.
+"""
 
 _CLIFF, _CLIFF_BINS, _CLIFF_MODES = 0.1, 2, 8
 """Ratio by which a density ends, over how many bins, and modes that each of these must have."""
@@ -61,7 +64,7 @@ _FEWEST_OCTAVES, _FEWEST_BINS = 1, 2
 """Octaves that must be left of a band, and values of the density in it."""
 
 _SHOWING = 8
-"""Values of a density in which an instrument can be seen: its parameters and those of P."""
+"""Fewest values of a density to which an instrument is fitted: its parameters and those of P."""
 
 MOST_PERIODIC = 0.25
 """Part of e_el in one wave from which on a surface is not random."""
@@ -153,10 +156,13 @@ class Scan:
         return self.density.within(self.band.shortest_fitted, self.band.longest.wavelength)
 
 
-def scan(
+def analysed_scan(
     measurement: Measurement, shortest: float | None = None, longest: float | None = None
 ) -> Scan:
-    """A measurement with its trusted band, refused if narrow; its ends may be named (Units: m)."""
+    """A measurement with its density and its trusted band, whose ends may be given (Units: m).
+
+    ValueError if the band is narrower than an octave, or has too few values of the density.
+    """
     pairs, pixel = surrogate_pairs(measurement), max(measurement.pixels)
     waves = restored_periodogram(measurement, pairs)
     periodic = periodic_part(waves, measurement.shortest, measurement.longest)

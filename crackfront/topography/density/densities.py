@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.fft import fftfreq, irfftn, rfftfreq, rfftn
 
-from crackfront.topography.scan.levelling import Array
+from crackfront.core.arrays import Array
 from crackfront.topography.scan.reading import Measurement
 
 _BINS_PER_DECADE = 20
@@ -39,8 +39,8 @@ _ROUNDING = 1e-12
 """Noise of heights in parts of the highest one, below which a density is that of computers."""
 
 _UNEVEN = (1.5, 2.5)
-"""Ratios of the variance between parts to that of a Gaussian surface between which what is more
-begins to count."""
+"""Variance between parts over that of a Gaussian surface: below the first ratio the excess does not
+count, above the second it counts in full."""
 
 
 @dataclass(frozen=True, slots=True)

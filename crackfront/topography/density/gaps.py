@@ -12,9 +12,9 @@ from dataclasses import replace
 import numpy as np
 from scipy.fft import fftfreq, irfftn, rfftfreq, rfftn
 
+from crackfront.core.arrays import Array
 from crackfront.topography.density.densities import Density, Periodogram, periodogram
 from crackfront.topography.scan.instruments import library_scan
-from crackfront.topography.scan.levelling import Array
 from crackfront.topography.scan.reading import Measurement, interpolated
 
 _POINTS, _MOST = 2**20, 16

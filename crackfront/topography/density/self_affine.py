@@ -17,8 +17,8 @@ import scipy
 from numpy.typing import NDArray
 from scipy.special import expit
 
+from crackfront.core.arrays import Array
 from crackfront.topography.density.densities import Density
-from crackfront.topography.scan.levelling import Array
 
 N_SHAPE = 5
 """Parameters of P: logarithm of the plateau, Hurst exponents at longer and at shorter waves,
@@ -43,11 +43,11 @@ _SHORT, _LONG = 30, 400
 """Evaluations of fits from several starts, and of the best one."""
 
 _UNLIKELY, _DISTINCT = 6.0, 0.1
-"""What half of the deviance is more by at minima that do not matter, and how far those that are
-two lie apart in a parameter."""
+"""Excess of half of the deviance from which a minimum is left out, and difference of a parameter
+from which two minima are distinct."""
 
 _GAIN = 9.0
-"""What half of the deviance must fall by for an instrument to be seen in a density."""
+"""Fall of half of the deviance, over the root of the parameters, that shows an instrument."""
 
 _DIRECTIONS, _FURTHEST, _POINTS = 400, 8.0, 16
 """Quadrature of the projection, its end in ln(k / q), and the points a decade of the density."""
@@ -112,9 +112,9 @@ class DensityModels:
 
 
 def seen_instrument(density: Density) -> Instrument:
-    """What an instrument does to a density, where that falls faster or slower than surfaces do.
+    """Instrument whose attenuation and noise make a density much likelier than a surface alone.
 
-    What does not make the density much likelier is not there.
+    An effect that does not is left out.
     """
     low, high = (math.log(density.wavevector[end]) for end in (0, -1))
     floor = math.log(float(np.min(density.value)))

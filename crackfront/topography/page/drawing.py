@@ -12,6 +12,7 @@ from matplotlib.figure import Figure, FigureBase
 from matplotlib.ticker import EngFormatter
 
 from crackfront.core import jkr
+from crackfront.core.arrays import Array
 from crackfront.core.units import Scales
 from crackfront.plots.densities import (
     ISOTROPIC_LABEL,
@@ -34,7 +35,6 @@ from crackfront.plots.style import (
 )
 from crackfront.topography.density.densities import Density
 from crackfront.topography.prediction.prediction import Prediction
-from crackfront.topography.scan.levelling import Array
 from crackfront.topography.scan.reading import Measurement
 from crackfront.topography.spectrum.measures import MeasuredSurface
 from crackfront.topography.spectrum.stated import StatedSurface, Surface

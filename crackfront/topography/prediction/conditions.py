@@ -13,7 +13,7 @@ from crackfront.core import jkr
 from crackfront.core.units import Scales
 from crackfront.data.written_units import prefixed
 from crackfront.topography.density.bands import MOST_PERIODIC
-from crackfront.topography.prediction.remarks import Comparison, Remark, Verdict
+from crackfront.topography.prediction.remarks import LimitCheck, Remark, Verdict
 from crackfront.topography.prediction.surface_remarks import (
     channel_remarks,
     measure_next,
@@ -98,7 +98,7 @@ def _condition(
     name: str,
     found: str,
     reason: str,
-    comparison: Comparison,
+    comparison: LimitCheck,
     remedies: tuple[str, ...],
     *,
     is_share: bool = False,
@@ -145,7 +145,7 @@ def _energy_conditions(surface: Surface, scales: Scales) -> Iterator[Remark]:
         "full conformity",
         f"e_el of {prefixed('J/m2', e_el)} against w_int of {prefixed('J/m2', w_int)}",
         "the contact does not conform to the roughness",
-        Comparison(e_el, w_int, w_int, "J/m2", best_case=e_el / energy.low),
+        LimitCheck(e_el, w_int, w_int, "J/m2", best_case=e_el / energy.low),
         _lower_energy(scales, e_el / w_int),
     )
     share, least = (_negative_share(one / w_int) for one in (e_el, energy.low))
@@ -154,7 +154,7 @@ def _energy_conditions(surface: Surface, scales: Scales) -> Iterator[Remark]:
         f"w_loc negative on {share:.2%} of the surface",
         "the linearisation of the roughness cannot be trusted where w_loc is negative, and "
         "the comparison with boundary elements ends there",
-        Comparison(
+        LimitCheck(
             share,
             _negative_share(max(row.elastic_energy for row in shipped_validity())),
             _MOST_NEGATIVE,
@@ -174,7 +174,7 @@ def _contact_conditions(surface: Surface, scales: Scales) -> Iterator[Remark]:
         "contact small against the sphere",
         f"contact of {prefixed('m', contact)} on a sphere of {prefixed('m', radius)}",
         "the paraboloid that approximates the sphere deviates from it",
-        Comparison(contact, _CONTACT[0] * radius, _CONTACT[1] * radius, "m"),
+        LimitCheck(contact, _CONTACT[0] * radius, _CONTACT[1] * radius, "m"),
         # a / R goes as the cube root of w_int / (E' R).
         (_modulus("above", modulus, part**3), _radius_above(radius * part**3)),
     )
@@ -184,7 +184,7 @@ def _contact_conditions(surface: Surface, scales: Scales) -> Iterator[Remark]:
         "roughness fine against the contact",
         f"waves that matter to e_el of {waves} under a contact of {prefixed('m', contact)}",
         "the contact has too few of them for an average",
-        Comparison(half.longest, contact, contact * half.longest / half.shortest, "m"),
+        LimitCheck(half.longest, contact, contact * half.longest / half.shortest, "m"),
         (
             _radius_above(radius * part**1.5),
             _modulus("below", modulus, part**-3.0),
@@ -205,7 +205,7 @@ def _range_conditions(
         "attraction short against the sphere",
         f"Tabor parameter of {tabor:.3g}",
         "adhesion is not that of a crack at the edge of the contact",
-        Comparison(tabor, *_TABOR, "1", rising=True),
+        LimitCheck(tabor, *_TABOR, "1", rising=True),
         (_modulus("below", modulus, part**-1.5), _radius_above(radius * part**3)),
     )
     # Dugdale's zone of a stress w/z over a range z: (pi/8) (K z/w)^2 with K^2 = 2 E' w.
@@ -214,7 +214,7 @@ def _range_conditions(
         "attraction short against the roughness",
         f"cohesive zone of {prefixed('m', zone)} under waves of {waves}",
         "the edge does not see waves that are shorter than its cohesive zone",
-        Comparison(zone, half.shortest, half.longest, "m"),
+        LimitCheck(zone, half.shortest, half.longest, "m"),
         (_modulus("below", modulus, half.longest / zone), "a coarser roughness"),
     )
 
@@ -233,7 +233,7 @@ def _roughness_conditions(surface: Surface) -> Iterator[Remark]:
         "small slopes",
         f"rms slope of {slope:.3g}",
         "linear elasticity neglects the square of slopes",
-        Comparison(slope, *_SLOPES, "1", best_case=slope / rms.low),
+        LimitCheck(slope, *_SLOPES, "1", best_case=slope / rms.low),
         (f"slopes lower by a factor of {slope / _SLOPES[1]:.3g}",),
     )
     if not surface.scans:
@@ -244,7 +244,7 @@ def _roughness_conditions(surface: Surface) -> Iterator[Remark]:
         "random roughness",
         found if part else "no wave stands out",
         "k is that of random surfaces, and grooves pin a front differently",
-        Comparison(part, MOST_PERIODIC, _MOST_PERIODIC, "1"),
+        LimitCheck(part, MOST_PERIODIC, _MOST_PERIODIC, "1"),
         ("another place or direction without the grooves",),
         is_share=True,
     )

@@ -28,20 +28,21 @@ _HEADINGS: dict[Severity, str] = {
 """Headings of the groups of remarks, the most severe first."""
 
 _BORDER = 1.1
-"""Factor by which a limit is known: beyond it by less than that, nothing is decided."""
+"""Factor to which a limit is known: a value that is beyond it by less is undecided."""
 
 
 @dataclass(frozen=True, slots=True)
-class Comparison:
-    """A number that a condition of the theory limits, in SI units."""
+class LimitCheck:
+    """A number and the limits that a condition of the theory sets to it, in SI units."""
 
     value: float
     doubtful: float
     limit: float
-    """Values up to which the condition holds and is in doubt; down to which if `rising`."""
+    """The condition holds up to the one value and is in doubt up to the other; if `rising`, it
+    holds down to the one and is in doubt down to the other."""
     units: str
     rising: bool = False
-    """Whether the value must be above the limit, not below."""
+    """Whether the condition needs values above the limit, not below."""
     best_case: float = 1.0
     """Value over the end of its interval that meets the condition best."""
 
@@ -80,7 +81,7 @@ class Remark:
     """What was found, complete in itself."""
     remedies: tuple[str, ...] = ()
     """Changes each of which alone would do."""
-    comparison: Comparison | None = None
+    comparison: LimitCheck | None = None
     """The numbers behind a condition."""
 
 

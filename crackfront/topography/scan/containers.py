@@ -38,7 +38,7 @@ class _Entry(BaseModel):
     model_config = ConfigDict(extra="ignore", frozen=True)
 
 
-class Member(_Entry):
+class ContainedMeasurement(_Entry):
     """A measurement in a container."""
 
     name: str = ""
@@ -73,7 +73,7 @@ class ContainedSurface(_Entry):
     """A surface in a container, with its measurements."""
 
     name: str = ""
-    topographies: tuple[Member, ...] = Field(min_length=1)
+    topographies: tuple[ContainedMeasurement, ...] = Field(min_length=1)
 
 
 class _Metadata(_Entry):
@@ -148,7 +148,7 @@ def surface_of(
 
 
 @contextmanager
-def unpacked(path: Path, members: Sequence[Member]) -> Iterator[list[Path]]:
+def unpacked(path: Path, members: Sequence[ContainedMeasurement]) -> Iterator[list[Path]]:
     """Data files of measurements, in a folder that is removed afterwards."""
     with tempfile.TemporaryDirectory() as folder, _open(path) as archive:
         files = []

@@ -18,7 +18,7 @@ import numpy as np  # noqa: F401
 
 
 class _Deferred(ModuleType):
-    """A package that is executed at the first use of what its imported submodules are not."""
+    """A package that is executed at the first use of any name but its imported submodules."""
 
     def __getattr__(self, name: str) -> Any:
         self.__class__ = ModuleType  # type: ignore[assignment]

@@ -1,4 +1,4 @@
-"""What is taken off the heights of a scan: polynomials, fitted where they are to be fitted."""
+"""Trends that are taken off the heights of a scan: polynomials, fitted to some of its points."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ import numpy as np
 from numpy.polynomial.legendre import legvander
 from numpy.typing import NDArray
 
+from crackfront.core.arrays import Array
 from crackfront.topography.options import Detrend
 
-Array = NDArray[np.float64]
-Points = NDArray[np.bool_]
+PointMask = NDArray[np.bool_]
 
 _ORDERS = {"center": 0, "height": 1, "slope": 1, "curvature": 2}
 
@@ -34,7 +34,7 @@ def taken_off(detrend: Detrend) -> str:
     return _SHAPES[order] if order < len(_SHAPES) else f"the polynomial of order {order}"
 
 
-def levelled(heights: Array, fitted: Points, detrend: Detrend) -> Array:
+def levelled(heights: Array, fitted: PointMask, detrend: Detrend) -> Array:
     """Heights without their trend, which is fitted to some of the points; they may have any unit.
 
     Refused if these points do not determine the trend, or the heights are it but for round-off.
@@ -59,7 +59,7 @@ def levelled(heights: Array, fitted: Points, detrend: Detrend) -> Array:
     return level
 
 
-def polynomial(heights: Array, fitted: Points, order: int) -> Array:
+def polynomial(heights: Array, fitted: PointMask, order: int) -> Array:
     """Polynomial of an order at all points, by least squares over those that it is fitted to."""
     columns = (len(heights), -1)  # A line is a map with one column.
     points = fitted.reshape(columns)
@@ -75,7 +75,7 @@ def polynomial(heights: Array, fitted: Points, order: int) -> Array:
     return np.asarray((along @ coefficients @ across.T).reshape(heights.shape))
 
 
-def _plane_of_least_slope(level: Array, fitted: Points) -> Array:
+def _plane_of_least_slope(level: Array, fitted: PointMask) -> Array:
     """Plane with the mean slope between neighbouring points, along every direction."""
     slopes = []
     for axis in range(level.ndim):

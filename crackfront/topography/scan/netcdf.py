@@ -1,4 +1,4 @@
-"""Grids in netCDF whose attributes `units` say what the library's own convention says otherwise."""
+"""Grids in netCDF files that state their units in `units`, unlike the library's convention."""
 
 from __future__ import annotations
 

@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crackfront.data.written_units import prefixed
+from crackfront.topography.scan.levelling import PointMask
 
 Heights = np.ma.MaskedArray[Any, Any]
-Points = NDArray[np.bool_]
 
 _FEWEST_MARKS = 2
 """Points of exactly one height that are marks; a single one may be a spike."""
@@ -29,7 +29,7 @@ _SPIKE = 30.0
 """Height of a spike over the nearest neighbour in height, in rms differences of neighbours."""
 
 _SHARP = 4.0
-"""The same in what half of the neighbours spread over, which is more at a peak that is resolved."""
+"""The same over the interquartile range of the neighbours, which is large at a resolved peak."""
 
 _RMS_OF_QUANTILE = 1.0 / 1.645
 """Standard deviation of a normal distribution over the 90% quantile of its modulus."""
@@ -38,7 +38,7 @@ _MOST_SAMPLES = 100_000
 """Differences that the rms difference of neighbours is found from."""
 
 
-def outliers(heights: Heights) -> tuple[Points, tuple[str, ...]]:
+def outliers(heights: Heights) -> tuple[PointMask, tuple[str, ...]]:
     """Points that are marks or spikes, and a sentence on each kind (Units: m)."""
     found, sentences = np.zeros(heights.shape, dtype=bool), []
     for value, places in _marks(heights):
@@ -60,10 +60,10 @@ def outliers(heights: Heights) -> tuple[Points, tuple[str, ...]]:
     return found | spikes, tuple(sentences)
 
 
-def _marks(heights: Heights) -> list[tuple[float, Points]]:
+def _marks(heights: Heights) -> list[tuple[float, PointMask]]:
     """Heights that mark missing data, at either end, and the points that have them."""
     data, known = np.ma.getdata(heights), ~np.ma.getmaskarray(heights)
-    found: list[tuple[float, Points]] = []
+    found: list[tuple[float, PointMask]] = []
     is_settled = False
     while not is_settled and known.any():
         is_settled = True
@@ -79,7 +79,7 @@ def _marks(heights: Heights) -> list[tuple[float, Points]]:
     return found
 
 
-def _is_apart(data: NDArray[Any], known: Points, places: Points, value: float) -> bool:
+def _is_apart(data: NDArray[Any], known: PointMask, places: PointMask, value: float) -> bool:
     """Whether points of one height lie apart from all others, which are a surface."""
     others = known & ~places
     low, high = data.min(where=others, initial=np.inf), data.max(where=others, initial=-np.inf)
@@ -95,7 +95,7 @@ def _is_apart(data: NDArray[Any], known: Points, places: Points, value: float) -
     return bool(gap > _APART * np.ptp(rest) and len(np.unique(data[others])) >= _FEWEST_LEVELS)
 
 
-def _spikes(heights: Heights) -> Points:
+def _spikes(heights: Heights) -> PointMask:
     """Points whose height is far from that of every neighbour."""
     data, known = np.ma.getdata(heights), ~np.ma.getmaskarray(heights)
     found = np.zeros(data.shape, dtype=bool)

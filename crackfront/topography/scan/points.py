@@ -11,9 +11,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from crackfront.core.arrays import Array
 from crackfront.topography.scan.text import NumberText
-
-Array = NDArray[np.float64]
 
 _UNEVEN = 0.05
 """Distance of a point from its place, in spacings, that positions may have beyond their digits."""

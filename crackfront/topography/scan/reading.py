@@ -10,10 +10,16 @@ from typing import Any
 
 import numpy as np
 
+from crackfront.core.arrays import Array
 from crackfront.data.bounds import counted
 from crackfront.data.written_units import prefixed
 from crackfront.topography.options import ReadingOptions, Region
-from crackfront.topography.scan.containers import Member, contained_surfaces, surface_of, unpacked
+from crackfront.topography.scan.containers import (
+    ContainedMeasurement,
+    contained_surfaces,
+    surface_of,
+    unpacked,
+)
 from crackfront.topography.scan.files import checksum, refuse_unreadable
 from crackfront.topography.scan.instruments import (
     RawScan,
@@ -27,7 +33,7 @@ from crackfront.topography.scan.instruments import (
     shown_sides,
     surface_library,
 )
-from crackfront.topography.scan.levelling import Array, Points, levelled, order_of, taken_off
+from crackfront.topography.scan.levelling import PointMask, levelled, order_of, taken_off
 from crackfront.topography.scan.outliers import outliers
 
 _PIXELS_PER_WAVE = 4
@@ -89,7 +95,7 @@ class Measurement:
     """Sentences on heights that were taken as missing, since no surface has them."""
     unusable: tuple[str, ...] = ()
     """Sentences on other measurements of its container, which cannot be used."""
-    gaps: Points | None = None
+    gaps: PointMask | None = None
     """Which points were missing and interpolated; None if none were. As `heights`."""
 
     @property
@@ -165,7 +171,9 @@ def _measurements(path: Path, options: ReadingOptions) -> Iterator[Measurement]:
     yield from found[1:]
 
 
-def _member_options(file: Path, member: Member, options: ReadingOptions) -> ReadingOptions:
+def _member_options(
+    file: Path, member: ContainedMeasurement, options: ReadingOptions
+) -> ReadingOptions:
     """Options of a measurement in a container, with what this states and the data file does not."""
     changes: dict[str, Any] = {}
     if options.channel is None and member.is_original and member.data_source is not None:
@@ -237,7 +245,7 @@ def interpolated(level: Any) -> Any:
 
 def _used_part(
     path: Path, raw: Any, options: ReadingOptions
-) -> tuple[np.ma.MaskedArray[Any, Any], Points, tuple[float, ...], tuple[str, ...]]:
+) -> tuple[np.ma.MaskedArray[Any, Any], PointMask, tuple[float, ...], tuple[str, ...]]:
     """Heights of a part, points that its trend is fitted to, its sides, and on its outliers."""
     heights = np.ma.masked_invalid(raw.heights())
     counts, size = heights.shape, tuple(map(float, raw.physical_sizes))
@@ -308,7 +316,7 @@ def _trusted_wavelengths(path: Path, level: Any, size: tuple[float, ...]) -> tup
 
 def _masked(
     path: Path, options: ReadingOptions, counts: tuple[int, ...], size: tuple[float, ...]
-) -> Points:
+) -> PointMask:
     """Points that the levelling leaves out."""
     found = np.zeros(counts, dtype=bool)
     for mask in options.mask:

@@ -15,9 +15,9 @@ import numpy as np
 import scipy
 
 from crackfront.analysis.estimate import Estimate, quantiles
+from crackfront.core.arrays import Array
 from crackfront.topography.density.bands import Scan
 from crackfront.topography.density.densities import Density, bin_numbers
-from crackfront.topography.scan.levelling import Array
 from crackfront.topography.spectrum.fit import Continuation, Fit, fit_of
 from crackfront.topography.spectrum.quadrature import Quadrature
 
@@ -44,11 +44,11 @@ _HIDDEN = 0.2
 """Part of a density that a tip takes at most where it ends the band, as much as an optic may."""
 
 GIVEN_BACK = 0.25
-"""How far the density varies that is given back for missing points, as a part of their weight."""
+"""Largest relative error of the density that is restored for missing points, over their weight."""
 
 _RARE = 1.5
-"""Standard error of e_el over that which a scan shows where its parts differ: it holds few of the
-rare places that matter."""
+"""Standard error of e_el over the one that the parts of a scan show: a scan holds few of the rare
+places that dominate e_el."""
 
 _INTERVAL = (0.025, 0.5, 0.975)
 """Quantiles of the ends of an interval and of its median."""
@@ -94,12 +94,12 @@ class Draws:
 
     @property
     def factor(self) -> float:
-        """Within which e_el is known: root of the upper over the lower end of its interval."""
+        """Factor within which e_el is known: root of the ratio of the ends of its interval."""
         return _factor(self.mean_square(0.5))
 
     @property
     def factors_with(self) -> tuple[float, float]:
-        """The same if the longer, or the shorter waves than all that is measured were known."""
+        """As :attr:`factor`, if longer waves than the measured ones were known, or shorter ones."""
         energy = self.estimated[ORDERS.index(0.5)]
         longer, shorter = (
             _factor(self.estimate(energy - part + quantiles(part, self.weight, 0.5)))

@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from crackfront.analysis.estimate import Estimate, quantiles
+from crackfront.core.arrays import Array
 from crackfront.topography.density.densities import Density
 from crackfront.topography.density.self_affine import (
     BEND,
@@ -26,15 +27,14 @@ from crackfront.topography.density.self_affine import (
     shape_limits,
     weighted_residuals,
 )
-from crackfront.topography.scan.levelling import Array
 from crackfront.topography.spectrum.quadrature import Quadrature, States
 
 _FAR = 2.0
 """Logarithm of the factor by which a roll-off beyond the fitted waves is less likely by e."""
 
 _LOSS, _NOISE = (1e-3, 8.0), 1.0
-"""Losses at the last wavevector in a fit of all, exponents of the attenuation, and how far the
-logarithm of the noise goes from where it was seen."""
+"""Bounds of the attenuation's exponent at the last wavevector of a density, and largest distance of
+the logarithm of the noise from its first estimate."""
 
 _LEAST_CURVATURE = -2.0
 """Logarithm of data over model down to which the curvature of the deviance is taken as it is."""
@@ -164,7 +164,7 @@ class Continuation:
         return found
 
     def start(self, outer: Array) -> Array:
-        """Inner parameters to begin with, the plateau that which densities have on average."""
+        """First inner parameters; the plateau is the mean of those that the densities give."""
         begin = np.array([0.0, *_ROUGH, 0.0, 0.0, *self.begin])
         inner = np.repeat(begin[None, self._inner], len(outer), axis=0)
         levels = [
@@ -212,7 +212,7 @@ class Continuation:
         return found
 
     def _bend(self, outer: Array) -> tuple[Array, Array]:
-        """Where the roll-off is the least bend, and that bend."""
+        """Whether the roll-off is the lower limit of the bend, and this limit."""
         return outer[:, 0] > self.limits[3, 0], np.maximum(outer[:, 0], self.limits[3, 0])
 
     def _prior(self, inner: Array, outer: Array) -> Array:

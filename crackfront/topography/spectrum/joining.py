@@ -11,10 +11,10 @@ from itertools import pairwise
 import numpy as np
 
 from crackfront.analysis.estimate import Estimate, normal_estimate, quantiles
+from crackfront.core.arrays import Array
 from crackfront.core.spectrum import TabulatedSpectrum
 from crackfront.topography.density.bands import NYQUIST, Scan
 from crackfront.topography.density.densities import Density, bin_numbers
-from crackfront.topography.scan.levelling import Array
 from crackfront.topography.spectrum import draws as sampling
 from crackfront.topography.spectrum.draws import Draws, SpectrumSampler, batches, drawn
 from crackfront.topography.spectrum.fit import Fit, quadrature_of

@@ -11,7 +11,7 @@ import numpy as np
 
 from crackfront.analysis.estimate import Estimate
 from crackfront.core.spectrum import TabulatedSpectrum
-from crackfront.topography.density.bands import Scan, scan
+from crackfront.topography.density.bands import Scan, analysed_scan
 from crackfront.topography.options import ReadingOptions
 from crackfront.topography.scan.reading import Measurement, read_measurements
 from crackfront.topography.spectrum.draws import ORDERS
@@ -102,7 +102,7 @@ def measured_surface(
     Ends of the trusted wavelengths (Units: m) stand in place of those that are found in each.
     ValueError if the densities do not determine a spectrum.
     """
-    scans = tuple(scan(item, shortest, longest) for item in measurements)
+    scans = tuple(analysed_scan(item, shortest, longest) for item in measurements)
     try:
         joint = joint_spectrum(scans)
     except np.linalg.LinAlgError:

@@ -1,9 +1,10 @@
 """Weighted states of a likelihood that is broad, or has several maxima, in few parameters.
 
-These outer parameters are cut into cells. In each the inner ones have a normal approximation
-about their likeliest values, within their limits (Genz, J. Comput. Graph. Stat. 1, 141, 1992).
-States are drawn from these by a low-discrepancy sequence and weighted by what the likelihood is
-beside the approximation, so that it decides how many states are needed, not what they say.
+These few parameters, the outer ones, are cut into cells. In each cell the inner parameters have a
+normal approximation about their likeliest values, within their limits (Genz, J. Comput. Graph.
+Stat. 1, 141, 1992). States are drawn from the approximations by a low-discrepancy sequence. The
+weight of a state is the likelihood over the approximation: a poor approximation needs more states,
+but does not bias them.
 """
 
 from __future__ import annotations

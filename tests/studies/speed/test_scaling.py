@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from crackfront.sweep.configuration import load_configuration
-from crackfront.sweep.needs import postprocessing_costs
+from crackfront.sweep.postprocessing import postprocessing_costs
 from studies.speed import scaling
 
 LOSSES = scaling.Losses(hand_out=1e-3, start=10.0)

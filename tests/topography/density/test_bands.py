@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from crackfront.topography.density.bands import scan
+from crackfront.topography.density.bands import analysed_scan
 from crackfront.topography.prediction.surface_remarks import scan_remarks, spectrum_remarks
 from crackfront.topography.spectrum.joining import joint_spectrum
 from studies.accuracy.energies import (
@@ -71,18 +71,18 @@ def test_grooves_are_no_shifted_rows_and_told(found):
     grooves = 3 * one.measurement.heights.std() * np.sin(x)[:, None]
     for heights, part in ((one.measurement.heights, 0.0), (grooves.T, 1.0), (grooves, 1.0)):
         both = replace(one.measurement, heights=one.measurement.heights + part * heights)
-        share, wavelength = scan(both).band.periodic
+        share, wavelength = analysed_scan(both).band.periodic
         assert (share > 0.5) == bool(part)
         if part:
             assert wavelength == pytest.approx(SIDE / 12, rel=0.1)
-            assert scan(both).band.stripes == ()
+            assert analysed_scan(both).band.stripes == ()
 
 
 def test_the_noise_of_a_scan_is_found_and_ends_its_band(found, rng):
     [one] = found("self-affine, H = 0.8").surface.scans
     heights = one.measurement.heights
     noise = 0.6 * heights.std() * rng.standard_normal(heights.shape)
-    band = scan(replace(one.measurement, heights=heights + noise)).band
+    band = analysed_scan(replace(one.measurement, heights=heights + noise)).band
     # The density of white noise is its variance times the area of a point.
     assert band.instrument.noise == pytest.approx(np.var(noise) * PIXEL**2, rel=0.2)
     assert band.shortest.cause == "noise"
@@ -94,7 +94,7 @@ def test_shifted_rows_are_found_and_left_out(found, rng):
     [one] = surface.scans
     heights = one.measurement.heights
     shifts = 0.5 * heights.std() * rng.standard_normal((1, heights.shape[1]))
-    shifted = scan(replace(one.measurement, heights=heights + shifts))
+    shifted = analysed_scan(replace(one.measurement, heights=heights + shifts))
     assert (one.band.stripes, shifted.band.stripes) == ((), (1,))
     assert shifted.trusted.value == pytest.approx(one.trusted.value, rel=0.6)
     assert shifted.waves.power.mean() > 1.2 * one.waves.power.mean()
@@ -118,7 +118,7 @@ def test_scans_that_agree_join_and_those_that_do_not_are_told(found):
     [one] = found("self-affine, H = 0.8").surface.scans
     path = one.measurement.path.with_name("other.al3d")
     rough = replace(one.measurement, heights=3 * one.measurement.heights, path=path)
-    joint = joint_spectrum([one, scan(rough)])
+    joint = joint_spectrum([one, analysed_scan(rough)])
     assert joint.density.scatter > 0.5
     assert joint.density.disagrees(0)
     assert joint.density.disagrees(1)
@@ -132,7 +132,7 @@ def test_scans_that_agree_join_and_those_that_do_not_are_told(found):
 
 def test_limits_that_are_named_stand_in_place_of_those_that_are_found(found):
     [one] = found("form that is left").surface.scans
-    band = scan(one.measurement, shortest=8 * PIXEL, longest=SIDE / 3).band
+    band = analysed_scan(one.measurement, shortest=8 * PIXEL, longest=SIDE / 3).band
     assert [limit.cause for limit in band.ends] == ["named", "named"]
     assert [limit.wavelength for limit in band.ends] == [8 * PIXEL, SIDE / 3]
 
@@ -140,7 +140,7 @@ def test_limits_that_are_named_stand_in_place_of_those_that_are_found(found):
 def test_a_band_of_less_than_an_octave_is_refused(found):
     [one] = found("self-affine, H = 0.8").surface.scans
     with pytest.raises(ValueError, match=r"less than an octave; use a better scan, or name"):
-        scan(one.measurement, shortest=SIDE / 3)
+        analysed_scan(one.measurement, shortest=SIDE / 3)
 
 
 def test_intervals_of_distorted_scans_hold_the_truth(found):

@@ -7,7 +7,7 @@ import pytest
 
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.synthesis import gaussian_field
-from crackfront.topography.density.bands import scan
+from crackfront.topography.density.bands import analysed_scan
 from crackfront.topography.density.densities import periodogram, unevenness, weight_of_gaps
 from crackfront.topography.density.gaps import restored_periodogram, surrogate_pairs
 from crackfront.topography.prediction.surface_remarks import scan_remarks
@@ -117,8 +117,10 @@ def test_a_line_with_gaps_has_the_density_of_the_whole_line(rng):
 
 def test_a_hole_in_the_middle_keeps_the_truth_in_the_interval(rng, tmp_path):
     whole = whole_map(rng)
-    found = scan(read_map(tmp_path, whole.heights, middle(rng)))
-    hidden, known = (joint_spectrum([one]).draws.mean_square(0.5) for one in (found, scan(whole)))
+    found = analysed_scan(read_map(tmp_path, whole.heights, middle(rng)))
+    hidden, known = (
+        joint_spectrum([one]).draws.mean_square(0.5) for one in (found, analysed_scan(whole))
+    )
     assert hidden.low < SPECTRUM.mean_square(0.5) < hidden.high
     assert hidden.low < known.value < hidden.high
     [sentence] = [one.sentence for one in scan_remarks([found])]

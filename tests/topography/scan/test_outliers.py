@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from crackfront.topography.density.bands import scan
+from crackfront.topography.density.bands import analysed_scan
 from crackfront.topography.prediction.surface_remarks import scan_remarks
 from crackfront.topography.scan.outliers import outliers
 from tests.topography.made import DETAIL, OVERVIEW, map_heights, read, refusal, write_al3d
@@ -24,7 +24,9 @@ def test_marks_for_missing_data_are_taken_as_missing_and_said(tmp_path, rng, hei
     whole = read(write_al3d(tmp_path / "whole.al3d", surface))
     assert found.missing == pytest.approx(20 / heights.size)
     assert np.std(found.heights - whole.heights) < 0.01 * np.std(whole.heights)
-    [remark] = [one for one in scan_remarks([scan(found)]) if one.severity == "reservation"]
+    [remark] = [
+        one for one in scan_remarks([analysed_scan(found)]) if one.severity == "reservation"
+    ]
     assert "20 points at " in remark.sentence
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from crackfront.topography.density.bands import scan as scan_of
+from crackfront.topography.density.bands import analysed_scan
 from crackfront.topography.options import ReadingOptions
 from crackfront.topography.scan.instruments import surface_library
 from crackfront.topography.scan.reading import read_measurements
@@ -114,7 +114,9 @@ def test_a_few_missing_points_are_interpolated(rng, tmp_path, heights, scan):
     assert filled.missing == pytest.approx(np.mean(np.isnan(holes)))
     assert np.all(np.isfinite(filled.heights))
     assert np.std(filled.heights - whole.heights) < 0.05 * np.std(whole.heights)
-    ratio = measured_mean_square(scan_of(filled), 0.5) / measured_mean_square(scan_of(whole), 0.5)
+    ratio = measured_mean_square(analysed_scan(filled), 0.5) / measured_mean_square(
+        analysed_scan(whole), 0.5
+    )
     assert ratio == pytest.approx(1, abs=0.02)
 
 

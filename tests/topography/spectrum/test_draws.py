@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from crackfront.core.spectrum import TabulatedSpectrum
-from crackfront.topography.density.bands import scan
+from crackfront.topography.density.bands import analysed_scan
 from crackfront.topography.options import PredictionOptions
 from crackfront.topography.prediction.prediction import check_and_predict
 from crackfront.topography.scan.reading import read_measurements
@@ -86,7 +86,7 @@ def test_four_times_as_many_draws_say_the_same(monkeypatch):
 
 
 def test_what_is_unsettled_is_what_moves():
-    scans = [scan(one) for one in read_measurements([DETAIL])]
+    scans = [analysed_scan(one) for one in read_measurements([DETAIL])]
     found = [joint_spectrum(scans, seed).draws for seed in range(6)]
     energies = [item.mean_square(0.5) for item in found]
     logarithms = np.log([(one.low, one.value, one.high) for one in energies])

@@ -8,7 +8,7 @@ import pytest
 from crackfront.core.adhesion import half_derivative_mean_square
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.synthesis import gaussian_field
-from crackfront.topography.density.bands import scan as scan_of
+from crackfront.topography.density.bands import analysed_scan
 from crackfront.topography.options import ReadingOptions
 from crackfront.topography.scan.instruments import surface_library
 from crackfront.topography.scan.reading import read_measurements
@@ -49,7 +49,7 @@ def test_the_measures_of_a_periodic_map_are_ours_and_the_librarys(rng):
     measurement = periodic_measurement(heights)
     pixel = SIDE / 128
     library = surface_library().Topography(heights, measurement.size, periodic=True)
-    found = [measured_mean_square(scan_of(measurement), order) for order in (0.0, 0.5, 1.0)]
+    found = [measured_mean_square(analysed_scan(measurement), order) for order in (0.0, 0.5, 1.0)]
     assert found[0] == pytest.approx(np.mean(heights**2), rel=1e-9)
     assert found[0] == pytest.approx(library.moment_power_spectrum(order=0), rel=1e-9)
     assert found[1] == pytest.approx(half_derivative_mean_square(heights, pixel), rel=1e-9)
@@ -108,7 +108,7 @@ def test_anisotropy_is_the_ratio_of_the_slopes(rng, tmp_path, scan):
     stretched = map_heights(rng, n_point=256)[::1, ::2][:128, :128]
     path = write_al3d(tmp_path / "aniso.al3d", stretched)
     isotropic, anisotropic = (
-        scan_of(read_measurements([one])[0]).band.anisotropy for one in (scan, path)
+        analysed_scan(read_measurements([one])[0]).band.anisotropy for one in (scan, path)
     )
     assert 0.8 < isotropic < 1.25
     assert anisotropic < 0.7

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from crackfront.topography.density.bands import scan
+from crackfront.topography.density.bands import analysed_scan
 from crackfront.topography.scan.reading import Measurement
 from crackfront.topography.spectrum import draws
 from crackfront.topography.spectrum.joining import joint_spectrum
@@ -59,7 +59,7 @@ def refusal(*measurements):
 def test_a_line_with_nothing_below_its_trusted_waves_has_a_spectrum(rng):
     """As of a blurred profile, whose noise begins where its trusted waves end."""
     heights = profile(rng, 128)
-    found = scan(measurement(heights), 6 * PIXEL, 32 * PIXEL)
+    found = analysed_scan(measurement(heights), 6 * PIXEL, 32 * PIXEL)
     found = replace(found, band=replace(found.band, noise_limit=found.band.shortest.wavelength))
     joint = joint_spectrum([found])
     energy = joint.draws.mean_square(0.5)
@@ -140,10 +140,10 @@ def test_small_scans_have_intervals(heights, rng):
 def test_named_ends_between_which_there_is_no_wave_are_refused(rng, shortest, longest):
     given = measurement(profile(rng))
     with pytest.raises(ValueError, match=r"scan: its density has [01] values between") as caught:
-        scan(given, shortest, longest)
+        analysed_scan(given, shortest, longest)
     assert "--shortest and --longest" in str(caught.value)
 
 
 def test_ends_that_are_named_one_for_the_other_are_refused(rng):
     with pytest.raises(ValueError, match=r"less than an octave"):
-        scan(measurement(profile(rng)), 2e-6, 1e-6)
+        analysed_scan(measurement(profile(rng)), 2e-6, 1e-6)

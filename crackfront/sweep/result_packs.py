@@ -1,4 +1,4 @@
-"""The packs of a store, to which the process of each job appends, and the index of what they hold.
+"""The packs of a store, to which the process of each job appends, and the index of their rows.
 
 A finished simulation is two files in a pack: its curve as netCDF, where it has one, and its row as
 JSON.
@@ -46,15 +46,15 @@ class Entry:
     """What a pack says of a simulation that has ended."""
 
     stem: str
-    """That of the :class:`crackfront.simulate.simulation.Simulation`, with its key."""
+    """Name of the simulation's files without a suffix; its key ends it."""
     parts: dict[str, str]
-    """Those of its key."""
+    """Digests of the parts of its key, by their names."""
     definition: str
     """:func:`crackfront.sweep.rows.row_fingerprint` of its row."""
     row: SweepRow | None
     """Its row, if rows have the same definition now."""
     arithmetic: str = ""
-    """That of its origin; empty where an earlier version stored it."""
+    """Arithmetic of its provenance; empty where an earlier version stored it."""
 
     def files(self, curve: bytes = b"") -> dict[str, bytes]:
         """Files of a pack, by their names."""
@@ -110,7 +110,7 @@ def pack_paths(folder: Path, spectrum: str | None = None, block: range | None = 
     return found
 
 
-def renew_packs(paths: Iterable[Path]) -> Iterator[str]:
+def repair_packs(paths: Iterable[Path]) -> Iterator[str]:
     """Set damaged packs that no process writes aside but for their whole files; a sentence each."""
     for path in paths:
         whole, n_damaged = checked(path)

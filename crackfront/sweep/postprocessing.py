@@ -1,21 +1,21 @@
-"""What it takes to collect, fit and draw a sweep that has run, by a law of measured sweeps."""
+"""Expected time and memory to collect, fit and draw a sweep, by a law of measured sweeps."""
 
 from __future__ import annotations
 
 from crackfront.simulate.costs import Cost
 from crackfront.sweep.sweep import Sweep
 
-_LATE = {
+_LAWS = {
     "aggregate": (1.0, 2.5e-4, 2.4e8, 1.2e3, 0),
     "fit": (1.2, 2e-6, 2.4e8, 7e2, 1),
     "figures": (5.5, 4.5e-5, 3.2e8, 7e2, 1),
     "summary": (1.2, 2e-6, 2.4e8, 7e2, 1),
 }
-"""Of each command: seconds and those of a row, bytes of memory and those of a row, and whether it
-draws the bootstrap; by `python -m studies speed scaling`."""
+"""Of each command: seconds without rows and per row, bytes of memory without rows and per row, and
+1 if it draws the bootstrap, else 0. `python -m studies speed scaling` measures them."""
 
 _DRAWN_SECONDS, _DRAWN_BYTES, _MOST_DRAWN = 4.2e-8, 16.0, 1.35e8
-"""Seconds of a row in a bootstrap sample; bytes of a realisation in one, and the most of them."""
+"""Bootstrap: seconds per row and sample, bytes per realisation and sample, most bytes at once."""
 
 
 def postprocessing_costs(sweep: Sweep) -> dict[str, Cost]:
@@ -23,7 +23,7 @@ def postprocessing_costs(sweep: Sweep) -> dict[str, Cost]:
     n_row, n_sample = sweep.n_simulation, sweep.fit.n_bootstrap
     drawn = min(_MOST_DRAWN, _DRAWN_BYTES * n_sample * sweep.n_realisation)
     needs = {}
-    for name, (start, row, memory, row_bytes, draws) in _LATE.items():
+    for name, (start, row, memory, row_bytes, draws) in _LAWS.items():
         seconds = start + n_row * (row + draws * n_sample * _DRAWN_SECONDS)
         needs[name] = Cost(seconds, memory + n_row * row_bytes + draws * drawn, disk=0.0)
     return needs

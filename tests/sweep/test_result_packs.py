@@ -8,7 +8,7 @@ import pytest
 
 from crackfront.data.packs import LONGEST_NAME, checked, record
 from crackfront.sweep.configuration import load_configuration
-from crackfront.sweep.journal import Entry, RowIndex, new_pack, pack_paths, renew_packs
+from crackfront.sweep.result_packs import Entry, RowIndex, new_pack, pack_paths, repair_packs
 from crackfront.sweep.rows import failed_row, row_fingerprint
 
 SWEEP = load_configuration(Path(__file__).parents[2] / "config/test.yaml")
@@ -74,7 +74,7 @@ def test_a_pack_without_content_is_damaged(tmp_path, content):
     path = tmp_path / f"flat.0-1.{socket.gethostname()}-1-ab.tar"
     path.write_bytes(content)
     assert names(tmp_path)[0] == []
-    [sentence] = renew_packs([path])
+    [sentence] = repair_packs([path])
     assert sentence.startswith(
         f"{path} is damaged; its whole files stay, the rest is in {path.name}."
     )
@@ -87,7 +87,7 @@ def test_what_is_whole_in_a_damaged_pack_stays_and_the_rest_is_set_aside(tmp_pat
         record("a.nc", CURVE) + record("b.nc", CURVE).replace(b"v", b"w", 1) + record("c.nc", CURVE)
     )
     path.write_bytes(content)
-    assert len(list(renew_packs([path]))) == 1
+    assert len(list(repair_packs([path]))) == 1
     assert names(tmp_path) == (["a.nc", "c.nc"], 0)
     assert path.with_name(f"{path.name}.damaged").read_bytes() == content
 
@@ -97,11 +97,11 @@ def test_the_pack_of_a_living_process_stays_as_it_is(tmp_path, pack):
     [path] = pack_paths(tmp_path)
     with path.open("ab") as file:
         file.write(b"half")
-    assert list(renew_packs([path])) == []
+    assert list(repair_packs([path])) == []
     pack.close()
     with path.open("ab") as file:
         file.write(b"half")
-    assert len(list(renew_packs([path]))) == 1
+    assert len(list(repair_packs([path]))) == 1
 
 
 def test_two_writers_have_two_files(tmp_path, pack):
