@@ -31,7 +31,7 @@ def fit_table(fit: SweepFit) -> str:
     in_range = int(np.count_nonzero(fit.in_range))
     blocks = [
         fit_result(fit),
-        finding(_departure(fit)),
+        finding(_law_agreement(fit)),
         "## The fit",
         f"Range: e_el/w_int from {fit.lowest_elastic_energy:g} to "
         f"{fit.highest_elastic_energy:g} ({in_range} of {fit.in_range.size} amplitudes); "
@@ -71,7 +71,7 @@ def fit_result(fit: SweepFit) -> str:
     return (
         f"# Hysteresis: w_retr, w_appr = {_mean_adhesion(fit)} ± k e_el\n\n"
         f"- k of this sweep, {_n_simulation(fit)} simulations: {_pooled_entry(fit, 'factor')}\n"
-        f"- k by the law: {'; '.join([pooled, *_apart(law)])}; k of the paper: {PAPER_FACTOR:g}\n"
+        f"- k by the law: {'; '.join([pooled, *_k_range(law)])}; k of the paper: {PAPER_FACTOR:g}\n"
         f"- exponent of w_rms: {with_interval(fit.pooled.exponent)}; of the paper: 2"
     )
 
@@ -116,11 +116,11 @@ def _pooled_entry(fit: SweepFit, name: str) -> str:
 def pooled_limits(fit: SweepFit, spectra: Estimate) -> tuple[str, ...]:
     """Scatter of the spectra and numerical bias of a pooled k, which its interval leaves out."""
     bias = _largest_numerical_error(fit)
-    apart = _apart(spectra.value)
-    return (*apart, f"numerical bias to {bias[0]:.2f}") if bias else apart
+    k_range = _k_range(spectra.value)
+    return (*k_range, f"numerical bias to {bias[0]:.2f}") if bias else k_range
 
 
-def _apart(factors: Array) -> tuple[str, ...]:
+def _k_range(factors: Array) -> tuple[str, ...]:
     """Range of the k of spectra, where there are two or more."""
     known = factors[np.isfinite(factors)]
     return (f"spectra {known.min():.2f} to {known.max():.2f}",) if known.size > 1 else ()
@@ -214,8 +214,8 @@ def fit_notes(fit: SweepFit) -> tuple[str, ...]:
 
 def trend_sentence(fit: SweepFit) -> str:
     """Say that k is no constant, and which trends the sweep resolves."""
-    disorder = _change(fit.pooled.disorder_slope, "per doubling of w_rms within a spectrum")
-    size = _change(
+    disorder = _trend_text(fit.pooled.disorder_slope, "per doubling of w_rms within a spectrum")
+    size = _trend_text(
         fit.pooled_size_slope, "per doubling of the correlation length among spectra of one shape"
     )
     disorder = disorder or "its trend with w_rms needs two amplitudes"
@@ -226,7 +226,7 @@ def trend_sentence(fit: SweepFit) -> str:
     )
 
 
-def _departure(fit: SweepFit) -> str:
+def _law_agreement(fit: SweepFit) -> str:
     """How near the law is, in words."""
     if not fit.n_large:
         return "; in this sweep no contact is large enough to tell, as g is nowhere above 1"
@@ -239,7 +239,7 @@ def _departure(fit: SweepFit) -> str:
     )
 
 
-def _change(trend: Estimate, unit: str) -> str:
+def _trend_text(trend: Estimate, unit: str) -> str:
     """Words for a trend; empty if there is none to speak of."""
     value, _, low, high = map(float, astuple(trend))
     if not np.isfinite(value):

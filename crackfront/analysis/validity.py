@@ -25,7 +25,7 @@ _MODEL_ERROR = 0.05
 """Standard error of the logarithm that the form of the law leaves: half of what powers of the
 disorder from 2 to 4 differ by between the measured amplitudes."""
 
-_NOTHING = 1.005
+_LEAST_PRINTED_RATIO = 1.005
 """Smallest ratio that changes a printed digit."""
 
 _EXTRAPOLATION = 0.5
@@ -149,7 +149,7 @@ def front_excess(energy: float, size: float, rows: Sequence[ValidityRow] | None 
     law = Estimate(logarithm, math.nan, logarithm - reach, logarithm + reach).each(math.exp)
     interval = f"{law.value:.2f} ({law.low:.2f} to {law.high:.2f})"
     sentence = f"A front has {interval} times the hysteresis of boundary elements at this e_el"
-    sentence += "; the prediction is divided by this." if law.value >= _NOTHING else "."
+    sentence += "; the prediction is divided by this." if law.value >= _LEAST_PRINTED_RATIO else "."
     if grown or beyond:
         sentence += (
             f" Both were compared up to e_el/w_int = {strongest:.2g} and g = {largest:.2g}; here "

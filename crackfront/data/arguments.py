@@ -5,7 +5,7 @@ from __future__ import annotations
 from numbers import Real
 from typing import Any
 
-_SAYS_ITSELF = (str, int, float, bool, type(None))
+_TYPES_SHOWN_BY_VALUE = (str, int, float, bool, type(None))
 """Types of which a message shows the value; of all others it names the type."""
 
 
@@ -32,7 +32,7 @@ def refuse_no_numbers(**values: object) -> None:
 
 def _shown(value: object) -> str:
     """The value, or its type where that says more."""
-    if isinstance(value, _SAYS_ITSELF):
+    if isinstance(value, _TYPES_SHOWN_BY_VALUE):
         return repr(value)
     kind = type(value)
     home = "" if kind.__module__ == "builtins" else f"{kind.__module__.partition('.')[0]}."

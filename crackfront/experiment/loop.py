@@ -170,7 +170,7 @@ def analyse_loop(recording: Recording, rig: Rig) -> MeasuredLoop:
             w_appr, w_retr = branch_means(_contact(recording, rig, known, place).work, averaged)
             alone.append(np.array([w_appr, w_retr, w_retr - w_appr, known]))
     estimates = _estimates(found, averaged, first.radius, rig, shifted, alone)
-    fitted = _NOTHING
+    fitted = _NO_ESTIMATE
     if recording.force is not None and recording.radius is not None:
         free = Rig(rig.radius, None, 0.0, rig.radius_error)
         fitted = _estimates(found, averaged, first.radius, free, shifted)[3]
@@ -422,7 +422,7 @@ def _fit(recording: Recording, rig: Rig, branches: Branches) -> float:
     return modulus
 
 
-_NOTHING = Estimate(math.nan, math.nan, math.nan, math.nan)
+_NO_ESTIMATE = Estimate(math.nan, math.nan, math.nan, math.nan)
 
 
 def _estimates(
@@ -499,7 +499,7 @@ def _stiffness(
     """Stiffness of the machine: displacement beyond the penetration that force and radius have."""
     displacement, force = recording.displacement, recording.force
     if displacement is None or force is None or recording.radius is None:
-        return _NOTHING
+        return _NO_ESTIMATE
     rows = np.concatenate(averaged)
 
     def compliance(modulus: float, chosen: Rows) -> float:
@@ -517,7 +517,7 @@ def _stiffness(
     reach = math.hypot(float(stdtrit(_BLOCKS - 1, 0.975)) * noise, other)
     low, high = value - reach, value + reach
     if not high > 0:
-        return _NOTHING
+        return _NO_ESTIMATE
     least, most = 1 / high, 1 / low if low > 0 else math.inf
     return Estimate(1 / value if value > 0 else math.inf, math.nan, least, most)
 

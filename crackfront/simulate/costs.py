@@ -71,7 +71,7 @@ class Features:
 
 
 @dataclass(frozen=True, slots=True)
-class Measured:
+class MeasuredRun:
     """A measured run with its states; one that is held out does not enter the fit."""
 
     name: str
@@ -121,7 +121,9 @@ def affordable_seconds(*, n_angle: float, n_point: float, n_state: float, n_samp
     The numbers are those of the sites of the front, the points of the field, the load steps, and
     the samples that each site passes. TooLargeError if time or memory are more than there is.
     """
-    usual = Features(n_angle, math.sqrt(n_point), _USUAL, DEFAULT_TOLERANCE, 1.0, 1.0, 1.0, n_state)
+    usual = Features(
+        n_angle, math.sqrt(n_point), _USUAL_ENERGY, DEFAULT_TOLERANCE, 1.0, 1.0, 1.0, n_state
+    )
     cost = featured_cost(usual, fronts=False)
     seconds = cost.seconds + _SAMPLE_SECONDS * n_angle * n_sample
     cycle = f"a cycle of {n_state:.3g} load steps with {n_angle:.3g} sites and"
@@ -131,7 +133,7 @@ def affordable_seconds(*, n_angle: float, n_point: float, n_state: float, n_samp
     return seconds
 
 
-_USUAL, _SAMPLE_SECONDS = 0.05, 1e-7
+_USUAL_ENERGY, _SAMPLE_SECONDS = 0.05, 1e-7
 """e_el where it is not known (Units: w_int); time of one sample. (Units: s)"""
 
 
@@ -172,17 +174,19 @@ def features(simulation: Simulation) -> Features:
     )
 
 
-def measured_runs() -> list[Measured]:
-    """The runs of `costs.csv`, whose columns are the fields of `Measured` and `Features`."""
+def measured_runs() -> list[MeasuredRun]:
+    """The runs of `costs.csv`, whose columns are the fields of `MeasuredRun` and `Features`."""
     text = files("crackfront.simulate").joinpath("costs.csv").read_text(encoding="utf-8")
     _, *rows = csv.reader(text.splitlines())
     return [
-        Measured(name, held_out == "1", Features(*map(float, known)), int(n_state), float(seconds))
+        MeasuredRun(
+            name, held_out == "1", Features(*map(float, known)), int(n_state), float(seconds)
+        )
         for name, held_out, *known, n_state, seconds in rows
     ]
 
 
-def predicted_seconds(runs: Sequence[Measured]) -> Array:
+def predicted_seconds(runs: Sequence[MeasuredRun]) -> Array:
     """Processor times that the law gives for measured runs, in seconds."""
     return _seconds(_coefficients(), _columns([run.features for run in runs]))
 

@@ -173,7 +173,7 @@ def chosen_knobs(
     elastic energy is e_el / w_int. ValueError if errors were not measured at such an e_el, or for
     spectra as narrow.
     """
-    if refusal := _beyond(kind, spectrum, elastic_energy):
+    if refusal := _unmeasured_reason(kind, spectrum, elastic_energy):
         raise ValueError(f"error is {error:g}, but {refusal}")
     usual = sphere_size(spectrum) if usual_size is None else usual_size
     interpolation = _interpolation(kind, spectrum, elastic_energy, usual)
@@ -188,7 +188,7 @@ def chosen_knobs(
     )
 
 
-def _beyond(kind: FieldKind, spectrum: Spectrum, elastic_energy: float) -> str:
+def _unmeasured_reason(kind: FieldKind, spectrum: Spectrum, elastic_energy: float) -> str:
     """Why errors are not known of a spectrum and amplitude; empty where they are."""
     low, high = measured_energies()
     remedy = "give the resolution and the tolerance instead"
@@ -220,9 +220,9 @@ def _chosen_values(error: float, interpolation: _Interpolation, size: float) -> 
     """Coarsest values of all knobs whose errors together are at most the requested one."""
     tried = {knob: _values(knob) for knob in _SHARES}
     parts = {knob: _parts(interpolation, knob, values) for knob, values in tried.items()}
-    rarity = _rarity(error, interpolation, size)
+    margin = _avalanche_margin(error, interpolation, size)
     for of in parts.values():
-        of[1] *= rarity * math.sqrt(LAW_SIZE / size)
+        of[1] *= margin * math.sqrt(LAW_SIZE / size)
     single = {knob: np.hypot(*of).max(axis=0) for knob, of in parts.items()}
 
     def chosen(shares: float) -> dict[Knob, int]:
@@ -240,7 +240,7 @@ def _chosen_values(error: float, interpolation: _Interpolation, size: float) -> 
     return {knob: float(tried[knob][index]) for knob, index in chosen(low).items()}
 
 
-def _rarity(error: float, interpolation: _Interpolation, size: float) -> float:
+def _avalanche_margin(error: float, interpolation: _Interpolation, size: float) -> float:
     """Factor by which scatter must stay below a requested error: few surfaces have an avalanche."""
     largest = 0.0
     for shape, part in interpolation.shapes:
@@ -276,7 +276,7 @@ def combined_error(
     used; `size` is the number of states times circumference of the front over the short cutoff. The
     other arguments are as of :func:`chosen_knobs`.
     """
-    if _beyond(kind, spectrum, elastic_energy):
+    if _unmeasured_reason(kind, spectrum, elastic_energy):
         return math.nan, math.nan
     usual = sphere_size(spectrum) if usual_size is None else usual_size
     interpolation = _interpolation(kind, spectrum, elastic_energy, usual)

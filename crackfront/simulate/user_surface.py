@@ -156,7 +156,7 @@ def surface_adhesion(surface: xr.DataArray) -> AdhesionMap:
             "have x and y"
         )
     refuse_other_units(surface if kind == "roughness" else surface.coords.to_dataset())
-    samples, pixel = _samples(surface)
+    samples, pixel = _tile_values(surface)
     known = {"reduced": 1.0, "1": 1.0, ADHESION: WORK_OF_ADHESION}
     unit, units = 1.0, str(stated_unit(surface.attrs) or "reduced")
     if kind == "chemical":
@@ -259,7 +259,7 @@ _UNEQUAL = 1e-6
 """Largest deviation from equal spacing, relative to it."""
 
 
-def _samples(values: xr.DataArray) -> tuple[Array, float]:
+def _tile_values(values: xr.DataArray) -> tuple[Array, float]:
     """Values of a tile, first axis x, and their spacing, which must be one in x and y."""
     pixels = [_spacing(values, name) for name in ("x", "y")]
     if abs(pixels[1] / pixels[0] - 1) > _UNEQUAL:

@@ -34,13 +34,13 @@ Kept = TypeVar("Kept")
 _STOP_FILE = "CRACKFRONT_STOP"
 """Environment variable that names the file by which ranks are requested to stop."""
 
-_ENDED = "ended"
+_STOPPED = "ended"
 """What the manager writes into it before it stops."""
 
 _ALIVE = b"\n"
 """First byte on the standard input of the ranks, which the process of the launcher keeps open."""
 
-_SIZES = (
+_COUNT_VARIABLES = (
     *("PMI_SIZE", "MPI_LOCALNRANKS", "OMPI_COMM_WORLD_SIZE", "MV2_COMM_WORLD_SIZE"),
     *("SLURM_STEP_NUM_TASKS", "JSM_NAMESPACE_SIZE", "FLUX_JOB_SIZE"),
 )
@@ -49,16 +49,16 @@ _SIZES = (
 SLURM_NTASKS is not among them: a batch script, which is one process, has that of its job.
 """
 
-_RANKS = (
+_RANK_VARIABLES = (
     *("PMI_RANK", "PMIX_RANK", "MPI_LOCALRANKID", "OMPI_COMM_WORLD_RANK", "MV2_COMM_WORLD_RANK"),
     *("SLURM_PROCID", "PALS_RANKID", "ALPS_APP_PE", "JSM_NAMESPACE_RANK", "FLUX_TASK_RANK"),
 )
 """Environment variables in which launchers number processes from 0; some launchers set no other."""
 
-_LOOK = 0.02
+_POLL_SECONDS = 0.02
 """Time between two polls of a launcher. (Units: s)"""
 
-_GRACE = 10.0
+_GRACE_SECONDS = 10.0
 """Time that a launcher has to end its ranks before it is killed. (Units: s)"""
 
 _SIGNALS = (signal.SIGTERM, signal.SIGINT, signal.SIGHUP)
@@ -84,7 +84,7 @@ def report_stop_to_launcher() -> bool:
     The rank then ends with 0, as MPI reports any other exit code as a failure.
     """
     with contextlib.suppress(KeyError, OSError):
-        Path(os.environ[_STOP_FILE]).write_text(_ENDED, encoding="utf-8")
+        Path(os.environ[_STOP_FILE]).write_text(_STOPPED, encoding="utf-8")
         return True
     return False
 
@@ -97,7 +97,7 @@ def deferring_stops() -> Iterator[None]:
         if number == signal.SIGINT and _received.is_set():
             raise KeyboardInterrupt
         if not (_received.is_set() or under_mpi()):
-            _say_what_is_awaited()
+            _announce_stop()
         _received.set()
 
     try:
@@ -107,7 +107,7 @@ def deferring_stops() -> Iterator[None]:
         _received.clear()
 
 
-def _say_what_is_awaited() -> None:
+def _announce_stop() -> None:
     """Print what a process that is to stop waits for, from within the handler of a signal."""
     with contextlib.suppress(OSError):  # of a terminal that was closed
         os.write(2, b"Stopping at the next load step of what runs; Ctrl-C again ends it at once\n")
@@ -172,16 +172,17 @@ def is_manager(n_worker: int) -> bool:
 
 def _launched_several_times() -> str:
     """How often a launcher has started this command, in words; empty if once, or it is unknown."""
-    for name in _RANKS:
-        if (rank := _stated(name)) > 0:
+    for name in _RANK_VARIABLES:
+        if (rank := _environment_number(name)) > 0:
             return f"several times, {name} is {rank}"
     # A shell on the first of several tasks has what they have, and is alone.
-    sizes = () if "SLURM_PTY_PORT" in os.environ else _SIZES
-    name = max(sizes, key=_stated, default="")
-    return f"{count} times, as {name} says" if name and (count := _stated(name)) > 1 else ""
+    sizes = () if "SLURM_PTY_PORT" in os.environ else _COUNT_VARIABLES
+    name = max(sizes, key=_environment_number, default="")
+    count = _environment_number(name) if name else 0
+    return f"{count} times, as {name} says" if count > 1 else ""
 
 
-def _stated(name: str) -> int:
+def _environment_number(name: str) -> int:
     """Whole number in an environment variable; 0 where there is none."""
     text = os.environ.get(name, "").strip()
     return int(text) if text.isdecimal() else 0
@@ -265,7 +266,7 @@ def launch_ranks(
     """
     # Under -m mpi4py a rank that fails ends the job, where it would else hang.
     command = [
-        *_words(launcher or default_launcher()),
+        *_launcher_command(launcher or default_launcher()),
         *("-n", str(n_worker + 1)),
         *(sys.executable, "-m", "mpi4py", "-m", "crackfront"),
         *arguments,
@@ -292,11 +293,11 @@ def launch_ranks(
     def leave_file(number: int, frame: FrameType | None) -> None:
         try:
             file.touch(exist_ok=False)
-            _say_what_is_awaited()
+            _announce_stop()
         except OSError:  # the second time, or where nothing can be written
             process.terminate()
             # Ranks that wait in a library for each other end no other way.
-            killer = threading.Timer(_GRACE, process.kill)
+            killer = threading.Timer(_GRACE_SECONDS, process.kill)
             killer.daemon = True
             killer.start()
 
@@ -314,16 +315,17 @@ def launch_ranks(
                 process.stdin.write(_ALIVE)
             # Without an end of its own, a wait that begins as a signal arrives would not heed it.
             while (code := process.poll()) is None:
-                time.sleep(_LOOK)
+                time.sleep(_POLL_SECONDS)
             for reader in readers:
-                reader.join(_GRACE)  # a process that outlives the launcher may hold its output
-        ended = file.exists() and file.read_text(encoding="utf-8") == _ENDED
+                # A process that outlives the launcher may hold its output.
+                reader.join(_GRACE_SECONDS)
+        ended = file.exists() and file.read_text(encoding="utf-8") == _STOPPED
         return None if code == 0 and ended else code
     finally:
         if process.poll() is None:
             process.terminate()
             with contextlib.suppress(subprocess.TimeoutExpired):
-                process.wait(_GRACE)
+                process.wait(_GRACE_SECONDS)
             process.kill()
             process.wait()
         process.stdin.close()
@@ -333,7 +335,7 @@ def launch_ranks(
         file.unlink(missing_ok=True)
 
 
-def _words(launcher: str) -> list[str]:
+def _launcher_command(launcher: str) -> list[str]:
     """Name and options of a launcher."""
     try:
         if words := shlex.split(launcher):

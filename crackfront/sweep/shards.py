@@ -48,14 +48,14 @@ class FinishedShard:
     """Those of the origins of the rows."""
 
 
-def shard_fingerprint(firsts: Sequence[Simulation], realisations: range) -> str:
+def shard_fingerprint(one_per_amplitude: Sequence[Simulation], realisations: range) -> str:
     """Twelve hexadecimal digits that change with the simulations of a shard, and how rows are made.
 
     They follow from the first realisation of each amplitude
     (:meth:`crackfront.sweep.sweep.Sweep.one_per_amplitude`), at the same cost for any number of
     realisations.
     """
-    text = "\n".join([*stems(firsts), repr(realisations), row_fingerprint()])
+    text = "\n".join([*stems(one_per_amplitude), repr(realisations), row_fingerprint()])
     return hashlib.sha256(text.encode()).hexdigest()[:12]
 
 

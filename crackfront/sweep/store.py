@@ -163,14 +163,14 @@ class Store:
         self, sweep: Sweep, item: NamedSpectrum
     ) -> tuple[list[tuple[FinishedShard, range]], list[range]]:
         """Files of shards of a spectrum with what is taken of each, and what none of them has."""
-        firsts = sweep.one_per_amplitude(item)
+        one_per_amplitude = sweep.one_per_amplitude(item)
         found = map(finished_shard, sorted((self.folder / "shards").glob(f"{item.name}.*nc")))
         known = (
             one
             for one in found
             if one is not None
             and one.spectrum == item.name
-            and one.fingerprint == shard_fingerprint(firsts, one.realisations)
+            and one.fingerprint == shard_fingerprint(one_per_amplitude, one.realisations)
         )
         chosen, left, position = covering(known, sweep.n_realisation), [], 0
         for _, taken in chosen:

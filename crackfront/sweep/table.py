@@ -100,12 +100,12 @@ def _axes(sweep: Sweep, realisations: range) -> SweepAxes:
     """Coordinates of a sweep, and of some of its realisations."""
     spectra = [item.spectrum for item in sweep.spectra]
     energies = np.array(sweep.elastic_energies)
-    firsts = [sweep.one_per_amplitude(item) for item in sweep.spectra]
+    one_per_amplitude = [sweep.one_per_amplitude(item) for item in sweep.spectra]
     stated = all(isinstance(one, SelfAffineSpectrum) for one in spectra)
     texts = [json.dumps(one.parameters, default=np.ndarray.tolist) for one in spectra]
 
     def each(name: str) -> NDArray[Any]:
-        return np.array([[attrgetter(name)(one) for one in row] for row in firsts])
+        return np.array([[attrgetter(name)(one) for one in row] for row in one_per_amplitude])
 
     return SweepAxes(
         spectrum=np.array([item.name for item in sweep.spectra]),

@@ -15,7 +15,13 @@ from itertools import product
 import numpy as np
 
 from crackfront.core.spectrum import SelfAffineSpectrum
-from crackfront.simulate.costs import Features, Measured, features, measured_runs, predicted_seconds
+from crackfront.simulate.costs import (
+    Features,
+    MeasuredRun,
+    features,
+    measured_runs,
+    predicted_seconds,
+)
 from crackfront.simulate.laws import Knobs
 from crackfront.simulate.numerics import Numerics
 from crackfront.simulate.run import run_simulation
@@ -89,10 +95,10 @@ def held_out() -> Iterator[Simulation]:
         yield _simulation("h08", (0.0008, 0.0128, 0.8), energy, STEADY)
 
 
-def measured(simulation: Simulation, held: bool) -> Measured:
+def measured(simulation: Simulation, held: bool) -> MeasuredRun:
     """Measured cost of one simulation."""
     result = run_simulation(simulation)
-    return Measured(
+    return MeasuredRun(
         name=simulation.label,
         held_out=held,
         features=features(simulation),
@@ -103,9 +109,9 @@ def measured(simulation: Simulation, held: bool) -> Measured:
 
 def least_of_passes(
     simulations: Iterator[Simulation], held: bool, progress: Callable[[str], None]
-) -> list[Measured]:
+) -> list[MeasuredRun]:
     """Measured costs of simulations, each the least of several passes through all of them."""
-    least: dict[Simulation, Measured] = {}
+    least: dict[Simulation, MeasuredRun] = {}
     for one in [*simulations] * _PASSES:
         known = least.get(one)
         if known is not None and known.cpu_seconds > _LONG:
@@ -124,7 +130,7 @@ def worst_factor(held_out: bool) -> float:
     return float(np.max(np.maximum(ratios, 1 / ratios)))
 
 
-def table(runs: list[Measured]) -> str:
+def table(runs: list[MeasuredRun]) -> str:
     """Runs as comma-separated values."""
     names = [item.name for item in fields(Features)]
     text = io.StringIO()

@@ -138,7 +138,7 @@ def test_a_launcher_that_is_no_command_line_is_refused(launcher, reason):
 
 @pytest.mark.usefixtures("_heeded_signals")
 def test_ranks_that_heed_no_signal_end_soon_after_the_second(tmp_path, monkeypatch):
-    monkeypatch.setattr(parallel, "_GRACE", 0.3)
+    monkeypatch.setattr(parallel, "_GRACE_SECONDS", 0.3)
     deaf = tmp_path / "deaf"
     deaf.write_text("#!/bin/sh\ntrap '' TERM INT HUP\ntouch $0.begun\nexec sleep 600\n")
     deaf.chmod(0o755)

@@ -63,7 +63,7 @@ _FINER = 2.0
 _FEWEST_OCTAVES, _FEWEST_BINS = 1, 2
 """Octaves that must be left of a band, and values of the density in it."""
 
-_SHOWING = 8
+_FEWEST_FOR_INSTRUMENT = 8
 """Fewest values of a density to which an instrument is fitted: its parameters and those of P."""
 
 MOST_PERIODIC = 0.25
@@ -174,7 +174,9 @@ def analysed_scan(
     seen = density.within(_PIXELS * pixel, measurement.longest)
     cliff, behind = _abrupt_fall(seen)
     seen = seen.within(max(cliff, _PIXELS * pixel), measurement.longest)
-    instrument = seen_instrument(seen) if seen.value.size >= _SHOWING else Instrument()
+    instrument = (
+        seen_instrument(seen) if seen.value.size >= _FEWEST_FOR_INSTRUMENT else Instrument()
+    )
     if measurement.tip_radius or instrument.loss_wavelength(_TRUSTED_LOSS) > _BLUNTEST * pixel:
         # A surface whose slope grows towards short waves looks like that.
         instrument = replace(instrument, attenuation=math.inf)

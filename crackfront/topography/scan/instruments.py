@@ -151,7 +151,7 @@ def raw_scan(path: Path, options: ReadingOptions, height_scale: float = 1.0) -> 
     channel, name = _channel(path, reader, options.channel)
     if channel.nb_grid_pts is not None:
         refuse_too_many_points(path, channel.nb_grid_pts)
-    given, sides = _what_is_not_stated(path, reader.format(), channel, options)
+    given, sides = _units_and_sides(path, reader.format(), channel, options)
     with _errors_as_sentences(path, reader.format()):
         raw = reader.topography(channel_index=channel.index, **given)
     if not raw.is_uniform:
@@ -225,9 +225,9 @@ def _errors_as_sentences(path: Path, name: str = "what its head says") -> Iterat
     try:
         yield
     except exceptions.CannotDetectFileFormat as error:
-        if (found := _reason_of_one(path, str(error))) is not None:
+        if (found := _format_and_reason(path, str(error))) is not None:
             name, reason = found
-            raise ValueError(f"{path} cannot be read as {name}: {_in_our_words(reason)}") from error
+            raise ValueError(f"{path} cannot be read as {name}: {_plain_reason(reason)}") from error
         raise ValueError(
             f"{path} is in no format that SurfaceTopography reads, or damaged; export it from the "
             "instrument again, as X3P if there is a choice"
@@ -235,10 +235,10 @@ def _errors_as_sentences(path: Path, name: str = "what its head says") -> Iterat
     # A damaged file may fail anywhere in a parser that is not ours.
     except Exception as error:
         reason = next(iter(str(error).splitlines()), "") or type(error).__name__
-        raise ValueError(f"{path} cannot be read as {name}: {_in_our_words(reason)}") from error
+        raise ValueError(f"{path} cannot be read as {name}: {_plain_reason(reason)}") from error
 
 
-def _in_our_words(reason: str) -> str:
+def _plain_reason(reason: str) -> str:
     """Reason of the library, without its inner names, and what to do."""
     for pattern, words in _REASONS:
         if (found := re.search(pattern, reason)) is not None:
@@ -246,7 +246,7 @@ def _in_our_words(reason: str) -> str:
     return f"{reason.strip().rstrip('.')}; export it from the instrument again"
 
 
-def _reason_of_one(path: Path, tried: str) -> tuple[str, str] | None:
+def _format_and_reason(path: Path, tried: str) -> tuple[str, str] | None:
     """Format that a file has by signature or name, and why its reader refuses; None if unknown."""
     base, suffix = library_part("IO.Reader"), path.suffix[1:].lower()
     with path.open("rb") as file:
@@ -480,7 +480,7 @@ def _choice(channels: Sequence[Channel]) -> str:
     return f"choose by number or name with --channel: {'; '.join(map(str, channels))}"
 
 
-def _what_is_not_stated(
+def _units_and_sides(
     path: Path, name: str, channel: Any, options: ReadingOptions
 ) -> tuple[dict[str, Any], tuple[float, ...] | None]:
     """What a file does not state, and sides in metres where it states impossible ones."""

@@ -26,7 +26,7 @@ from crackfront.topography.spectrum.measures import (
     RoughSurface,
 )
 
-_MATTERS = 0.1
+_NOTABLE_SHARE = 0.1
 """Part of e_el in waves that the table lacks from which on it is a reservation."""
 
 _STEPS, _DIRECTIONS, _FURTHEST = 3, 200, 8.0
@@ -44,7 +44,7 @@ _RISING = -1.0
 ATOMS = 1e-9
 """Shortest wavelength where none is named (Units: m)."""
 
-_RESOLVED = 100.0
+_SHOWN_OVER_CUTOFF = 100.0
 """How much longer the waves are whose part of e_el is stated where no cutoff is named."""
 
 _LAST_WAVE, _POINTS = 300.0, 20_001
@@ -140,7 +140,7 @@ def self_affine_surface_of(given: SelfAffineOptions) -> StatedSurface:
     shape = SelfAffineSpectrum(cutoff, roll_off, hurst)
     shape = shape.amplified(rms**2 / shape.mean_square(0.0))
     if given.short_cutoff is None:
-        end = min(_RESOLVED * cutoff, roll_off)
+        end = min(_SHOWN_OVER_CUTOFF * cutoff, roll_off)
         part = shape.mean_square_between(0.5, cutoff, end) / shape.mean_square(0.5)
         doubts.append(
             f"No short cutoff is named: the power law is continued to {prefixed('m', cutoff)}, "
@@ -224,13 +224,13 @@ def _missing_waves(
             (spectrum.densities[0] * _LONGER**-slope, spectrum.densities[0]),
         )
         more = longer.mean_square(0.5) / total - long
-        if more > _MATTERS:
+        if more > _NOTABLE_SHARE:
             yield (
                 f"The density rises up to its longest wave, {longest}, and is taken as flat above; "
                 f"with a roll-off at {_LONGER:g} times that there would be {part_of_energy(more)} "
                 "more; add longer waves."
             )
-    if missing > _MATTERS:
+    if missing > _NOTABLE_SHARE:
         yield (
             f"Waves shorter than {short} are left out: two more decades of the power law would "
             f"add {part_of_energy(missing)}; add shorter waves."
