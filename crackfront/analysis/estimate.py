@@ -50,7 +50,7 @@ class Estimate(Generic[Number]):
         return self.each(lambda values: values[index])
 
     def only(self: Estimate, known: NDArray[np.bool_]) -> Estimate:
-        """The estimates where something holds, NaN elsewhere."""
+        """The estimates where a condition holds, NaN elsewhere."""
         return self.each(lambda values: np.where(known, values, np.nan))
 
 
@@ -67,7 +67,7 @@ def quantiles(values: Array, weight: Array, part: ArrayLike) -> Array:
 
 
 def with_error(value: float, error: float) -> str:
-    """Number and error in equal digits, two of which are the error's; of a tiny one six in all.
+    """Number and error with equal decimals, two digits of the error; six digits if it is tiny.
 
     Examples
     --------
@@ -83,7 +83,7 @@ def with_error(value: float, error: float) -> str:
 
 
 MISSING = "-"
-"""What stands where the data give no number."""
+"""Text in place of a number that the data do not give."""
 
 
 def with_interval(estimate: Estimate[Any]) -> str:
@@ -123,8 +123,8 @@ def product(*factors: Estimate[float]) -> Estimate[float]:
 def student_estimate(value: ArrayLike, standard_error: ArrayLike, freedom: ArrayLike) -> Estimate:
     """Estimate with the 95% interval of Student's t, arrays of the common shape.
 
-    No degree of freedom of the standard error gives no error, and one no interval, which would be
-    13 errors to both sides.
+    Without a degree of freedom error and interval are NaN. With one degree the interval is NaN, as
+    it would extend 13 standard errors to both sides.
     """
     numbers = (np.asarray(number, dtype=float) for number in (value, standard_error))
     centre, error, degrees = np.broadcast_arrays(*numbers, freedom)

@@ -133,7 +133,7 @@ class PinningFactor:
     """Part of a Gaussian w_loc that is negative: where it is large the linearisation of the
     roughness is not to be trusted."""
     warning: str
-    """What lies outside of the measured range; empty inside."""
+    """Sentence on numbers outside of the measured range; empty if there are none."""
 
 
 def law_value(
@@ -220,7 +220,7 @@ def shipped_law() -> Law:
 
 
 def _as_tuples(value: Any) -> Any:
-    """Lists, as JSON has them, as tuples."""
+    """Copy of a value from JSON with tuples in place of lists."""
     return tuple(map(_as_tuples, value)) if isinstance(value, list) else value
 
 

@@ -1,4 +1,4 @@
-"""What a fit returns: estimates on plain arrays that say what they are in a file."""
+"""Result of a fit: estimates on plain arrays, with their names and units in files."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ class CellEstimates:
 
 @dataclass(frozen=True, slots=True)
 class LawEstimates:
-    """What is fitted to the amplitudes in the range, for every spectrum or pooled.
+    """Estimates from the amplitudes in the range, for every spectrum or pooled.
 
     Where k is constant the exponent is 2 and the disorder slope 0; by the law the midpoint slope is
     1 for roughness and 0 for a chemical field.
@@ -81,7 +81,7 @@ class SweepFit:
     seed: int
     """Bootstrap samples and the seed of their draws."""
     uncorrelated: bool
-    """Whether the sites of straight fronts know nothing of each other."""
+    """Whether the sites of straight fronts are independent of each other."""
     cells: CellEstimates
     """Means at every spectrum and amplitude, (n_spectrum, n_amplitude)."""
     spectra: LawEstimates

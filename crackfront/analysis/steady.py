@@ -18,25 +18,26 @@ from crackfront.core.geometry.sphere import ContactState
 from crackfront.core.variables import ADHESION, LATERAL, variable
 
 Branches = tuple[NDArray[np.int64], NDArray[np.int64]]
-"""Places in a record of states of the approach, and of the retraction."""
+"""Indices, in a record, of the states of the approach and of the retraction."""
 
 _ROUND_OFF = 1e-5
-"""Part of a period within which places are equal."""
+"""Difference below which two places count as equal, relative to the period."""
 
 STEADY_DEFINITION = (
     "w_appr and w_retr are means of the apparent work of adhesion, <a G> / <a> with the mean over "
     "the front, over the steady states of a branch. A state is steady once every site of the "
     "front has travelled at least one correlation length of w_loc since its branch began, so that "
     "the start and the transient after reversal are left out. Both branches are averaged over the "
-    "same window of mean radii, the overlap of the ranges of their steady states, one state of "
-    f"the load schedule one vote, at least {FEWEST_STATES} states each. An experimenter's "
-    "estimate is the work of adhesion of the JKR curve F = a^3 - sqrt(6 w a^3) (reduced units) "
-    "that fits force against mean radius best, by least squares of the force over the same states. "
-    "The standard errors are those of the means over the states of one realisation; states closer "
+    "same window of mean radii, the overlap of the ranges of their steady states. All states of "
+    f"the load schedule in it have equal weight; each branch needs at least {FEWEST_STATES}. An "
+    "experimenter's estimate is the work of adhesion of the JKR curve F = a^3 - sqrt(6 w a^3) "
+    "(reduced units) that fits force against mean radius best, by least squares of the force "
+    "over the same states. "
+    "The standard errors are those of the means over the states of one realisation. States closer "
     "than a correlation length, or three times the rms deviation of the front from its mean radius "
-    "where that is larger, count as one. That of the hysteresis of a sphere is of the differences "
-    "between every state of the approach and that of the retraction whose mean radius is closest: "
-    "what the surface raises and lowers in both branches alike is no error of it."
+    "where that is larger, count as one. The standard error of the hysteresis of a sphere is that "
+    "of the differences between each state of the approach and the state of the retraction with "
+    "the closest mean radius: variations that both branches share do not add to it."
 )
 """What `w_appr` and `w_retr` mean; stored in every file that holds them."""
 
@@ -116,7 +117,7 @@ def steady_branches(
     correlation_length: float,
     period: float = math.inf,
 ) -> tuple[Branches, tuple[float, float], str]:
-    """Steady states of both branches, the mean places that they share, and why they are too few."""
+    """Steady states of both branches, the range of places they share, and why they are too few."""
     steady = states.least_travel >= correlation_length
     approach, retraction = (
         np.flatnonzero(steady & (sign * states.direction > 0)) for sign in (1, -1)
@@ -164,7 +165,7 @@ def within(place: Array, branches: Branches, window: tuple[float, float]) -> Bra
 
 
 def branch_means(values: Array, branches: Branches) -> tuple[float, float]:
-    """Means of both branches, one state one vote: w_appr and w_retr of works of adhesion."""
+    """Means of both branches with equal weights; those of works of adhesion are w_appr and w_retr."""
     approach, retraction = branches
     return float(np.mean(values[approach])), float(np.mean(values[retraction]))
 
@@ -260,6 +261,6 @@ def _adhesion_from_force(radius: Array, force: Array) -> float:
 
 
 def _no_value(counts: tuple[int, int], sentence: str) -> SteadyAdhesion:
-    """A result without values, and why."""
+    """Measures without values, with the sentence that says why."""
     nan = math.nan
     return SteadyAdhesion(*(nan,) * 10, *counts, nan, nan, nan, sentence)

@@ -38,9 +38,9 @@ COUNTS_AT_ONCE = 2**23
 FIT_DEFINITION = (
     "k of one simulation is (w_retr - w_appr) / (2 e_el) with e_el measured on its tile. k of a "
     "spectrum is the mean over the amplitudes in the range, each the mean over its realisations, "
-    "with one weight for every amplitude: k depends on disorder and size, so that an average over "
-    "a range is a definition, and equal weights make it the same one for every spectrum, whatever "
-    "the noise; weights from the scatter of few realisations would not. The pooled k is the mean "
+    "with equal weights of the amplitudes: k depends on disorder and size, so that its average over "
+    "a range depends on the weights. Equal weights are the same for every spectrum, whatever the "
+    "noise; weights from the scatter of few realisations would differ. The pooled k is the mean "
     "of the spectra's. The ratio of sums, sum of hysteresis over sum of 2 e_el, weighs each "
     "amplitude by its e_el; where the two differ, k is no constant. The exponent is the slope of "
     "log mean hysteresis in log w_rms (measured), the disorder slope that of mean k in log2 w_rms, "
@@ -51,9 +51,9 @@ FIT_DEFINITION = (
     "length among spectra of one shape (equal roll_off / short_cutoff and Hurst exponent), with "
     "one intercept a shape. The law's k is that of the straight front at the measured w_rms and at "
     "g, the length of the springs that hold the front (of a sphere those of the smooth contact of "
-    "the radius in the middle of the steady window) over the Larkin length; no sphere was fitted "
-    "to. k of the infinite contact is the measured one times what the law's k gains from g to "
-    "infinity. Intervals are 95%, of Student's t with the bootstrap's standard error: "
+    "the radius in the middle of the steady window) over the Larkin length; the law was not "
+    "fitted to spheres. k of the infinite contact is the measured one times what the law's k gains "
+    "from g to infinity. Intervals are 95%, of Student's t with the bootstrap's standard error: "
     "realisations of a spectrum are resampled, each with all its amplitudes because these share "
     "their noise, spectra independently of each other; percentiles of the bootstrap would be far "
     "too narrow for the few realisations there are. They cover the scatter between realisations, "
@@ -88,8 +88,8 @@ def fit_sweep(
 
     The fit uses the amplitudes between two requested e_el, ends included (Units: w_int). The point
     estimates do not depend on the seed of the bootstrap. The midpoint should be w_int - e_el for
-    roughness, w_int for a chemical field. With `uncorrelated`, the sites of straight fronts know
-    nothing of each other: the law's limit of weak disorder, whatever the amplitude. Spectra are
+    roughness, w_int for a chemical field. With `uncorrelated`, the sites of straight fronts
+    are independent: the law's limit of weak disorder, whatever the amplitude. Spectra are
     fitted as `watched` yields their numbers, which may show how far this is.
 
     Estimates are as :data:`FIT_DEFINITION` says. What the data do not give is NaN and has a

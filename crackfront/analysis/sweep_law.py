@@ -1,4 +1,4 @@
-"""The law of k at the spectra and amplitudes of a sweep, and what it makes of the measured k."""
+"""The law of k at the spectra and amplitudes of a sweep, and the measured k relative to it."""
 
 from __future__ import annotations
 
@@ -37,8 +37,9 @@ class SweepLaw:
     kind: FieldKind
     """What its spectra describe."""
     uncorrelated: bool = False
-    """Whether the sites of straight fronts know nothing of each other: the limit of weak disorder,
-    whatever the amplitude, which decides only how far apart they are."""
+    """Whether sites of straight fronts are independent of each other, the limit of weak disorder.
+
+    The amplitude then decides only the distance of the sites."""
 
     @property
     def energy(self) -> Array:
@@ -102,8 +103,8 @@ class SweepLaw:
     def infinite(self, factor: Estimate, size: Array) -> Estimate:
         """Measured k of every cell extrapolated to the infinite contact.
 
-        It is multiplied by what the law's k gains. Half of the interval is the root of the sum of
-        the squares of that of the measured k and of the gain.
+        The gain is the ratio of the law's k in the infinite contact to that at the size. The
+        half-widths of the intervals of the measured k and of the gain are added in quadrature.
         """
         energies, values = self.energy, np.full((4, *size.shape), np.nan)
         for cell in np.ndindex(size.shape):

@@ -1,4 +1,4 @@
-"""What the table of a sweep holds, and what a fit reads of it, on plain arrays."""
+"""Rows and coordinates of the table of a sweep, and the part that a fit reads, on plain arrays."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ SPECTRUM, AMPLITUDE, REALISATION = "spectrum", "amplitude", "realisation"
 """Dimensions of a sweep."""
 
 PLACE = SPECTRUM, AMPLITUDE, REALISATION
-"""What says which simulation of a sweep is meant."""
+"""Dimensions whose coordinates together identify one simulation of a sweep."""
 
 _SHAPE = SPECTRUM, AMPLITUDE
 _SHAPE_TEXT = "JSON of a spectrum's parameters, where not all are self-affine"
@@ -67,7 +67,7 @@ class SweepAxes:
 
 @dataclass(frozen=True, slots=True)
 class SweepTable:
-    """What a fit reads of a sweep: the apparent works of adhesion, NaN where a simulation failed.
+    """Arrays of a sweep that a fit reads: works of adhesion, NaN where a simulation failed.
 
     ValueError if the shapes disagree, or a measured e_el or w_rms is not positive.
     """
@@ -133,7 +133,7 @@ class SweepTable:
 
     @property
     def shape(self) -> Array:
-        """Number of the shape of each spectrum, (n_spectrum,); shapes differ not by their size."""
+        """Number of the shape of each spectrum, (n_spectrum,); equal if only the size differs."""
         octaves = np.round(np.log2(self.roll_off / self.short_cutoff), 9)
         hurst = np.where(octaves > 0, self.hurst, 0.0)
         return np.asarray(np.unique(np.stack([octaves, hurst]), axis=1, return_inverse=True)[1])

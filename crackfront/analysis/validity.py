@@ -26,7 +26,7 @@ _MODEL_ERROR = 0.05
 disorder from 2 to 4 differ by between the measured amplitudes."""
 
 _LEAST_PRINTED_RATIO = 1.005
-"""Smallest ratio that changes a printed digit."""
+"""Smallest ratio that a printed number shows."""
 
 _EXTRAPOLATION = 0.5
 """Relative standard error of what the law says beyond the measured energies."""

@@ -1,4 +1,4 @@
-"""Arrays of numbers, as annotations name them."""
+"""Type of arrays of numbers, for annotations."""
 
 import numpy as np
 from numpy.typing import NDArray

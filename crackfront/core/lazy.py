@@ -1,4 +1,4 @@
-"""Packages that import what they offer when it is first used."""
+"""Lazy imports: a package imports each name that it offers at its first use."""
 
 from __future__ import annotations
 

@@ -14,7 +14,7 @@ Direction = Literal[1, -1]
 
 
 class DefectError(RuntimeError):
-    """A solver found that its result is wrong: a defect of the program, none of the machine."""
+    """A solver found that its result is wrong: a defect of the program, not of the machine."""
 
 
 class Status(enum.Enum):

@@ -1,4 +1,4 @@
-"""Reduced units of the model: what each is called, and what it is in SI.
+"""Reduced units of the model: their names, and their values in SI.
 
 Inside the package R = 1, w_int = 1/pi and E' = 3/4 (Barthel, Maugis; supplement, Sec. I A).
 """
@@ -18,7 +18,7 @@ CONTACT_MODULUS = 0.75
 
 @dataclass(frozen=True, slots=True)
 class Scales:
-    """What one reduced unit is in the units of a scene (SI, or any consistent set).
+    """Values of the reduced units for one sphere, in SI or any consistent set of units.
 
     Multiply a reduced quantity by its scale to leave the package, divide to enter it.
 
@@ -116,7 +116,7 @@ class ReducedUnit(StrEnum):
         return unit
 
     def scale(self, scales: Scales) -> float:
-        """What the unit is in SI, for a sphere (Units: those of `si`)."""
+        """Value of the unit in SI for a sphere (Units: those of `si`)."""
         match self:
             case ReducedUnit.LATERAL:
                 return scales.lateral

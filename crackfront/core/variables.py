@@ -25,7 +25,7 @@ _KEY = "variable"
 
 @dataclass(frozen=True, slots=True)
 class Variable:
-    """What a file says about one variable."""
+    """Name, dimensions, units and long name of one variable of a file."""
 
     name: str
     dims: tuple[str, ...]
@@ -39,18 +39,18 @@ class Variable:
 
 
 def variable(long_name: str, units: str, *dims: str, default: Any = MISSING) -> Any:
-    """A field of a dataclass that stands in files as a variable of these dimensions.
+    """A field of a dataclass that files store as a variable of these dimensions.
 
     Without dimensions it is a number, a truth value or a text. A field whose default is None is
-    left out of files where it has that.
+    left out of files where it is None.
     """
     return field(default=default, metadata={_KEY: (dims, units, long_name)})
 
 
 def variables(kind: type[Any], *along: str) -> tuple[Variable, ...]:
-    """What the fields of a dataclass are in a file, but those that :func:`variable` did not make.
+    """Variables in which a file stores the fields of a dataclass that :func:`variable` made.
 
-    Dimensions along which records of the kind are counted come before their own ones.
+    Dimensions that count several records, given as `along`, come before those of each field.
 
     Examples
     --------

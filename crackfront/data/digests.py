@@ -19,7 +19,7 @@ DAMAGED_SUFFIX = ".damaged"
 """Ending of the name of a file that was set aside."""
 
 _NO_RESULTS = {"logs", "benchmarks", "checkpoints"}
-"""Folders of what is no result and changes while others are made."""
+"""Folders whose files are not results and change while results are made."""
 
 
 def result_files(folder: Path) -> Iterator[Path]:

@@ -1,4 +1,4 @@
-"""What JSON has for records, arrays, paths, and numbers that are none."""
+"""Values for JSON in place of records, arrays, paths, and numbers that are not finite."""
 
 from __future__ import annotations
 

@@ -289,7 +289,7 @@ def _touching(radius: Array) -> Array:
 
 
 def _with_zero_force(recording: Recording) -> tuple[Recording, list[Array], list[str]]:
-    """The recording less the force of rows out of contact, errors of that, and what was done.
+    """Recording with its zero force subtracted, errors of this zero, and a remark on it.
 
     A line through the rows before and after the contact, or their mean on one side alone.
     """

@@ -39,7 +39,7 @@ from crackfront.simulate.numerics import Numerics
 from crackfront.simulate.simulation import Simulation
 
 _PROCESS_BYTES, _STORE_SECONDS = 300e6, 0.015
-"""Memory of a rank with all imported and compiled; processor time to store a simulation."""
+"""Memory of a rank after imports and compilation; processor time to store a simulation."""
 
 _TILES, _SITE_BYTES = 4, 512
 """Tiles in memory while one is made, and bytes a site while the front moves (docs/needs.md)."""

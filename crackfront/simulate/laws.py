@@ -38,7 +38,7 @@ Knob = Literal["sites", "cubic", "linear", "pixels", "tolerance"]
 KNOBS: tuple[Knob, ...] = get_args(Knob)
 
 _SHARES: dict[Knob, float] = {"sites": 0.95, "cubic": 0.2, "pixels": 0.2, "tolerance": 0.1}
-"""Parts of a requested error, the largest for the one knob that costs; squares sum up to 0.99."""
+"""Share of each knob in a requested error, largest for the costly one; squares sum to 0.99."""
 
 MEASURED: dict[str, tuple[FieldKind, SelfAffineSpectrum]] = {
     "chemical": ("chemical", SelfAffineSpectrum(0.02, 0.02, 1.0)),
@@ -68,7 +68,7 @@ _RANGES: dict[Knob, tuple[float, float]] = {
 
 @dataclass(frozen=True, slots=True)
 class Knobs:
-    """What an error decides: the resolution relative to the short cutoff, and the tolerance."""
+    """Settings that a requested error decides: resolution in short cutoffs, and tolerance."""
 
     angles: int | None
     """Number of sites of the front; where None, `angles_per_cutoff` decides."""
@@ -99,7 +99,7 @@ class ErrorLaw:
     scatter: tuple[float, float]
     """Coefficients (c_0, c_1) of the logarithm, as of that of the bias. (Units: e_el)"""
     avalanche: float
-    """What one avalanche changes, on fronts of :data:`LAW_SIZE`; equal for all knobs of a shape and
+    """Change by one avalanche, on fronts of :data:`LAW_SIZE`; equal for all knobs of a shape and
     an amplitude. (Units: e_el)"""
 
     def parts(self, values: ArrayLike) -> Array:
@@ -189,7 +189,7 @@ def chosen_knobs(
 
 
 def _unmeasured_reason(kind: FieldKind, spectrum: Spectrum, elastic_energy: float) -> str:
-    """Why errors are not known of a spectrum and amplitude; empty where they are."""
+    """Why no errors were measured for a spectrum and amplitude; empty if they were."""
     low, high = measured_energies()
     remedy = "give the resolution and the tolerance instead"
     if not low / _LEEWAY <= elastic_energy <= high * _LEEWAY:
@@ -241,7 +241,7 @@ def _chosen_values(error: float, interpolation: _Interpolation, size: float) -> 
 
 
 def _avalanche_margin(error: float, interpolation: _Interpolation, size: float) -> float:
-    """Factor by which scatter must stay below a requested error: few surfaces have an avalanche."""
+    """Factor by which scatter must be below a requested error: few surfaces have an avalanche."""
     largest = 0.0
     for shape, part in interpolation.shapes:
         laws = _laws()[shape, "sites", 1]
@@ -297,7 +297,7 @@ def _combined(parts: Mapping[Knob, Array], size: float) -> tuple[float, float]:
 
 def _parts(interpolation: _Interpolation, knob: Knob, values: ArrayLike) -> Array:
     """Errors at values of a knob, (bias or scatter, branch, values) (Units: e_el)."""
-    # Not their logarithms are interpolated: the geometric mean of a bias and none is none.
+    # Errors are interpolated, not their logarithms: the geometric mean with a bias of 0 is 0.
     branches = [
         np.tensordot(
             [part for _, part in interpolation.shapes],

@@ -136,7 +136,7 @@ class Schedule(ABC):
     @classmethod
     @abstractmethod
     def smallest(cls) -> Schedule:
-        """Loads of the kind that are run in no time, on which its kernels are compiled."""
+        """Shortest loads of the kind, on which its kernels are compiled."""
 
     # What is known of it before and after.
 

@@ -34,7 +34,7 @@ Labelled = TypeVar("Labelled", xr.DataArray, xr.Dataset)
 
 
 class Scales(units.Scales):
-    """What one reduced unit is in SI: a sphere, and what it touches.
+    """Values of the reduced units in SI, from a sphere and the surface it touches.
 
     Parameters
     ----------

@@ -157,7 +157,7 @@ def refuse_no_fraction(name: str, value: float) -> None:
 
 
 _ROUND_OFF = 1e-28
-"""Power of a mode that is none, relative to that of all; round-off leaves (2e-16)^2."""
+"""Share of the whole power below which a mode counts as round-off, which leaves (2e-16)^2."""
 
 
 def stated_spectrum(surface: DataArray) -> Spectrum | None:

@@ -1,4 +1,4 @@
-"""Surfaces that are given: what their values mean, and whether they can be."""
+"""Surfaces of a user: the meaning of their values, and refusals of impossible ones."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def surface(
     units: str | None = None,
     sphere: Scales | None = None,
 ) -> xr.DataArray:
-    """A surface of one's own, from an array of heights or of works of adhesion.
+    """A surface from an array of heights or of works of adhesion.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""The file from which an interrupted run goes on: when it is written, and that a stop writes it."""
+"""Checkpoint file of a run, written from time to time and when a stop is requested."""
 
 from __future__ import annotations
 

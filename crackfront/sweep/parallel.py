@@ -35,7 +35,7 @@ _STOP_FILE = "CRACKFRONT_STOP"
 """Environment variable that names the file by which ranks are requested to stop."""
 
 _STOPPED = "ended"
-"""What the manager writes into it before it stops."""
+"""Text that the manager writes into this file before it stops."""
 
 _ALIVE = b"\n"
 """First byte on the standard input of the ranks, which the process of the launcher keeps open."""
@@ -108,7 +108,7 @@ def deferring_stops() -> Iterator[None]:
 
 
 def _announce_stop() -> None:
-    """Print what a process that is to stop waits for, from within the handler of a signal."""
+    """Print, within the handler of a signal, that the process ends at the next load step."""
     with contextlib.suppress(OSError):  # of a terminal that was closed
         os.write(2, b"Stopping at the next load step of what runs; Ctrl-C again ends it at once\n")
 
@@ -171,7 +171,7 @@ def is_manager(n_worker: int) -> bool:
 
 
 def _launched_several_times() -> str:
-    """How often a launcher has started this command, in words; empty if once, or it is unknown."""
+    """How often a launcher has started this command, in words; empty if once or unknown."""
     for name in _RANK_VARIABLES:
         if (rank := _environment_number(name)) > 0:
             return f"several times, {name} is {rank}"

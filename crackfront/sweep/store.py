@@ -1,4 +1,4 @@
-"""The folder of a sweep: where its files are, what they hold and lack, and how they become one."""
+"""The folder of a sweep: its files, the simulations they hold or lack, and their one table."""
 
 from __future__ import annotations
 
@@ -91,7 +91,7 @@ class Inventory:
     """Processor time of what is stored, and what was expected for it. (Units: s)"""
 
     def __add__(self, other: Inventory) -> Inventory:
-        """The same of the simulations of both."""
+        """Inventory of the simulations of both."""
         return Inventory(
             self.done + other.done,
             self.failed + other.failed,
@@ -427,7 +427,7 @@ class Store:
 
 
 def mixture_sentence(arithmetic: Collection[str]) -> str:
-    """That results are of several processors or packages; empty where they are of one."""
+    """Sentence on results of several processors or packages; empty if all are of one."""
     if len(arithmetic) < 2:
         return ""
     listed = "; ".join(sorted(arithmetic))

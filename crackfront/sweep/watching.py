@@ -44,7 +44,7 @@ class SweepBar:
         return sum(one.done + one.failed for one in found)
 
     def _draw(self) -> None:
-        """Look at the folder again and again, and draw what is new."""
+        """Read the folder repeatedly, and update the bar with newly stored simulations."""
         total, first = self._sweep.n_simulation, self._stored()
         if first == total:
             return

@@ -22,7 +22,7 @@ def dissipated_energy(before: Array, after: Array, load: float, field: Field) ->
 
 
 def contact_energy(front: Array, load: float, field: Field) -> float:
-    """Energy of a contact above that of none."""
+    """Energy of a contact, relative to no contact."""
     innermost = np.full(front.size, first_place(field))
     # Within the first sample the product falls linearly to zero at the apex.
     core = np.pi * first_place(field) * np.mean(front_products(innermost, field))

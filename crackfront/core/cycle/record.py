@@ -178,12 +178,12 @@ class Recorder:
 
 
 def columns(states: Sequence[Any], kind: type[Any]) -> Any:
-    """One state of a kind whose fields are the columns of many, or of none."""
+    """State of a kind whose fields are arrays with one entry for each of some states, or empty."""
     names = [item.name for item in fields(kind)]
     return kind(*(np.array([getattr(state, name) for state in states]) for name in names))
 
 
 def rows(states: Any) -> Iterator[Any]:
-    """Many states from the columns of one."""
+    """Single states from one whose fields are arrays, the inverse of :func:`columns`."""
     table = (getattr(states, item.name).tolist() for item in fields(states))
     yield from (type(states)(*values) for values in zip(*table, strict=True))

@@ -81,7 +81,7 @@ class LoadSchedule:
 
 
 def protocol(loads: Sequence[float], step: float = math.inf) -> Iterator[Load]:
-    """Loads in their order, each with its direction; one that stands twice is a hold.
+    """Loads in their order, each with its direction; a load given twice in a row is a hold.
 
     Where two are further apart than a step, equal steps lead from one to the next.
 

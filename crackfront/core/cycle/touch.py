@@ -1,4 +1,4 @@
-"""The front of a contact that is just made, and fields on which none can be."""
+"""The front at first contact, and refusals of fields that cannot hold it."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from crackfront.core.units import WORK_OF_ADHESION
 
 
 def first_touch(field: Field) -> Array:
-    """Front of a contact that is just made, a circle (Units: reduced lateral length)."""
+    """Front at first contact, a circle (Units: reduced lateral length)."""
     return np.full(field.geometry.n_site, first_place(field))
 
 
@@ -28,7 +28,7 @@ def refuse_outgrown(field: Field, max_penetration: float) -> None:
 
 
 def checked_touch(field: Field, max_penetration: float) -> Array:
-    """Front of a contact that is just made, on a field that is large enough and begins inside.
+    """Front at first contact, on a field that is large enough and begins inside it.
 
     Raises
     ------

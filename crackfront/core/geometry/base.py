@@ -23,7 +23,7 @@ from crackfront.core.variables import Variable
 
 
 class State(Protocol):
-    """Record of a front at rest, or of all of a cycle: a dataclass, one entry or array a field.
+    """Record of one front at rest, or of all fronts of a cycle: a dataclass of numbers or arrays.
 
     Its fields are made by :func:`crackfront.core.variables.variable`. The first is the load; others
     are `direction`, `least_travel`, `iterations`, `updates` and `residual`.

@@ -41,7 +41,7 @@ class LineLoad:
     """How the straight fronts of a sweep are held and pulled."""
 
     spring_unit: SpringUnit
-    """What the springs of the spectra are multiples of."""
+    """Unit in which the spectra state the length of their springs."""
     length: float
     """Period of the front over the length of its springs."""
     period: float
@@ -51,7 +51,7 @@ class LineLoad:
     step: float
     """Largest load step, in correlation lengths."""
     uncorrelated: bool = False
-    """Whether sites know nothing of each other: the limit of weak disorder."""
+    """Whether sites are independent of each other, the limit of weak disorder."""
 
     max_penetration: ClassVar[float] = 0.0
 

@@ -52,7 +52,7 @@ class LineSchedule(Schedule):
     step: float
     """Largest load step. (Units: length)"""
     uncorrelated: bool = False
-    """Whether sites know nothing of each other: the limit of weak disorder."""
+    """Whether sites are independent of each other, the limit of weak disorder."""
 
     max_penetration = 0.0
 

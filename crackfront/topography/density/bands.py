@@ -64,7 +64,7 @@ _FEWEST_OCTAVES, _FEWEST_BINS = 1, 2
 """Octaves that must be left of a band, and values of the density in it."""
 
 _FEWEST_FOR_INSTRUMENT = 8
-"""Fewest values of a density to which an instrument is fitted: its parameters and those of P."""
+"""Fewest values of a density to fit an instrument to, one for each parameter of it and of P."""
 
 MOST_PERIODIC = 0.25
 """Part of e_el in one wave from which on a surface is not random."""

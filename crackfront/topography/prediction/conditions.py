@@ -47,10 +47,10 @@ LARGEST_ENERGY = (_DEVIATE + math.sqrt(_DEVIATE**2 + 1)) ** 2
 """The e_el at which w_loc is negative on the largest part of the surface. (Units: w_int)"""
 
 _FAR = 1000.0
-"""Factor to a limit from which on it is not worth a number."""
+"""Factor to a limit above which the text says "far inside" and no number."""
 
 _MOST_UNSURE = 2.0
-"""Ends of the interval of e_el over each other from which on it is said."""
+"""Ratio of the ends of the interval of e_el above which a reservation states it."""
 
 
 def zero_load_radius(scales: Scales) -> float:

@@ -239,7 +239,7 @@ def _errors_as_sentences(path: Path, name: str = "what its head says") -> Iterat
 
 
 def _plain_reason(reason: str) -> str:
-    """Reason of the library, without its inner names, and what to do."""
+    """Reason of the library in plain words, and what to do."""
     for pattern, words in _REASONS:
         if (found := re.search(pattern, reason)) is not None:
             reason = found.expand(words)
@@ -483,7 +483,7 @@ def _choice(channels: Sequence[Channel]) -> str:
 def _units_and_sides(
     path: Path, name: str, channel: Any, options: ReadingOptions
 ) -> tuple[dict[str, Any], tuple[float, ...] | None]:
-    """What a file does not state, and sides in metres where it states impossible ones."""
+    """Unit and sides that options add to a file; sides in metres if those of the file are wrong."""
     unit, size = channel.unit, channel.physical_sizes
     is_sized = size is not None and None not in size
     if unit is not None and is_sized and not _are_possible(stated := in_metres(unit, *size)):

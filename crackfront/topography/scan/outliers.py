@@ -20,7 +20,7 @@ _APART = 0.5
 """Distance of a mark from all other heights, in the span of those."""
 
 _WORTH_A_FIT = 0.02
-"""The same before a tilt is taken off, below which there is no mark."""
+"""The same before a tilt is subtracted; below it no tilt is fitted and nothing is a mark."""
 
 _FEWEST_LEVELS = 50
 """Distinct heights of a surface that was measured; patterns and steps that were made have fewer."""

@@ -201,7 +201,7 @@ def _joined(densities: Sequence[Density], scatter: float) -> tuple[Array, Array,
 
 
 def _below_bands(scans: Sequence[Scan], fit: Fit) -> Density:
-    """What the finest scan holds below all trusted waves and above its noise, without this."""
+    """Density of the finest scan between all trusted waves and its noise, which is subtracted."""
 
     def fineness(item: tuple[int, Scan]) -> tuple[float, float]:
         return max(item[1].measurement.pixels), item[1].band.shortest.wavelength

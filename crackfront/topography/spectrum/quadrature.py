@@ -299,10 +299,10 @@ def _logarithm(found: Array, centre: Array, root: Array, limits: Array) -> Array
 def _within(
     axis: int, limits: Array, centre: Array, root: Array, apart: Array
 ) -> tuple[Array, Array, Array, Array, Array, Array]:
-    """Mean and deviation of a coordinate by the former ones, and its limits in these units.
+    """Mean and deviation of a coordinate given the former ones, and its limits in these units.
 
-    The limits are turned where more lies below them, since small probabilities are exact there;
-    then whether they are, and the logarithm of the probability between them.
+    Limits are mirrored where more lies below them, since small probabilities are exact there. The
+    last entries are whether they are mirrored, and the logarithm of the probability between them.
     """
     spread = root[:, axis, axis]
     middle = centre[:, axis] + np.einsum("ni,ni->n", root[:, axis, :axis], apart[:, :axis])

@@ -27,7 +27,7 @@ from crackfront.topography.spectrum.measures import (
 )
 
 _NOTABLE_SHARE = 0.1
-"""Part of e_el in waves that the table lacks from which on it is a reservation."""
+"""Share of e_el in waves missing from the table above which a reservation states it."""
 
 _STEPS, _DIRECTIONS, _FURTHEST = 3, 200, 8.0
 """Steps to the isotropic density, quadrature of a projection, and its end in arccosh(k / q)."""
@@ -45,7 +45,7 @@ ATOMS = 1e-9
 """Shortest wavelength where none is named (Units: m)."""
 
 _SHOWN_OVER_CUTOFF = 100.0
-"""How much longer the waves are whose part of e_el is stated where no cutoff is named."""
+"""Waves up to this many short cutoffs have their share of e_el stated if no cutoff is named."""
 
 _LAST_WAVE, _POINTS = 300.0, 20_001
 """Wavevector times distance where the integral of an autocorrelation ends, and its points."""
