@@ -38,8 +38,8 @@ COUNTS_AT_ONCE = 2**23
 FIT_DEFINITION = (
     "k of one simulation is (w_retr - w_appr) / (2 e_el) with e_el measured on its tile. k of a "
     "spectrum is the mean over the amplitudes in the range, each the mean over its realisations, "
-    "with equal weights of the amplitudes: k depends on disorder and size, so that its average over "
-    "a range depends on the weights. Equal weights are the same for every spectrum, whatever the "
+    "with equal weights of the amplitudes: k depends on disorder and size, so that its average "
+    "over a range depends on the weights. Equal weights are the same for every spectrum, whatever the "
     "noise; weights from the scatter of few realisations would differ. The pooled k is the mean "
     "of the spectra's. The ratio of sums, sum of hysteresis over sum of 2 e_el, weighs each "
     "amplitude by its e_el; where the two differ, k is no constant. The exponent is the slope of "
