@@ -165,7 +165,7 @@ def within(place: Array, branches: Branches, window: tuple[float, float]) -> Bra
 
 
 def branch_means(values: Array, branches: Branches) -> tuple[float, float]:
-    """Means of both branches, all states of equal weight; of works of adhesion w_appr and w_retr."""
+    """Means of both branches, states of equal weight; of works of adhesion w_appr and w_retr."""
     approach, retraction = branches
     return float(np.mean(values[approach])), float(np.mean(values[retraction]))
 
