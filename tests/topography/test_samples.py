@@ -1,10 +1,14 @@
 """Series of samples: what a row of a table or of YAML says, and what comes of it."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 from crackfront.topography.samples import predicted_samples, read_samples
 from tests.topography.made import SCENE
+
+ROOT = Path(__file__).parents[2]
 
 SPHERE = {
     "modulus": "0.7MPa",
@@ -73,6 +77,14 @@ def test_a_sample_may_have_several_scans_psds_and_units(tmp_path):
     assert {by.detrend for by in (*one.reading, *two.reading)} == {"slope"}
     assert one.reading[0].tip_radius == pytest.approx(20e-9)
     assert (three.psd, three.density.psd_sides) == (tmp_path / "psd.csv", "one")
+
+
+def test_the_page_shows_the_table_of_the_example_and_its_scans_are_there():
+    path = ROOT / "examples/samples.csv"
+    assert path.read_text("utf-8") in (ROOT / "docs/surfaces.md").read_text("utf-8")
+    first, second = read_samples(path, SPHERE)
+    assert [len(one.scans) for one in (first, second)] == [2, 1]
+    assert first.measured["hysteresis"].value == pytest.approx(27e-3)
 
 
 @pytest.mark.parametrize(
