@@ -21,7 +21,7 @@ from crackfront.topography.density.densities import (
     weight_of_gaps,
 )
 from crackfront.topography.density.gaps import Pairs, restored_periodogram, surrogate_pairs
-from crackfront.topography.density.self_affine import Instrument, seen_instrument
+from crackfront.topography.density.self_affine import GAUSSIAN, Instrument, seen_instrument
 from crackfront.topography.scan.levelling import polynomial
 from crackfront.topography.scan.reading import Measurement
 
@@ -174,12 +174,7 @@ def analysed_scan(
     seen = density.within(_PIXELS * pixel, measurement.longest)
     cliff, behind = _abrupt_fall(seen)
     seen = seen.within(max(cliff, _PIXELS * pixel), measurement.longest)
-    instrument = (
-        seen_instrument(seen) if seen.value.size >= _FEWEST_FOR_INSTRUMENT else Instrument()
-    )
-    if measurement.tip_radius or instrument.loss_wavelength(_TRUSTED_LOSS) > _BLUNTEST * pixel:
-        # A surface whose slope grows towards short waves looks like that.
-        instrument = replace(instrument, attenuation=math.inf)
+    instrument = _instrument(measurement, seen)
     lower = list(_lower_limits(measurement, seen, instrument, cliff))
     upper = [BandLimit("longest", "levelling", measurement.longest)]
     alternatives = () if measurement.periodic else _alternatives(measurement, pairs, without)
@@ -228,6 +223,20 @@ def analysed_scan(
         profiles.density().within(*band.wavelengths),
         weight_of_gaps(measurement),
     )
+
+
+def _instrument(measurement: Measurement, seen: Density) -> Instrument:
+    """Instrument that a density shows; what the tip of a probe takes is no attenuation of it."""
+    if seen.value.size < _FEWEST_FOR_INSTRUMENT:
+        return Instrument()
+    found, longest = seen_instrument(seen), _BLUNTEST * max(measurement.pixels)
+    if not measurement.tip_radius and found.loss_wavelength(_TRUSTED_LOSS) > longest:
+        # A Gaussian spot may look blunter than it is.
+        found = seen_instrument(seen, GAUSSIAN)
+    if measurement.tip_radius or found.loss_wavelength(_TRUSTED_LOSS) > longest:
+        # A surface whose slope grows towards short waves looks like that.
+        return replace(found, attenuation=math.inf)
+    return found
 
 
 def _ends(

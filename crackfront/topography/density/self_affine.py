@@ -36,8 +36,9 @@ BEND = 0.3
 _BEYOND = 8.0
 """How far beyond the longest trusted wavelength a roll-off is looked for: four sides of a scan."""
 
-SHARPNESS = (1.0, 4.0)
-"""Exponents m: of a circular pupil, whose transfer falls linearly at first, to sharp filters."""
+PUPIL, GAUSSIAN, SHARPEST = 1.0, 2.0, 4.0
+"""Exponents m: of a circular pupil, whose transfer falls linearly at first, of a Gaussian spot, and
+of sharp filters."""
 
 _SHORT, _LONG = 30, 400
 """Evaluations of fits from several starts, and of the best one."""
@@ -111,16 +112,16 @@ class DensityModels:
             yield item, _seen(shapes[key], rows[:, index], item)
 
 
-def seen_instrument(density: Density) -> Instrument:
+def seen_instrument(density: Density, bluntest: float = PUPIL) -> Instrument:
     """Instrument whose attenuation and noise make a density much likelier than a surface alone.
 
-    An effect that does not is left out.
+    An effect that does not is left out. The exponents of attenuations begin at the bluntest.
     """
     low, high = (math.log(density.wavevector[end]) for end in (0, -1))
     floor = math.log(float(np.min(density.value)))
     nothing = Instrument().row
     limits = np.array(
-        [*shape_limits(low, high), (low, high + 1.0), SHARPNESS, (floor - 5, floor + 1)]
+        [*shape_limits(low, high), (low, high + 1.0), (bluntest, SHARPEST), (floor - 5, floor + 1)]
     )
     tries: list[tuple[list[bool], list[Array]]] = [
         ([False] * 3, [nothing]),

@@ -111,16 +111,20 @@ class Draws:
     def unsettled(self) -> float:
         """Largest standard error of the median and the ends of the interval of e_el.
 
-        That of the finite number of draws, in the logarithm, as a part of the width.
+        That of the finite number of draws, in the logarithm, as a part of the width. The variance
+        of the weight below an end is the sum over draws of w^2 (1 below the end, else 0, minus the
+        part)^2, as of any weighted mean: few heavy draws beyond an end make it uncertain, however
+        many draws there are elsewhere.
         """
         logarithm = np.log(self.estimated[1])
+        places = quantiles(logarithm, self.weight, _INTERVAL)
         ends = []
-        for part in _INTERVAL:
-            reach = math.sqrt(part * (1 - part) / self.effective)
+        for part, place in zip(_INTERVAL, places, strict=True):
+            reach = math.sqrt(np.sum(self.weight**2 * ((logarithm <= place) - part) ** 2))
             near = np.clip([part - reach, part + reach], 0.0, 1.0)
             ends.append(float(np.ptp(quantiles(logarithm, self.weight, near))) / 2)
-        low, _, high = quantiles(logarithm, self.weight, _INTERVAL)
-        return max(ends) / float(high - low) if high > low else 0.0
+        width = float(places[-1] - places[0])
+        return max(ends) / width if width > 0 else 0.0
 
 
 def _factor(found: Estimate[float]) -> float:

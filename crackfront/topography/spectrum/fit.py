@@ -15,7 +15,8 @@ from crackfront.topography.density.self_affine import (
     BEND,
     LEAST_DEPARTURE,
     N_SHAPE,
-    SHARPNESS,
+    PUPIL,
+    SHARPEST,
     DensityModels,
     Instrument,
     deviances,
@@ -307,7 +308,7 @@ def _continuation(
     begin, around = seen.copy(), np.empty((*seen.shape, 2))
     last = np.array([float(item.wavevector[-1]) for item, _ in densities])
     begin[:, 0] = (last * np.exp(-seen[:, 0])) ** seen[:, 1]
-    around[:, 0], around[:, 1] = _LOSS, SHARPNESS
+    around[:, 0], around[:, 1] = _LOSS, (PUPIL, SHARPEST)
     around[:, 2] = seen[:, 2:] + np.array([-_NOISE, _NOISE])
     models = DensityModels([item for item, _ in densities], seen, varied)
     limits = np.array([*shape_limits(low, high), *around[varied]])

@@ -11,7 +11,7 @@ from crackfront.topography.options import PredictionOptions
 from crackfront.topography.prediction.prediction import check_and_predict
 from crackfront.topography.scan.reading import read_measurements
 from crackfront.topography.spectrum import draws, quadrature
-from crackfront.topography.spectrum.draws import ORDERS, mean_squares
+from crackfront.topography.spectrum.draws import ORDERS, Draws, mean_squares
 from crackfront.topography.spectrum.joining import joint_spectrum
 from crackfront.topography.spectrum.measures import measured_surface
 from studies.accuracy.energies import KINDS, found_scan
@@ -96,6 +96,24 @@ def test_what_is_unsettled_is_what_moves():
     assert max(item.unsettled for item in found) < 2 * draws.SETTLED
 
 
+def test_few_heavy_draws_beyond_an_end_make_it_unsettled(rng):
+    # Draws of a normal distribution, weighted to one that is wider, so that its ends hang on few.
+    found, number = [], 4000
+    for _ in range(60):
+        x = rng.normal(0, 1, number)
+        weight = np.exp(x**2 / 2 - x**2 / (2 * 1.5**2))
+        none = np.zeros((2, number))
+        squares = np.exp([x, x, x])
+        found.append(Draws(squares, squares, none, weight / weight.sum(), *np.zeros((3, 1))))
+    upper = np.log([one.mean_square(0.5).high for one in found])
+    stated = np.median([one.unsettled for one in found])
+    assert np.std(upper) / (2 * 1.5 * 1.96) == pytest.approx(stated, rel=0.6)
+    # An effective number of draws does not show it.
+    usual = np.sqrt(0.025 * 0.975 / np.median([one.effective for one in found]))
+    density = np.exp(-(1.96**2) / 2) / np.sqrt(2 * np.pi) / 1.5
+    assert usual / density / (2 * 1.5 * 1.96) < 0.6 * stated
+
+
 def test_mean_squares_of_draws_are_those_of_tables(rng):
     grid = np.geomspace(1e4, 1e7, 40)
     table = np.log(1e-26) - 3.2 * np.log(grid / 1e4) + 0.3 * rng.standard_normal((5, 40))
@@ -132,3 +150,16 @@ def test_what_is_a_little_stiffer_has_no_other_kind_of_answer(files):
         assert bool(undecided) == (verdict.outcome == "cannot be decided")
     order = list(dict.fromkeys(outcomes))
     assert order == ["applies with reservations", "cannot be decided", "does not apply"]
+
+
+@pytest.mark.parametrize("number", [3, 12])
+def test_a_gaussian_spot_that_looks_blunt_is_no_fall_of_the_surface(number):
+    [kind] = [kind for kind in KINDS if kind.name == "optic, Gaussian"]
+    found = found_scan(kind, number)
+    [scan] = found.surface.scans
+    assert scan.band.shortest.cause == "resolution"
+    # The density of the spot, of a standard deviation of one pixel, is down to 1/e there.
+    assert scan.band.instrument.attenuation == pytest.approx(
+        1 / scan.measurement.pixels[0], rel=0.2
+    )
+    assert found.covers
