@@ -9,7 +9,7 @@ from crackfront.analysis.law import pinning_factor, shipped_law
 from crackfront.analysis.validity import front_excess, shipped_validity
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.simulate.costs import featured_cost, measured_runs
-from crackfront.simulate.laws import chosen_knobs, measured_energies
+from crackfront.simulate.laws import chosen_settings, measured_energies
 
 FLAT = SelfAffineSpectrum(0.02, 0.02, 1.0)
 
@@ -19,7 +19,7 @@ def errors_of_the_numerics():
     least, most = measured_energies()
     for energy in (0.9 * least, 1.1 * most):
         with pytest.raises(ValueError, match="errors were measured for e_el/w_int from"):
-            chosen_knobs(0.03, "roughness", FLAT, energy)
+            chosen_settings(0.03, "roughness", FLAT, energy)
 
 
 def law_of_k():

@@ -24,7 +24,7 @@ class Status(enum.Enum):
     LOST_CONTACT = "contact was lost: no equilibrium is left at this penetration"
     STEADY = "the steady parts of both branches have been measured"
     LEFT_FIELD_OUTWARD = (
-        "the front left the sampled field outward; enlarge the field or lower the penetration"
+        "the front left the sampled field outward; enlarge the field or reduce the largest load"
     )
     LEFT_FIELD_INWARD = (
         "the front left the sampled field inward; add samples at smaller radii to the field"

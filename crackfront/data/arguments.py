@@ -1,7 +1,9 @@
-"""Refusals of arguments of the library that have a wrong type."""
+"""Refusals of arguments of the library that have a wrong type, and of unknown names."""
 
 from __future__ import annotations
 
+import difflib
+from collections.abc import Iterable
 from numbers import Real
 from typing import Any
 
@@ -28,6 +30,21 @@ def refuse_no_numbers(**values: object) -> None:
     """Raise TypeError if one of some arguments is no number."""
     for name, value in values.items():
         refuse_other_type(name, value, Real, "a number")
+
+
+def nearest_name(name: str, known: Iterable[str], otherwise: str = "choose one of") -> str:
+    """What to do about an unknown name: the known one that is near it, or else all of them.
+
+    Examples
+    --------
+    >>> nearest_name("hrust", ["hurst", "roll_off"])
+    'did you mean hurst?'
+    >>> nearest_name("x", ["hurst", "roll_off"], "the keys here are")
+    'the keys here are hurst, roll_off'
+    """
+    names = list(known)
+    near = difflib.get_close_matches(name, names, n=1)
+    return f"did you mean {near[0]}?" if near else f"{otherwise} {', '.join(names)}"
 
 
 def _shown(value: object) -> str:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import os
 import re
 import reprlib
@@ -19,6 +18,7 @@ from ruamel.yaml.constructor import SafeConstructor
 from ruamel.yaml.error import MarkedYAMLError
 from ruamel.yaml.nodes import MappingNode, ScalarNode
 
+from crackfront.data.arguments import nearest_name
 from crackfront.data.bounds import COUNT, DENSITY, NUMBER, PLATEAU, SEED, Range, regular_file
 
 
@@ -238,9 +238,7 @@ def _known_keys(location: tuple[int | str, ...], schema: type[BaseModel]) -> str
     for part in location[:-1]:
         if isinstance(part, str):
             section = _section_of(section.model_fields[part].annotation)
-    known = list(section.model_fields)
-    near = difflib.get_close_matches(str(location[-1]), known, n=1)
-    return f"did you mean {near[0]}?" if near else f"the keys here are {', '.join(known)}"
+    return nearest_name(str(location[-1]), section.model_fields, "the keys here are")
 
 
 def _section_of(annotation: Any) -> type[BaseModel]:

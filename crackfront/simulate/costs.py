@@ -34,7 +34,7 @@ from crackfront.data.bounds import (
     refuse_beyond_time,
     refuse_outside,
 )
-from crackfront.simulate.laws import Knobs
+from crackfront.simulate.laws import Settings
 from crackfront.simulate.numerics import Numerics
 from crackfront.simulate.simulation import Simulation
 
@@ -137,10 +137,12 @@ _USUAL_ENERGY, _SAMPLE_SECONDS = 0.05, 1e-7
 """e_el where it is not known (Units: w_int); time of one sample. (Units: s)"""
 
 
-def refuse_oversized(spectrum: Spectrum, numerics: Numerics, knobs: Knobs, deepest: float) -> None:
+def refuse_oversized(
+    spectrum: Spectrum, numerics: Numerics, settings: Settings, deepest: float
+) -> None:
     """Raise if the tile or the front of a sphere is larger than any machine holds.
 
-    The knobs are those of the numerics for this spectrum, `deepest` is the largest penetration.
+    The settings are those of the numerics for this spectrum, `deepest` is the largest penetration.
     (Units: reduced lengths)
     """
     lengths = {"short_cutoff": spectrum.short_cutoff, "roll_off": spectrum.longest_feature}
@@ -148,12 +150,12 @@ def refuse_oversized(spectrum: Spectrum, numerics: Numerics, knobs: Knobs, deepe
         refuse_outside(name, value, LENGTH, "reduced lateral lengths")
     refuse_outside("max_penetration", deepest, PENETRATION, "reduced vertical lengths")
     cutoff = spectrum.short_cutoff
-    points = numerics.tile_side(spectrum) / cutoff * knobs.pixels_per_cutoff
+    points = numerics.tile_side(spectrum) / cutoff * settings.pixels_per_cutoff
     tiles = f"tiles of {points:.2g} x {points:.2g} points"
     remedy = "lower roll_offs, cutoffs or pixels_per_cutoff, or raise short_cutoff"
     refuse_beyond_memory(tiles, 8 * _TILES * points**2, remedy, anywhere=True)
     circle = 2 * math.pi * jkr.equilibrium_radius(deepest)
-    sites = knobs.angles or circle / cutoff * knobs.angles_per_cutoff
+    sites = settings.angles or circle / cutoff * settings.angles_per_cutoff
     remedy = "lower angles or angles_per_cutoff, or raise short_cutoff"
     refuse_beyond_memory(f"fronts of {sites:.2g} sites", _SITE_BYTES * sites, remedy, anywhere=True)
 

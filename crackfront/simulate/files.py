@@ -15,7 +15,7 @@ from crackfront.core.geometry.base import Geometry, State
 from crackfront.core.geometry.line import LineState
 from crackfront.core.geometry.sphere import ContactState, sphere
 from crackfront.core.outcome import Status
-from crackfront.core.variables import LATERAL, STEP, Variable, variables
+from crackfront.core.variables import STEP, Variable, variables
 from crackfront.data.files import UnreadableFileError, read_dataset, write_dataset
 from crackfront.data.labels import labelled, labelled_fields
 from crackfront.data.packs import File
@@ -25,10 +25,10 @@ from crackfront.simulate.si_units import SURFACES, as_dataset
 from crackfront.simulate.simulation import Simulation
 
 _FRONTS = {
-    "front": Variable("last_front", ("angle",), LATERAL, "front of the last state"),
-    "turn": Variable("turning_front", ("angle",), LATERAL, "front at which its branch began"),
+    "front": ("last_front", "front of the last state"),
+    "turn": ("turning_front", "front at which its branch began"),
 }
-"""Fronts of a checkpoint, by their fields."""
+"""Names and meanings of the fronts of a checkpoint, by their fields."""
 
 _STATES: tuple[type[State], ...] = (ContactState, LineState)
 """Records of the states of all geometries; the load of one of them is in a file of curves."""
@@ -86,8 +86,10 @@ def checkpoint_dataset(
     checkpoint: Checkpoint, key: str, geometry: Geometry | None = None
 ) -> xr.Dataset:
     """Dataset of the checkpoint of a key; the geometry as of :func:`cycle_dataset`."""
+    front, _ = (geometry or sphere(checkpoint.front.size)).variables
     fronts = {
-        item.name: labelled(item, getattr(checkpoint, name)) for name, item in _FRONTS.items()
+        name: labelled(replace(front, name=name, long_name=text), getattr(checkpoint, field))
+        for field, (name, text) in _FRONTS.items()
     }
     return cycle_dataset(checkpoint.record, geometry).assign(fronts).assign_attrs(key=key)
 
@@ -148,7 +150,7 @@ def load_result(path: str | Path) -> xr.DataArray | xr.Dataset:
 
 def known_checkpoint(dataset: xr.Dataset, key: str, place: Path) -> Checkpoint | None:
     """Checkpoint that :func:`checkpoint_dataset` made a dataset of; None where its key differs."""
-    names = {field: item.name for field, item in _FRONTS.items()}
+    names = {field: name for field, (name, _) in _FRONTS.items()}
     if dataset.attrs.get("key") != key or not dataset.variables.keys() >= {*names.values()}:
         return None
     fronts = {field: np.asarray(dataset[name]) for field, name in names.items()}

@@ -18,5 +18,5 @@ LAW_CUTOFF = 0.02
 
 
 def sphere_size(spectrum: Spectrum) -> float:
-    """Size of the front of a sphere for which knobs are chosen: eight states, mean radius 1.6."""
+    """Size of a sphere's front for which settings are chosen: eight states, mean radius 1.6."""
     return LAW_SIZE * (LAW_CUTOFF / spectrum.short_cutoff)

@@ -4,15 +4,15 @@ r"""Errors of w_appr and w_retr by the numerics: measured laws, and numerics for
 is that of the mean apparent work of adhesion of one branch, in units of e_el: that of its factor k.
 It has a bias, equal on all surfaces, and a scatter, from avalanches that one discretisation
 triggers and another does not; the scatter falls with the root of the size, the number of cutoffs
-along the front times the number of its states. Each knob has a law of its own,
+along the front times the number of its states. Each setting has a law of its own,
 
 .. math:: \log e = c_0 + c_1 x,
 
 where x is the number of sites per short cutoff (the front is smooth, so that the error falls
 exponentially), or the logarithm of samples, pixels or tolerance. Between measured shapes and
 amplitudes errors are interpolated; beyond the amplitudes they are not known. Scatters of different
-knobs are added in quadrature, biases as they are where they have one sign: too few samples make the
-hysteresis too small, all else makes it too large.
+settings are added in quadrature, biases as they are where they have one sign: too few samples make
+the hysteresis too small, all else makes it too large.
 """
 
 from __future__ import annotations
@@ -34,11 +34,11 @@ from crackfront.core.field.fields import Interpolation
 from crackfront.core.spectrum import SelfAffineSpectrum, Spectrum
 from crackfront.simulate.front_sizes import LAW_CUTOFF, LAW_SIZE, sphere_size
 
-Knob = Literal["sites", "cubic", "linear", "pixels", "tolerance"]
-KNOBS: tuple[Knob, ...] = get_args(Knob)
+SettingName = Literal["sites", "cubic", "linear", "pixels", "tolerance"]
+SETTINGS: tuple[SettingName, ...] = get_args(SettingName)
 
-_SHARES: dict[Knob, float] = {"sites": 0.95, "cubic": 0.2, "pixels": 0.2, "tolerance": 0.1}
-"""Share of each knob in a requested error, largest for the costly one; squares sum to 0.99."""
+_SHARES: dict[SettingName, float] = {"sites": 0.95, "cubic": 0.2, "pixels": 0.2, "tolerance": 0.1}
+"""Share of each setting in a requested error, largest for the costly one; squares sum to 0.99."""
 
 MEASURED: dict[str, tuple[FieldKind, SelfAffineSpectrum]] = {
     "chemical": ("chemical", SelfAffineSpectrum(0.02, 0.02, 1.0)),
@@ -57,7 +57,7 @@ _ONSET = 0.7
 _LEEWAY = 1.05
 """By how much the e_el of a tile may lie beyond the measured amplitudes, relative to them."""
 
-_RANGES: dict[Knob, tuple[float, float]] = {
+_RANGES: dict[SettingName, tuple[float, float]] = {
     "sites": (1.4, 12.0),
     "cubic": (2.5, 16.0),
     "pixels": (2.5, 8.0),
@@ -67,7 +67,7 @@ _RANGES: dict[Knob, tuple[float, float]] = {
 
 
 @dataclass(frozen=True, slots=True)
-class Knobs:
+class Settings:
     """Settings that a requested error decides: resolution in short cutoffs, and tolerance."""
 
     angles: int | None
@@ -87,35 +87,35 @@ class Knobs:
 
 @dataclass(frozen=True, slots=True)
 class ErrorLaw:
-    """Error of one knob for one shape of spectrum, one amplitude and one branch."""
+    """Error of one setting for one shape of spectrum, one amplitude and one branch."""
 
     shape: str
     """Shape of the spectrum, a name in :data:`MEASURED`."""
     elastic_energy: float
-    knob: Knob
+    setting: SettingName
     direction: int
     """+1 for w_appr, -1 for w_retr."""
     bias: tuple[float, float]
     scatter: tuple[float, float]
     """Coefficients (c_0, c_1) of the logarithm, as of that of the bias. (Units: e_el)"""
     avalanche: float
-    """Change by one avalanche, on fronts of :data:`LAW_SIZE`; equal for all knobs of a shape and
+    """Change by one avalanche, on fronts of :data:`LAW_SIZE`; equal for all settings of a shape and
     an amplitude. (Units: e_el)"""
 
     def parts(self, values: ArrayLike) -> Array:
-        """Bias and scatter at values of the knob, of fronts of :data:`LAW_SIZE` (Units: e_el)."""
-        x = abscissa(self.knob, values)
+        """Bias and scatter at values of the setting, fronts of :data:`LAW_SIZE` (Units: e_el)."""
+        x = abscissa(self.setting, values)
         return np.array([np.exp(c0 + c1 * x) for c0, c1 in (self.bias, self.scatter)])
 
     def error(self, value: float, size: float) -> float:
-        """Standard error at a value of the knob, for a front of a size, in units of e_el."""
+        """Standard error at a value of the setting, for a front of a size, in units of e_el."""
         bias, scatter = self.parts(value)
         return math.hypot(bias, scatter * math.sqrt(LAW_SIZE / size))
 
 
-def abscissa(knob: Knob, values: ArrayLike) -> Array:
+def abscissa(setting: SettingName, values: ArrayLike) -> Array:
     """Abscissa of a law: sites themselves, else the logarithm."""
-    return np.asarray(values, dtype=float) if knob == "sites" else np.log(values)
+    return np.asarray(values, dtype=float) if setting == "sites" else np.log(values)
 
 
 @dataclass(frozen=True, slots=True)
@@ -159,14 +159,14 @@ def _relative_correlation_length(kind: FieldKind, spectrum: Spectrum) -> float:
     return correlation_length(kind, spectrum) / spectrum.short_cutoff
 
 
-def chosen_knobs(
+def chosen_settings(
     error: float,
     kind: FieldKind,
     spectrum: Spectrum,
     elastic_energy: float,
     usual_size: float | None = None,
-) -> Knobs:
-    """Knobs that leave a requested error in w_appr and w_retr: the coarsest that the laws allow.
+) -> Settings:
+    """Settings that leave a requested error in w_appr and w_retr: the coarsest that the laws allow.
 
     The error is the standard error of the factor k of either branch that the numerics may leave, on
     fronts of the usual size, by default :func:`crackfront.simulate.front_sizes.sphere_size`; the
@@ -178,7 +178,7 @@ def chosen_knobs(
     usual = sphere_size(spectrum) if usual_size is None else usual_size
     interpolation = _interpolation(kind, spectrum, elastic_energy, usual)
     found = _chosen_values(error, interpolation, usual * interpolation.independent)
-    return Knobs(
+    return Settings(
         angles=None,
         angles_per_cutoff=found["sites"],
         samples_per_cutoff=found["cubic"],
@@ -216,28 +216,30 @@ def measured_energies() -> tuple[float, float]:
 
 
 @functools.cache
-def _chosen_values(error: float, interpolation: _Interpolation, size: float) -> dict[Knob, float]:
-    """Coarsest values of all knobs whose errors together are at most the requested one."""
-    tried = {knob: _values(knob) for knob in _SHARES}
-    parts = {knob: _parts(interpolation, knob, values) for knob, values in tried.items()}
+def _chosen_values(
+    error: float, interpolation: _Interpolation, size: float
+) -> dict[SettingName, float]:
+    """Coarsest values of all settings whose errors together are at most the requested one."""
+    tried = {setting: _values(setting) for setting in _SHARES}
+    parts = {setting: _parts(interpolation, setting, values) for setting, values in tried.items()}
     margin = _avalanche_margin(error, interpolation, size)
     for of in parts.values():
         of[1] *= margin * math.sqrt(LAW_SIZE / size)
-    single = {knob: np.hypot(*of).max(axis=0) for knob, of in parts.items()}
+    single = {setting: np.hypot(*of).max(axis=0) for setting, of in parts.items()}
 
-    def chosen(shares: float) -> dict[Knob, int]:
+    def chosen(shares: float) -> dict[SettingName, int]:
         return {
-            knob: int(np.argmax(np.append(errors[:-1] <= share * shares * error, True)))
-            for (knob, share), errors in zip(_SHARES.items(), single.values(), strict=True)
+            setting: int(np.argmax(np.append(errors[:-1] <= share * shares * error, True)))
+            for (setting, share), errors in zip(_SHARES.items(), single.values(), strict=True)
         }
 
-    # At 0.75 all biases may have one sign; above 1 knobs are cheap whose coarsest values suffice.
+    # At 0.75 all biases may have one sign; above 1 the coarsest values of cheap settings suffice.
     low, high = 0.75, 2.0
     for _ in range(10):
         middle = math.sqrt(low * high)
-        left = {knob: parts[knob][..., index] for knob, index in chosen(middle).items()}
+        left = {setting: parts[setting][..., index] for setting, index in chosen(middle).items()}
         low, high = (middle, high) if max(_combined(left, LAW_SIZE)) <= error else (low, middle)
-    return {knob: float(tried[knob][index]) for knob, index in chosen(low).items()}
+    return {setting: float(tried[setting][index]) for setting, index in chosen(low).items()}
 
 
 def _avalanche_margin(error: float, interpolation: _Interpolation, size: float) -> float:
@@ -256,9 +258,9 @@ def _avalanche_margin(error: float, interpolation: _Interpolation, size: float) 
     return float(np.clip(error / math.sqrt(square), 1.0, 3.0))
 
 
-def _values(knob: Knob) -> Array:
+def _values(setting: SettingName) -> Array:
     """Values that may be chosen, of two digits, the coarsest first."""
-    values = [float(f"{value:.2g}") for value in np.geomspace(*_RANGES[knob], 400)]
+    values = [float(f"{value:.2g}") for value in np.geomspace(*_RANGES[setting], 400)]
     return np.array(list(dict.fromkeys(values)))
 
 
@@ -266,43 +268,45 @@ def combined_error(
     kind: FieldKind,
     spectrum: Spectrum,
     elastic_energy: float,
-    values: Mapping[Knob, float],
+    values: Mapping[SettingName, float],
     size: float,
     usual_size: float | None = None,
 ) -> tuple[float, float]:
-    """Standard errors (w_appr, w_retr) that values of all knobs leave (Units: w_int).
+    """Standard errors (w_appr, w_retr) that values of all settings leave (Units: w_int).
 
     They are NaN where errors were not measured. Of interpolations, the value is the one that is
     used; `size` is the number of states times circumference of the front over the short cutoff. The
-    other arguments are as of :func:`chosen_knobs`.
+    other arguments are as of :func:`chosen_settings`.
     """
     if _unmeasured_reason(kind, spectrum, elastic_energy):
         return math.nan, math.nan
     usual = sphere_size(spectrum) if usual_size is None else usual_size
     interpolation = _interpolation(kind, spectrum, elastic_energy, usual)
-    parts = {knob: _parts(interpolation, knob, value) for knob, value in values.items()}
+    parts = {setting: _parts(interpolation, setting, value) for setting, value in values.items()}
     approach, retraction = _combined(parts, size * interpolation.independent)
     return elastic_energy * approach, elastic_energy * retraction
 
 
-def _combined(parts: Mapping[Knob, Array], size: float) -> tuple[float, float]:
-    """Standard errors (w_appr, w_retr) of all knobs; their parts are (bias or scatter, branch)."""
-    lowered = [bias for knob, (bias, _) in parts.items() if knob in get_args(Interpolation)]
-    raised = [bias for knob, (bias, _) in parts.items() if knob not in get_args(Interpolation)]
+def _combined(parts: Mapping[SettingName, Array], size: float) -> tuple[float, float]:
+    """Standard errors (w_appr, w_retr) of all settings; a part is (bias or scatter, branch)."""
+    lowered = [bias for setting, (bias, _) in parts.items() if setting in get_args(Interpolation)]
+    raised = [
+        bias for setting, (bias, _) in parts.items() if setting not in get_args(Interpolation)
+    ]
     bias = np.maximum(sum(lowered), sum(raised))
     scatter = np.sqrt(sum(scatter**2 for _, scatter in parts.values()) * LAW_SIZE / size)
     approach, retraction = np.hypot(bias, scatter)
     return float(approach), float(retraction)
 
 
-def _parts(interpolation: _Interpolation, knob: Knob, values: ArrayLike) -> Array:
-    """Errors at values of a knob, (bias or scatter, branch, values) (Units: e_el)."""
+def _parts(interpolation: _Interpolation, setting: SettingName, values: ArrayLike) -> Array:
+    """Errors at values of a setting, (bias or scatter, branch, values) (Units: e_el)."""
     # Errors are interpolated, not their logarithms: the geometric mean with a bias of 0 is 0.
     branches = [
         np.tensordot(
             [part for _, part in interpolation.shapes],
             [
-                _largest(_laws()[shape, knob, branch], interpolation, values)
+                _largest(_laws()[shape, setting, branch], interpolation, values)
                 for shape, _ in interpolation.shapes
             ],
             axes=1,
@@ -329,11 +333,11 @@ def _largest_between(
 
 
 @functools.cache
-def _laws() -> dict[tuple[str, Knob, int], list[ErrorLaw]]:
-    """All laws by shape, knob and direction, with increasing amplitudes."""
-    found: dict[tuple[str, Knob, int], list[ErrorLaw]] = {}
+def _laws() -> dict[tuple[str, SettingName, int], list[ErrorLaw]]:
+    """All laws by shape, setting and direction, with increasing amplitudes."""
+    found: dict[tuple[str, SettingName, int], list[ErrorLaw]] = {}
     for law in sorted(read_laws(), key=lambda law: law.elastic_energy):
-        found.setdefault((law.shape, law.knob, law.direction), []).append(law)
+        found.setdefault((law.shape, law.setting, law.direction), []).append(law)
     return found
 
 
@@ -344,7 +348,7 @@ def read_laws() -> Iterator[ErrorLaw]:
             yield ErrorLaw(
                 row["shape"],
                 float(row["elastic_energy"]),
-                cast(Knob, row["knob"]),
+                cast(SettingName, row["setting"]),
                 int(row["direction"]),
                 (float(row["bias_0"]), float(row["bias_1"])),
                 (float(row["scatter_0"]), float(row["scatter_1"])),

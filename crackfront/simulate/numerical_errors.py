@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from crackfront.analysis.steady import SteadyAdhesion
-from crackfront.simulate.laws import Knob, combined_error
+from crackfront.simulate.laws import SettingName, combined_error
 from crackfront.simulate.simulation import Simulation
 
 
 def missed_error(simulation: Simulation, wanted: float) -> float:
     """Error of k that the numerics are expected to leave; 0 where it is at most the wanted one."""
     left = max(numerical_error(simulation)) / simulation.elastic_energy
-    # Knobs have two digits.
+    # Settings have two digits.
     return left if left > 1.2 * wanted else 0.0
 
 
@@ -27,7 +27,7 @@ def numerical_error(
     if front_length is None:
         front_length = simulation.schedule.front_length
     usual_size = simulation.schedule.usual_size(simulation.spectrum)
-    values: dict[Knob, float] = {
+    values: dict[SettingName, float] = {
         "sites": sizes.n_angle * cutoff / front_length,
         sizes.interpolation: cutoff / sizes.spacing,
         "pixels": cutoff * sizes.n_point / sizes.tile_side,

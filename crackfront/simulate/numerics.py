@@ -7,14 +7,14 @@ from dataclasses import dataclass
 from crackfront.core.adhesion import FieldKind
 from crackfront.core.solver import DEFAULT_MAX_SWEEPS
 from crackfront.core.spectrum import Spectrum
-from crackfront.simulate.laws import Knobs, chosen_knobs
+from crackfront.simulate.laws import Settings, chosen_settings
 
 
 @dataclass(frozen=True, slots=True)
 class Numerics:
     """How simulations are resolved and solved."""
 
-    knobs: Knobs | float
+    settings: Settings | float
     """Resolution and tolerance, or the standard error of the factor k of either branch that they
     may leave: measured laws then choose them for every spectrum and amplitude."""
     tile_roll_offs: float = 4.0
@@ -26,20 +26,20 @@ class Numerics:
     solver: str = "newton"
     """A name in :data:`crackfront.core.solver.relax.SOLVERS`."""
 
-    def knobs_of(
+    def settings_of(
         self,
         kind: FieldKind,
         spectrum: Spectrum,
         elastic_energy: float,
         usual_size: float | None = None,
-    ) -> Knobs:
-        """Knobs for one spectrum and amplitude.
+    ) -> Settings:
+        """Settings for one spectrum and amplitude.
 
-        The size is as of :func:`crackfront.simulate.laws.chosen_knobs`.
+        The size is as of :func:`crackfront.simulate.laws.chosen_settings`.
         """
-        if isinstance(self.knobs, Knobs):
-            return self.knobs
-        return chosen_knobs(self.knobs, kind, spectrum, elastic_energy, usual_size)
+        if isinstance(self.settings, Settings):
+            return self.settings
+        return chosen_settings(self.settings, kind, spectrum, elastic_energy, usual_size)
 
     def tile_side(self, spectrum: Spectrum) -> float:
         """Least side of a tile (Units: that of the spectrum)."""

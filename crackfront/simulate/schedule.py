@@ -41,7 +41,7 @@ class SweepLoad(Protocol):
         """Whether sites are independent of each other, the limit of weak disorder."""
 
     def usual_size(self, spectrum: Spectrum) -> float:
-        """Size of a front for choosing knobs, as in :mod:`crackfront.simulate.front_sizes`."""
+        """Size of a front for choosing settings, as in :mod:`crackfront.simulate.front_sizes`."""
 
     def for_surface(
         self,
@@ -83,7 +83,7 @@ class Schedule(ABC):
         """Length of the longest front that is smooth (Units: length)."""
 
     def usual_size(self, spectrum: Spectrum) -> float:
-        """Size of a front for which knobs are chosen, by default that of a sphere."""
+        """Size of a front for which settings are chosen, by default that of a sphere."""
         return sphere_size(spectrum)
 
     def site_count(self, requested: int | None, least: float, n_point: int) -> int:

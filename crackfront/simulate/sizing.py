@@ -11,14 +11,14 @@ from scipy.fft import next_fast_len
 from crackfront.core.adhesion import FieldKind
 from crackfront.core.solver.relax import named_solver
 from crackfront.core.spectrum import Spectrum
-from crackfront.simulate.laws import Knobs
+from crackfront.simulate.laws import Settings
 from crackfront.simulate.numerics import Numerics
 from crackfront.simulate.schedule import Schedule
 from crackfront.simulate.simulation import Resolution, Simulation
 
 
 def resolution(
-    spectrum: Spectrum, numerics: Numerics, knobs: Knobs, schedule: Schedule
+    spectrum: Spectrum, numerics: Numerics, settings: Settings, schedule: Schedule
 ) -> Resolution:
     """Sizes of the front and of the tile for one spectrum; those of a line are of its schedule.
 
@@ -27,20 +27,22 @@ def resolution(
     >>> from crackfront.core.spectrum import SelfAffineSpectrum
     >>> from crackfront.simulate.sphere.cycle import FullCycle
     >>> flat = SelfAffineSpectrum(short_cutoff=0.1, roll_off=0.1, hurst=1.0)
-    >>> knobs = Knobs(None, 2, 4, "cubic", 4, 1e-6)
-    >>> numerics = Numerics(knobs, tile_roll_offs=10, tile_cutoffs=20)
-    >>> resolution(flat, numerics, knobs, FullCycle(max_penetration=1.0, step=0.1))
+    >>> settings = Settings(None, 2, 4, "cubic", 4, 1e-6)
+    >>> numerics = Numerics(settings, tile_roll_offs=10, tile_cutoffs=20)
+    >>> resolution(flat, numerics, settings, FullCycle(max_penetration=1.0, step=0.1))
     Resolution(n_angle=240, spacing=0.025, interpolation='cubic', tile_side=2.0, n_point=80)
     """
     cutoff = spectrum.short_cutoff
-    sites = schedule.front_length / cutoff * knobs.angles_per_cutoff
-    side, spacing = schedule.fitted(numerics.tile_side(spectrum), cutoff / knobs.samples_per_cutoff)
-    points = math.ceil(side / cutoff * knobs.pixels_per_cutoff * (1 - 1e-12))
+    sites = schedule.front_length / cutoff * settings.angles_per_cutoff
+    side, spacing = schedule.fitted(
+        numerics.tile_side(spectrum), cutoff / settings.samples_per_cutoff
+    )
+    points = math.ceil(side / cutoff * settings.pixels_per_cutoff * (1 - 1e-12))
     n_point = next_fast_len(points, real=True)
     return Resolution(
-        n_angle=schedule.site_count(knobs.angles, sites, n_point),
+        n_angle=schedule.site_count(settings.angles, sites, n_point),
         spacing=spacing,
-        interpolation=knobs.interpolation,
+        interpolation=settings.interpolation,
         tile_side=side,
         n_point=n_point,
     )
@@ -64,7 +66,7 @@ def simulation_of(
     is what is kept beside the curves; the rest is as in
     :class:`crackfront.simulate.simulation.Simulation`.
     """
-    knobs = numerics.knobs_of(kind, spectrum, elastic_energy, schedule.usual_size(spectrum))
+    settings = numerics.settings_of(kind, spectrum, elastic_energy, schedule.usual_size(spectrum))
     return Simulation(
         spectrum_name=name,
         kind=kind,
@@ -72,9 +74,9 @@ def simulation_of(
         elastic_energy=elastic_energy,
         realisation=realisation,
         sweep_seed=seed,
-        resolution=resolution(spectrum, numerics, knobs, schedule),
+        resolution=resolution(spectrum, numerics, settings, schedule),
         schedule=schedule,
-        solver=named_solver(numerics.solver, knobs.tolerance, numerics.max_sweeps),
+        solver=named_solver(numerics.solver, settings.tolerance, numerics.max_sweeps),
         record_fronts="fronts" in record,
         record_energy="energy" in record,
     )

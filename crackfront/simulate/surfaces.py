@@ -138,8 +138,8 @@ def chosen_simulation(
         if not cutoff <= side < math.inf:
             raise ValueError(f"side is {side}; the tile must hold the short cutoff, {cutoff:g}")
         numerics = Numerics(error, tile_roll_offs=0.0, tile_cutoffs=side / cutoff)
-    knobs = numerics.knobs_of(kind, spectrum, elastic_energy)
-    refuse_oversized(spectrum, numerics, knobs, schedule.max_penetration)
+    settings = numerics.settings_of(kind, spectrum, elastic_energy)
+    refuse_oversized(spectrum, numerics, settings, schedule.max_penetration)
     found = simulation_of(
         kind, spectrum, elastic_energy, schedule, numerics, seed=seed, realisation=realisation
     )

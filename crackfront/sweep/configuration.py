@@ -25,7 +25,7 @@ from crackfront.data.section import (
     yaml_mapping,
 )
 from crackfront.simulate.costs import expected_cost, refuse_oversized
-from crackfront.simulate.laws import Knobs
+from crackfront.simulate.laws import Settings
 from crackfront.simulate.numerical_errors import missed_error
 from crackfront.simulate.simulation import Simulation
 from crackfront.sweep.sections import (
@@ -156,17 +156,17 @@ def _refuse_infeasible(sweep: Sweep) -> None:
     coarser = "use fewer, coarser or larger load steps, or smaller tiles"
     for item, energy in product(sweep.spectra, sweep.elastic_energies):
         size = schedule.usual_size(item.spectrum)
-        knobs = numerics.knobs_of(sweep.kind, item.spectrum, energy, size)
-        refuse_oversized(item.spectrum, numerics, knobs, schedule.max_penetration)
+        settings = numerics.settings_of(sweep.kind, item.spectrum, energy, size)
+        refuse_oversized(item.spectrum, numerics, settings, schedule.max_penetration)
         simulation = sweep.simulation(item, energy, 0)
         cost = expected_cost(simulation)
         refuse_beyond_memory(f"simulations of {item.name}", cost.memory, coarser, anywhere=True)
         seconds += sweep.n_realisation * cost.seconds
-        _refuse_too_coarse(simulation, numerics.knobs)
+        _refuse_too_coarse(simulation, numerics.settings)
     refuse_beyond_time("the simulations", seconds, coarser)
 
 
-def _refuse_too_coarse(simulation: Simulation, requested: Knobs | float) -> None:
+def _refuse_too_coarse(simulation: Simulation, requested: Settings | float) -> None:
     """Raise if sites, tolerance or the error that the numerics leave are not as they must be."""
     sizes, tolerance = simulation.resolution, simulation.solver.tolerance
     name, energy = simulation.spectrum_name, simulation.elastic_energy
@@ -182,7 +182,7 @@ def _refuse_too_coarse(simulation: Simulation, requested: Knobs | float) -> None
     if isinstance(requested, float) and (left := missed_error(simulation, requested)):
         raise ValueError(
             f"numerics: error is {requested:g}, but the finest numerics leave {left:.2g} for "
-            f"{name} at e_el {energy:g}; allow that, or give the knobs"
+            f"{name} at e_el {energy:g}; allow that, or give the settings"
         )
 
 

@@ -36,7 +36,7 @@ from crackfront.data.section import (
     refusal,
     resolved_path,
 )
-from crackfront.simulate.laws import Knobs
+from crackfront.simulate.laws import Settings
 from crackfront.simulate.line.loads import LAW_LENGTH, LineLoad, SpringUnit
 from crackfront.simulate.numerics import Numerics
 from crackfront.simulate.schedule import SweepLoad
@@ -235,7 +235,7 @@ class NumericsSection(Section):
     @model_validator(mode="after")
     def _usable(self) -> NumericsSection:
         if self.error is not None:
-            _refuse_overruled(self, "error", [item.name for item in fields(Knobs)])
+            _refuse_overruled(self, "error", [item.name for item in fields(Settings)])
         else:
             needed = ("samples_per_cutoff", "interpolation", "pixels_per_cutoff", "tolerance")
             if missing := _missing(self, needed):
@@ -252,11 +252,11 @@ class NumericsSection(Section):
 
     def numerics(self) -> Numerics:
         """Numerics with an error, or with a resolution and a tolerance."""
-        given = {item.name: getattr(self, item.name) for item in fields(Knobs)}
+        given = {item.name: getattr(self, item.name) for item in fields(Settings)}
         if self.angles is not None:
             given["angles_per_cutoff"] = 1.0  # without effect
         return Numerics(
-            knobs=Knobs(**given) if self.error is None else self.error,
+            settings=Settings(**given) if self.error is None else self.error,
             tile_roll_offs=self.tile.roll_offs,
             tile_cutoffs=self.tile.cutoffs,
             max_sweeps=self.max_sweeps,

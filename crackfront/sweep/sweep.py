@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import hashlib
 import math
 from collections.abc import Iterator
@@ -12,6 +11,7 @@ from typing import Literal
 from crackfront.core.adhesion import FieldKind
 from crackfront.core.spectrum import Spectrum
 from crackfront.core.units import Scales
+from crackfront.data.arguments import nearest_name
 from crackfront.simulate.numerics import Numerics
 from crackfront.simulate.schedule import SweepLoad
 from crackfront.simulate.simulation import Simulation
@@ -84,9 +84,7 @@ class Sweep:
         known = {item.name: item for item in self.spectra}
         if name in known:
             return known[name]
-        near = difflib.get_close_matches(name, known, n=1)
-        hint = f"did you mean {near[0]}?" if near else f"choose one of {', '.join(known)}"
-        raise ValueError(f"the sweep has no spectrum {name!r}; {hint}")
+        raise ValueError(f"the sweep has no spectrum {name!r}; {nearest_name(name, known)}")
 
     def simulation(self, item: NamedSpectrum, energy: float, realisation: int) -> Simulation:
         """One simulation of the sweep."""

@@ -6,7 +6,6 @@ Commands (`cli/surface.py`), functions of the library (`topography/library.py`) 
 
 from __future__ import annotations
 
-import difflib
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from numbers import Integral, Real
@@ -18,7 +17,7 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, ValidationError, Va
 from pydantic_core import ErrorDetails
 
 from crackfront.core.units import Scales
-from crackfront.data.arguments import refuse_other_type
+from crackfront.data.arguments import nearest_name, refuse_other_type
 from crackfront.data.bounds import SI, Range, counted, refuse_outside
 from crackfront.data.written_units import is_unit, si_value
 
@@ -149,8 +148,7 @@ def refuse_unknown(function: str, names: Iterable[str], *records: type[Options])
     known = [name for record in records for name in record.model_fields]
     for name in names:
         if name not in known:
-            near = difflib.get_close_matches(name, known, n=1)
-            hint = f"did you mean {near[0]}?" if near else f"the options are {', '.join(known)}"
+            hint = nearest_name(name, known, "the options are")
             raise TypeError(f"{function}() got an unexpected keyword argument {name!r}; {hint}")
 
 

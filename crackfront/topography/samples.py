@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import csv
-import difflib
 import math
 import re
 from collections.abc import Iterator, Mapping, Sequence
@@ -17,6 +16,7 @@ from ruamel.yaml.error import MarkedYAMLError
 
 from crackfront.analysis.estimate import Estimate
 from crackfront.core.units import Scales
+from crackfront.data.arguments import nearest_name
 from crackfront.data.jsonable import to_jsonable
 from crackfront.topography.options import (
     Energy,
@@ -247,8 +247,7 @@ def _sample(folder: Path, row: Mapping[str, Any], common: Mapping[str, Any]) -> 
     known = [name for record in _RECORDS for name in record.model_fields]
     for name in row:
         if name not in known:
-            near = difflib.get_close_matches(name, known, n=1)
-            hint = f"was {near[0]} meant?" if near else "docs/surfaces.md lists all"
+            hint = nearest_name(name, known, "the columns are")
             raise ValueError(f"there is no column {name!r}; {hint}")
     given = {**common, **row}
     own = checked_options(SampleOptions, given)

@@ -48,7 +48,7 @@ class Sample:
     in reduced vertical lengths, or the side of the tile in short cutoffs.
     """
 
-    knob: str = variable("what is varied: travel, step or tile", "1")
+    setting: str = variable("what is varied: travel, step or tile", "1")
     value: float = variable("correlation lengths, reduced vertical length, cutoffs", "1")
     hysteresis: Array = variable("w_retr - w_appr", ADHESION, _RUN)
     standard_error: Array = variable("that which a run states", ADHESION, _RUN)
@@ -64,7 +64,7 @@ class Coverage:
     whose own standard error is that of the truth.
     """
 
-    asked: float = variable("standard error that was asked for", "e_el")
+    requested: float = variable("standard error that was requested", "e_el")
     numerical: Array = variable("numerical error of w_appr and w_retr", ADHESION, _RUN, _BRANCH)
     numerical_stated: Array = variable("stated numerical standard error", ADHESION, _BRANCH)
     total: Array = variable("error of a steady run", ADHESION, _RUN, _BRANCH)
@@ -99,54 +99,54 @@ def sampling_errors(
     travel and step change the mean alone; another tile is another surface.
     """
     samples = []
-    for knob, values in _TRIED.items():
+    for setting, values in _TRIED.items():
         for value in values:
-            rows = [_sampled(scene, knob, value, number) for number in surfaces]
-            samples.append(Sample(knob, value, *np.array(rows).T))
-            progress(f"{knob} {value:g}: {samples[-1].hysteresis.mean():.5g} w_int")
+            rows = [_sampled(scene, setting, value, number) for number in surfaces]
+            samples.append(Sample(setting, value, *np.array(rows).T))
+            progress(f"{setting} {value:g}: {samples[-1].hysteresis.mean():.5g} w_int")
     return tuple(samples)
 
 
-def _sampled(scene: Scene, knob: str, value: float, number: int) -> tuple[float, float, float]:
+def _sampled(scene: Scene, setting: str, value: float, number: int) -> tuple[float, float, float]:
     """Hysteresis, its stated error and processor time with another schedule or tile."""
-    simulation = _other(scene, knob, value, number)
+    simulation = _other(scene, setting, value, number)
     result = run_simulation(simulation)
     steady = steady_adhesion(result.record, simulation.correlation_length)
     return steady.hysteresis, steady.hysteresis_error, result.measures.cpu_seconds
 
 
-def _other(scene: Scene, knob: str, value: float, number: int) -> Simulation:
+def _other(scene: Scene, setting: str, value: float, number: int) -> Simulation:
     """Simulation with another schedule or tile."""
-    knobs = scene.chosen_knobs(_NUMERICAL_ERROR)
-    if knob == "tile":
+    settings = scene.chosen_settings(_NUMERICAL_ERROR)
+    if setting == "tile":
         scene = replace(scene, tile_cutoffs=value)
     schedule = (
         FullCycle(_DEEPEST, value)
-        if knob == "step"
-        else SteadySchedule(_START, _DEEPEST, value if knob == "travel" else _TRAVEL, _NO_STOP)
+        if setting == "step"
+        else SteadySchedule(_START, _DEEPEST, value if setting == "travel" else _TRAVEL, _NO_STOP)
     )
-    return replace(scene.simulation(knobs, number), schedule=schedule)
+    return replace(scene.simulation(settings, number), schedule=schedule)
 
 
 def sampling_seconds(scene: Scene) -> float:
     """Processor time that a surface is expected to take in `sampling_errors` (Units: s)."""
     simulations = [
-        _other(scene, knob, value, 0) for knob, values in _TRIED.items() for value in values
+        _other(scene, setting, value, 0) for setting, values in _TRIED.items() for value in values
     ]
     return sum(expected_cost(simulation).seconds for simulation in simulations)
 
 
-def coverage_seconds(scene: Scene, asked: tuple[float, ...]) -> float:
+def coverage_seconds(scene: Scene, requested: tuple[float, ...]) -> float:
     """Processor time that a surface is expected to take in `held_out_coverage` (Units: s)."""
-    tried = [scene.reference, *(scene.chosen_knobs(error) for error in asked)]
-    steady = [replace(scene.simulation(knobs, 0), schedule=_SCHEDULE) for knobs in tried]
-    branches = sum(branches_seconds(scene, knobs) for knobs in tried)
+    tried = [scene.reference, *(scene.chosen_settings(error) for error in requested)]
+    steady = [replace(scene.simulation(settings, 0), schedule=_SCHEDULE) for settings in tried]
+    branches = sum(branches_seconds(scene, settings) for settings in tried)
     return branches + sum(expected_cost(simulation).seconds for simulation in steady)
 
 
 def held_out_coverage(
     scene: Scene,
-    asked: tuple[float, ...],
+    requested: tuple[float, ...],
     n_realisation: int,
     progress: Progress = lambda line: None,
 ) -> tuple[Coverage, ...]:
@@ -166,15 +166,15 @@ def held_out_coverage(
     circumference = 2 * np.pi * float(exact[0].radius.mean())
     size = scene.penetrations.size * circumference / scene.spectrum.short_cutoff
     found = []
-    for error in asked:
-        knobs = scene.chosen_knobs(error)
-        simulations = [scene.simulation(knobs, number) for number in numbers]
-        branches = [measured_branches(scene, knobs, number) for number in numbers]
+    for error in requested:
+        settings = scene.chosen_settings(error)
+        simulations = [scene.simulation(settings, number) for number in numbers]
+        branches = [measured_branches(scene, settings, number) for number in numbers]
         pairs = zip(branches, exact, strict=True)
         runs = np.array([_steady(simulation) for simulation in simulations])
         found.append(
             Coverage(
-                asked=error,
+                requested=error,
                 numerical=np.array([one.adhesion - other.adhesion for one, other in pairs]),
                 numerical_stated=np.array(numerical_error(simulations[0], size)),
                 total=runs[:, 0] - of_others,
@@ -184,7 +184,7 @@ def held_out_coverage(
                 truth_error=scatter / np.sqrt(n_realisation - 1),
             )
         )
-        progress(f"asked {error:g}: {n_realisation} surfaces")
+        progress(f"requested {error:g}: {n_realisation} surfaces")
     return tuple(found)
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 from collections import defaultdict
 from pathlib import Path
 
@@ -17,6 +16,7 @@ from crackfront.cli.report import (
     whole,
     with_progress,
 )
+from crackfront.data.arguments import nearest_name
 from crackfront.data.bounds import Range
 from crackfront.data.digests import forget_sums
 from crackfront.data.files import read_attributes, write_dataset, write_sums
@@ -42,7 +42,7 @@ _output = output_option(default=Path("results/accuracy"), help="Folder of the re
 @commands.command(
     epilog=examples(
         "python -m studies accuracy scene flat-0.04",
-        "python -m studies accuracy scene flat-0.04 --study asked --realisations 4",
+        "python -m studies accuracy scene flat-0.04 --study requested --realisations 4",
     )
 )
 @click.argument("scene")
@@ -50,10 +50,10 @@ _output = output_option(default=Path("results/accuracy"), help="Folder of the re
 @click.option(
     "--study",
     type=click.Choice(list(STUDIES)),
-    default="knobs",
+    default="settings",
     show_default=True,
-    help="Errors of single knobs; of numerics that the laws choose; of these on surfaces without a "
-    "part in the laws; of schedules and tiles; true errors beside the stated ones.",
+    help="Errors of single settings; of numerics that the laws choose; of these on surfaces that "
+    "have no part in the laws; of schedules and tiles; true errors beside the stated ones.",
 )
 @click.option(
     "--realisations", type=whole(Range(2, 1e6)), default=8, show_default=True, help="Surfaces."
@@ -61,9 +61,7 @@ _output = output_option(default=Path("results/accuracy"), help="Folder of the re
 def scene(scene: str, output: Path, study: str, realisations: int) -> None:
     """Measure the errors of one scene."""
     if scene not in SCENES:
-        near = difflib.get_close_matches(scene, SCENES, n=1)
-        hint = f"did you mean {near[0]}?" if near else f"choose one of {', '.join(SCENES)}"
-        raise click.BadParameter(f"there is no scene {scene!r}; {hint}")
+        raise click.BadParameter(f"there is no scene {scene!r}; {nearest_name(scene, SCENES)}")
     refuse_unwritable(output)
     announce_cost(realisations * STUDIES[study].seconds(SCENES[scene]))
     announce_compilation()

@@ -14,8 +14,8 @@ from crackfront.data.files import UnreadableFileError, read_dataset
 from crackfront.data.labels import labelled, labelled_fields
 from crackfront.data.records import read_records, stacked
 from studies.accuracy import averages
-from studies.accuracy.scenes import HELD_OUT, SCENES, Progress, Scene, Setting
-from studies.accuracy.study import Errors, SceneErrors, scene_errors, setting_seconds
+from studies.accuracy.scenes import HELD_OUT, SCENES, Progress, Scene, Trial
+from studies.accuracy.study import Errors, SceneErrors, scene_errors, trial_seconds
 
 Record = TypeVar("Record")
 
@@ -25,7 +25,7 @@ _COVERED = (0.1, 0.03, 0.01)
 """Errors of k whose coverage is measured."""
 
 _UNSEEN = (0.03, 0.01)
-"""Errors of k that are asked for on surfaces to which no law was fitted."""
+"""Errors of k that are requested on surfaces to which no law was fitted."""
 
 
 class Study(NamedTuple):
@@ -35,14 +35,14 @@ class Study(NamedTuple):
     seconds: Callable[[Scene], float]
 
 
-def _of_settings(settings: Callable[[Scene], list[Setting]], first: int = 0) -> Study:
-    """Study of the errors of settings, on surfaces from a number on."""
+def _of_trials(trials: Callable[[Scene], list[Trial]], first: int = 0) -> Study:
+    """Study of the errors of trials, on surfaces from a number on."""
 
     def measured(scene: Scene, n_realisation: int, progress: Progress) -> xr.Dataset:
         surfaces = range(first, first + n_realisation)
-        return errors_dataset(scene_errors(scene, settings(scene), surfaces, progress))
+        return errors_dataset(scene_errors(scene, trials(scene), surfaces, progress))
 
-    return Study(measured, lambda scene: setting_seconds(scene, settings(scene)))
+    return Study(measured, lambda scene: trial_seconds(scene, trials(scene)))
 
 
 def _averages(scene: Scene, n_realisation: int, progress: Progress) -> xr.Dataset:
@@ -58,9 +58,9 @@ def _coverage(scene: Scene, n_realisation: int, progress: Progress) -> xr.Datase
 
 
 STUDIES = {
-    "knobs": _of_settings(lambda scene: scene.single_settings),
-    "asked": _of_settings(lambda scene: scene.asked_settings()),
-    "unseen": _of_settings(lambda scene: scene.asked_settings(_UNSEEN), HELD_OUT),
+    "settings": _of_trials(lambda scene: scene.single_trials),
+    "requested": _of_trials(lambda scene: scene.requested_trials()),
+    "unseen": _of_trials(lambda scene: scene.requested_trials(_UNSEEN), HELD_OUT),
     "averages": Study(_averages, averages.sampling_seconds),
     "coverage": Study(_coverage, lambda scene: averages.coverage_seconds(scene, _COVERED)),
 }

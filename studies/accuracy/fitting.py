@@ -15,7 +15,7 @@ from scipy.optimize import minimize_scalar
 from crackfront.core.arrays import Array
 from crackfront.plots import style
 from crackfront.simulate.front_sizes import LAW_SIZE
-from crackfront.simulate.laws import KNOBS, ErrorLaw, Knob, abscissa
+from crackfront.simulate.laws import SETTINGS, ErrorLaw, SettingName, abscissa
 from studies.accuracy.study import SceneErrors, rms
 
 _LEAST = 3e-4
@@ -24,14 +24,14 @@ _LEAST = 3e-4
 _FEW = 0.1
 """Scatter of k up to which the size of avalanches is measured; above, surfaces have many."""
 
-_SLOWEST: dict[Knob, float] = {
+_SLOWEST: dict[SettingName, float] = {
     "sites": -0.6,
     "cubic": -2.0,
     "linear": -1.0,
     "pixels": -2.0,
     "tolerance": 0.5,
 }
-"""Slopes that a law of scatter has at least: half the order of the knob.
+"""Slopes that a law of scatter has at least: half the order of the setting.
 
 An avalanche that one discretisation triggers and another does not is of a size of its own; only its
 chance falls with the error of the field, and the rms with the root of that. Among a few surfaces a
@@ -44,7 +44,7 @@ _STEEPEST = 10.0
 _NO_BIAS = (-99.0, 0.0)
 """Coefficients of a bias that is not seen."""
 
-_AXES: dict[Knob, str] = {
+_AXES: dict[SettingName, str] = {
     "sites": "sites per short cutoff",
     "cubic": "cubic samples per short cutoff",
     "linear": "linear samples per short cutoff",
@@ -54,7 +54,7 @@ _AXES: dict[Knob, str] = {
 
 
 def fit_laws(studies: Iterable[SceneErrors]) -> Iterator[ErrorLaw]:
-    """Law of every knob, amplitude and branch, fitted to the errors of scenes.
+    """Law of every setting, amplitude and branch, fitted to the errors of scenes.
 
     A bias counts where it is twice its standard error; elsewhere only scatter is seen, that of
     both branches together. The mean of measured over fitted mean squares is one: few surfaces have
@@ -62,13 +62,13 @@ def fit_laws(studies: Iterable[SceneErrors]) -> Iterator[ErrorLaw]:
     """
     for study in studies:
         avalanche = _avalanche(study)
-        for knob in KNOBS:
-            yield from _laws(study, knob, avalanche)
+        for setting in SETTINGS:
+            yield from _laws(study, setting, avalanche)
 
 
 def _avalanche(study: SceneErrors) -> float:
     """Typical size of an avalanche in k, from settings that leave little scatter."""
-    deviations = np.concatenate([_knob_errors(study, knob)[1] for knob in KNOBS])
+    deviations = np.concatenate([_setting_errors(study, setting)[1] for setting in SETTINGS])
     deviations -= deviations.mean(axis=1, keepdims=True)
     few = np.mean(deviations**2, axis=1, keepdims=True) < _FEW**2
     kept = np.where(few, deviations, 0.0)
@@ -77,34 +77,36 @@ def _avalanche(study: SceneErrors) -> float:
     return float(np.sqrt(np.sum(kept**4) / total)) if total > 0 else 0.0
 
 
-def _knob_errors(study: SceneErrors, knob: Knob) -> tuple[Array, Array]:
-    """Values of a knob, and the errors of k that it adds, (value, realisation, branch)."""
-    tried = [errors for errors in study.errors if errors.knob == knob]
-    without = {errors.value: errors.adhesion for errors in study.errors if errors.knob == "sites"}
+def _setting_errors(study: SceneErrors, setting: SettingName) -> tuple[Array, Array]:
+    """Values of a setting, and the errors of k that it adds, (value, realisation, branch)."""
+    tried = [errors for errors in study.errors if errors.setting == setting]
+    without = {
+        errors.value: errors.adhesion for errors in study.errors if errors.setting == "sites"
+    }
     added = [
-        errors.adhesion - (0.0 if knob == "sites" else without[errors.angles_per_cutoff])
+        errors.adhesion - (0.0 if setting == "sites" else without[errors.angles_per_cutoff])
         for errors in tried
     ]
     values = np.array([errors.value for errors in tried])
     return values, np.array(added) / study.scene.elastic_energy
 
 
-def _laws(study: SceneErrors, knob: Knob, avalanche: float) -> Iterator[ErrorLaw]:
-    """Laws of one knob, the approach before the retraction."""
-    tried, values = _knob_errors(study, knob)
-    x = abscissa(knob, tried)
+def _laws(study: SceneErrors, setting: SettingName, avalanche: float) -> Iterator[ErrorLaw]:
+    """Laws of one setting, the approach before the retraction."""
+    tried, values = _setting_errors(study, setting)
+    x = abscissa(setting, tried)
     n_realisation = values.shape[1]
     bias = np.abs(values.mean(axis=1))
     uncertainty = values.std(axis=1, ddof=1) / np.sqrt(n_realisation)
     scatter = np.sqrt(np.mean(values.var(axis=1, ddof=1), axis=1))
-    slowest = _SLOWEST[knob]
+    slowest = _SLOWEST[setting]
     scatter_line = _falling_line(x, scatter, slowest)
     for branch, direction in enumerate((1, -1)):
         certain = bias[:, branch] > 2 * uncertainty[:, branch]
         seen = np.count_nonzero(certain) > 1
         bias_line = _falling_line(x[certain], bias[certain, branch], slowest) if seen else _NO_BIAS
         shape, energy = study.scene.shape, study.scene.elastic_energy
-        yield ErrorLaw(shape, energy, knob, direction, bias_line, scatter_line, avalanche)
+        yield ErrorLaw(shape, energy, setting, direction, bias_line, scatter_line, avalanche)
 
 
 def _falling_line(x: Array, values: Array, slowest: float) -> tuple[float, float]:
@@ -128,7 +130,7 @@ def _falling_line(x: Array, values: Array, slowest: float) -> tuple[float, float
 def laws_text(laws: Iterable[ErrorLaw]) -> str:
     """Laws as the lines of `laws.csv`, five digits each."""
     text = io.StringIO()
-    columns = ("shape", "elastic_energy", "knob", "direction")
+    columns = ("shape", "elastic_energy", "setting", "direction")
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow([*columns, "bias_0", "bias_1", "scatter_0", "scatter_1", "avalanche"])
     for law in laws:
@@ -138,12 +140,12 @@ def laws_text(laws: Iterable[ErrorLaw]) -> str:
 
 
 def laws_figure(studies: Sequence[SceneErrors], laws: Sequence[ErrorLaw]) -> Figure:
-    """Measured errors of k of w_retr of one shape against every knob, and the fitted laws."""
+    """Measured errors of k of w_retr of one shape against every setting, and the fitted laws."""
     with style.house_style():
         figure = style.blank_figure(style.PAGE, 1.1 * style.COLUMN)
         panels = figure.subplots(2, 3).ravel()
-        for axes, knob in zip(panels, KNOBS, strict=False):
-            _draw_laws(axes, knob, studies, laws)
+        for axes, setting in zip(panels, SETTINGS, strict=False):
+            _draw_laws(axes, setting, studies, laws)
         for axes in panels[::3]:
             axes.set_ylabel(r"rms error of $w_\mathrm{retr}$ / $e_\mathrm{el}$")
         panels[-1].set_axis_off()
@@ -157,12 +159,12 @@ def laws_figure(studies: Sequence[SceneErrors], laws: Sequence[ErrorLaw]) -> Fig
 
 
 def _draw_laws(
-    axes: Axes, knob: Knob, studies: Sequence[SceneErrors], laws: Sequence[ErrorLaw]
+    axes: Axes, setting: SettingName, studies: Sequence[SceneErrors], laws: Sequence[ErrorLaw]
 ) -> None:
-    """Draw the errors of one knob and their laws, a colour a scene."""
+    """Draw the errors of one setting and their laws, a colour a scene."""
     for study, colour, marker in zip(studies, style.COLOURS, style.MARKERS, strict=False):
         scene = study.scene
-        values, found = _knob_errors(study, knob)
+        values, found = _setting_errors(study, setting)
         axes.plot(
             values,
             [rms(errors[:, 1]) for errors in found],
@@ -174,16 +176,16 @@ def _draw_laws(
         law = next(
             law
             for law in laws
-            if (law.shape, law.elastic_energy, law.knob, law.direction)
-            == (scene.shape, scene.elastic_energy, knob, -1)
+            if (law.shape, law.elastic_energy, law.setting, law.direction)
+            == (scene.shape, scene.elastic_energy, setting, -1)
         )
         between = np.geomspace(values.min(), values.max(), 60)
         axes.plot(between, [law.error(x, LAW_SIZE) for x in between], color=colour)
     axes.axhline(0.01, color=style.BLACK, linewidth=0.4, dashes=(4, 2))
     axes.set_yscale("log")
-    if knob != "sites":
+    if setting != "sites":
         axes.set_xscale("log")
-    if knob not in ("sites", "tolerance"):
+    if setting not in ("sites", "tolerance"):
         axes.set_xticks(values, [f"{value:g}" for value in values])
         axes.xaxis.set_minor_formatter(NullFormatter())
-    axes.set_xlabel(_AXES[knob])
+    axes.set_xlabel(_AXES[setting])

@@ -37,7 +37,7 @@ _NAMES = {
     "linear": "samples, linear pieces",
     "pixels": "pixels of the tile",
     "tolerance": "tolerance of the force",
-    "asked": "chosen for an error",
+    "requested": "chosen for an error",
     "finer": "finer than the reference",
 }
 
@@ -47,23 +47,23 @@ def write_report(folder: Path, progress: Progress) -> dict[str, str]:
 
     Returns the tables by their names. A ValueError says if the folder holds no study.
     """
-    knobs, asked, unseen = (
-        _stored(folder, study, read_errors) for study in ("knobs", "asked", "unseen")
+    single, requested, unseen = (
+        _stored(folder, study, read_errors) for study in ("settings", "requested", "unseen")
     )
     samples = _stored(folder, "averages", lambda path: read_study(path, Sample))
     coverages = _stored(folder, "coverage", lambda path: read_study(path, Coverage))
-    if not (knobs or asked or unseen or samples or coverages):
+    if not (single or requested or unseen or samples or coverages):
         raise ValueError(f"{folder} holds no errors; run python -m studies accuracy scene")
-    studies = {name: (knobs | asked)[name] for name in SCENES if name in knobs | asked}
-    for name in knobs.keys() & asked.keys():
-        studies[name] = replace(knobs[name], errors=knobs[name].errors + asked[name].errors)
+    studies = {name: (single | requested)[name] for name in SCENES if name in single | requested}
+    for name in single.keys() & requested.keys():
+        studies[name] = replace(single[name], errors=single[name].errors + requested[name].errors)
     tables = {}
     if studies:
         tables["Time to an error of the hysteresis"] = _target_table(studies.values())
-    if asked:
-        rows = [_chosen(study, errors) for study in asked.values() for errors in study.errors]
+    if requested:
+        rows = [_chosen(study, errors) for study in requested.values() for errors in study.errors]
         header = f"{_CHOSEN} | k of w_appr | k of w_retr"
-        tables["Errors that were asked for"] = markdown_table(header, rows)
+        tables["Errors that were requested"] = markdown_table(header, rows)
     if unseen:
         tables["Errors on unseen surfaces"] = _unseen_table(unseen.values())
     if coverages:
@@ -73,7 +73,7 @@ def write_report(folder: Path, progress: Progress) -> dict[str, str]:
     parts = [f"## {name}\n\n{table}\n" for name, table in tables.items()]
     write_text(folder / "accuracy.md", "\n".join(["# Measured errors\n", *parts]))
     progress(f"tables: {folder / 'accuracy.md'}")
-    fitted = [study for study in knobs.values() if study.scene.single_knobs]
+    fitted = [study for study in single.values() if study.scene.varies_single]
     laws = list(fit_laws(fitted))
     if laws:
         write_text(folder / "laws.csv", laws_text(laws))
@@ -129,7 +129,7 @@ def _target_table(studies: Iterable[SceneErrors]) -> str:
     return markdown_table(f"scene | hysteresis | {targets}", rows)
 
 
-_CHOSEN = "scene | asked for | numerics | CPU s"
+_CHOSEN = "scene | requested | numerics | CPU s"
 
 
 def _chosen(study: SceneErrors, errors: Errors) -> list[str]:
@@ -173,7 +173,7 @@ def _coverage_table(coverages: Iterable[tuple[Scene, tuple[Coverage, ...]]]) -> 
                     f"{np.median(interval[known]) / scene.elastic_energy:.2g}",
                     f"{100 * np.mean(every[-1] <= 1):.0f}%",
                 ]
-            rows.append([scene.name, f"{item.asked:g}", *entries])
+            rows.append([scene.name, f"{item.requested:g}", *entries])
     ends = []
     for every in pooled:
         relative = np.concatenate(every)
@@ -181,7 +181,7 @@ def _coverage_table(coverages: Iterable[tuple[Scene, tuple[Coverage, ...]]]) -> 
         ends += ["", widths, f"{100 * np.mean(relative <= 1):.1f}%"]
     rows.append(["**all**", "", "", *ends])
     return markdown_table(
-        "scene | asked for | numerical: rms | median | interval | covered | total: median "
+        "scene | requested | numerical: rms | median | interval | covered | total: median "
         "| interval | covered",
         rows,
     )
@@ -195,7 +195,7 @@ def _setting_table(study: SceneErrors) -> str:
     for index, errors in enumerate(study.errors):
         values = study.hysteresis_errors(errors)
         spread = np.std(values, ddof=1) / np.sqrt(values.size)
-        name = f"{errors.knob} {errors.value:g}" if errors.value else errors.knob
+        name = f"{errors.setting} {errors.value:g}" if errors.value else errors.setting
         rows.append(
             [
                 f"**{name}**" if index in best else name,
@@ -220,7 +220,7 @@ def _sample_table(samples: tuple[Sample, ...]) -> str:
     """Hysteresis for schedules and tiles; differences from the first on the same surfaces."""
     rows = []
     for sample in samples:
-        values, setting = sample.hysteresis, f"{sample.knob} {sample.value:g}"
+        values, setting = sample.hysteresis, f"{sample.setting} {sample.value:g}"
         if not np.all(np.isfinite(values)):
             rows.append([setting, "too few states", *[""] * 5])
             continue
@@ -234,7 +234,7 @@ def _sample_table(samples: tuple[Sample, ...]) -> str:
                 f"{values.mean():.5f} ± {error / np.sqrt(values.size):.5f}",
                 f"{error:.5f}",
                 f"{rms(sample.standard_error):.5f}",
-                *(["", ""] if sample.knob == "tile" else compared),
+                *(["", ""] if sample.setting == "tile" else compared),
             ]
         )
     return markdown_table(
@@ -270,18 +270,18 @@ def _draw_work_precision(axes: Axes, study: SceneErrors) -> None:
     """Draw the settings of one scene."""
     seconds, relative = study.work_and_precision()
     error, best = 100 * relative, pareto_front(seconds, relative)
-    knobs = np.array([errors.knob for errors in study.errors])
+    varied = np.array([errors.setting for errors in study.errors])
     axes.plot(seconds[best], error[best], color="0.8", linewidth=4, zorder=1, label="Pareto front")
-    for knob, colour, marker in zip(_NAMES, style.COLOURS, style.MARKERS, strict=False):
-        chosen = knobs == knob
+    for setting, colour, marker in zip(_NAMES, style.COLOURS, style.MARKERS, strict=False):
+        chosen = varied == setting
         axes.plot(
             seconds[chosen],
             error[chosen],
             marker=marker,
             linewidth=0.8,
             color=colour,
-            label=_NAMES[knob],
-            zorder=3 if knob == "asked" else 2,
+            label=_NAMES[setting],
+            zorder=3 if setting == "requested" else 2,
         )
     axes.set(xscale="log", yscale="log")
     label_decimals(axes.xaxis)

@@ -11,7 +11,7 @@ import numpy as np
 from crackfront.core.adhesion import FieldKind
 from crackfront.core.arrays import Array
 from crackfront.core.spectrum import SelfAffineSpectrum
-from crackfront.simulate.laws import KNOBS, MEASURED, Knob, Knobs, chosen_knobs
+from crackfront.simulate.laws import MEASURED, SETTINGS, SettingName, Settings, chosen_settings
 from crackfront.simulate.numerics import Numerics
 from crackfront.simulate.simulation import Simulation
 from crackfront.simulate.sizing import simulation_of
@@ -20,7 +20,7 @@ from crackfront.simulate.sphere.cycle import FullCycle
 Progress = Callable[[str], None]
 """What is called with a line when a part of a study is done."""
 
-ASKED = (0.1, 0.03, 0.02, 0.01, 0.003)
+REQUESTED = (0.1, 0.03, 0.02, 0.01, 0.003)
 """Errors of k for which the laws choose numerics that are then tried."""
 
 HELD_OUT = 2000
@@ -29,7 +29,7 @@ HELD_OUT = 2000
 _SEED = 20241121
 """Seed of the surfaces of all scenes."""
 
-_FINER = Knobs(
+_FINER = Settings(
     angles=None,
     angles_per_cutoff=8,
     samples_per_cutoff=12,
@@ -37,7 +37,7 @@ _FINER = Knobs(
     pixels_per_cutoff=10,
     tolerance=1e-9,
 )
-"""What shows that the reference has converged, where single knobs are varied."""
+"""What shows that the reference has converged, where single settings are varied."""
 
 _REFERENCE = replace(
     _FINER, angles_per_cutoff=6, samples_per_cutoff=8, pixels_per_cutoff=8, tolerance=1e-8
@@ -49,34 +49,34 @@ _STRONG_FINER = replace(_FINER, angles_per_cutoff=16, samples_per_cutoff=16)
 _STRONG = 0.2
 """Largest e_el / w_int where the numerics of moderate disorder have converged."""
 
-_VALUES: dict[Knob, tuple[float, ...]] = {
+_VALUES: dict[SettingName, tuple[float, ...]] = {
     "sites": (1.4, 1.8, 2.2, 2.7, 3.6),
     "cubic": (2, 3, 4, 5, 6),
     "linear": (4, 8, 16, 32),
     "pixels": (2.5, 3, 4, 5),
     "tolerance": (1e-2, 1e-3, 1e-4, 1e-5),
 }
-"""What is tried of each knob while the others are those of the reference."""
+"""What is tried of each setting while the others are those of the reference."""
 
-_STRONG_VALUES: dict[Knob, tuple[float, ...]] = _VALUES | {
+_STRONG_VALUES: dict[SettingName, tuple[float, ...]] = _VALUES | {
     "sites": (2.2, 2.7, 3.6, 5, 7),
     "cubic": (3, 4, 5, 6, 8),
 }
 """The same at strong disorder, which bends fronts more sharply."""
 
 _FEW_SITES, _FEW_STRONG_SITES = 2.2, 5.0
-"""Sites per short cutoff where other knobs are varied, one of those that are tried.
+"""Sites per short cutoff where other settings are varied, one of those that are tried.
 
 Images of coarse pixels are short waves: many sites resolve them, to few they are long ones.
 """
 
 
-class Setting(NamedTuple):
+class Trial(NamedTuple):
     """What is varied, its value, and all numerics."""
 
-    knob: str
+    setting: str
     value: float
-    knobs: Knobs
+    settings: Settings
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,7 +85,7 @@ class Scene:
 
     The name is shape and amplitude, the tile has so many short cutoffs a side. Errors are measured
     against the reference, at eight penetrations a step apart up to 1; laws are fitted to those of
-    single knobs. The authors' seconds are those of their code for a full cycle, where known.
+    single settings. The authors' seconds are those of their code for a full cycle, where known.
     """
 
     name: str
@@ -94,8 +94,8 @@ class Scene:
     elastic_energy: float
     tile_cutoffs: float
     step: float = 0.1
-    reference: Knobs = _REFERENCE
-    single_knobs: bool = True
+    reference: Settings = _REFERENCE
+    varies_single: bool = True
     authors_seconds: float | None = None
 
     @property
@@ -109,52 +109,52 @@ class Scene:
         return 1.0 - self.step * np.arange(7, -1, -1.0)
 
     @property
-    def single_settings(self) -> list[Setting]:
-        """The finer numerics, other numbers of sites, and few sites with another knob varied."""
+    def single_trials(self) -> list[Trial]:
+        """The finer numerics, other numbers of sites, and few sites with another setting varied."""
         finer, values, n_few = _FINER, _VALUES, _FEW_SITES
         if self.elastic_energy > _STRONG:
             finer, values, n_few = _STRONG_FINER, _STRONG_VALUES, _FEW_STRONG_SITES
-        few = with_knob(self.reference, "sites", n_few)
+        few = with_setting(self.reference, "sites", n_few)
         return [
-            Setting("finer", 0.0, finer),
+            Trial("finer", 0.0, finer),
             *(
-                Setting(knob, value, with_knob(few, knob, value))
-                for knob in KNOBS
-                for value in values[knob]
+                Trial(setting, value, with_setting(few, setting, value))
+                for setting in SETTINGS
+                for value in values[setting]
             ),
         ]
 
-    def asked_settings(self, asked: Iterable[float] = ASKED) -> list[Setting]:
+    def requested_trials(self, requested: Iterable[float] = REQUESTED) -> list[Trial]:
         """Numerics that the laws choose for errors of k."""
-        return [Setting("asked", error, self.chosen_knobs(error)) for error in asked]
+        return [Trial("requested", error, self.chosen_settings(error)) for error in requested]
 
-    def chosen_knobs(self, error: float) -> Knobs:
+    def chosen_settings(self, error: float) -> Settings:
         """Numerics that the laws choose for an error of k."""
-        return chosen_knobs(error, self.kind, self.spectrum, self.elastic_energy)
+        return chosen_settings(error, self.kind, self.spectrum, self.elastic_energy)
 
-    def simulation(self, knobs: Knobs, realisation: int) -> Simulation:
-        """One realisation; its surface is the same for all knobs."""
+    def simulation(self, settings: Settings, realisation: int) -> Simulation:
+        """One realisation; its surface is the same for all settings."""
         return simulation_of(
             self.kind,
             self.spectrum,
             self.elastic_energy,
             FullCycle(1.0, self.step),
-            Numerics(knobs, tile_roll_offs=1.0, tile_cutoffs=self.tile_cutoffs),
+            Numerics(settings, tile_roll_offs=1.0, tile_cutoffs=self.tile_cutoffs),
             seed=_SEED,
             realisation=realisation,
             name=self.name,
         )
 
 
-def with_knob(knobs: Knobs, knob: Knob, value: float) -> Knobs:
-    """Knobs with one of them at another value."""
-    if knob == "sites":
-        return replace(knobs, angles_per_cutoff=value)
-    if knob == "pixels":
-        return replace(knobs, pixels_per_cutoff=value)
-    if knob == "tolerance":
-        return replace(knobs, tolerance=value)
-    return replace(knobs, samples_per_cutoff=value, interpolation=knob)
+def with_setting(settings: Settings, setting: SettingName, value: float) -> Settings:
+    """Settings with one of them at another value."""
+    if setting == "sites":
+        return replace(settings, angles_per_cutoff=value)
+    if setting == "pixels":
+        return replace(settings, pixels_per_cutoff=value)
+    if setting == "tolerance":
+        return replace(settings, tolerance=value)
+    return replace(settings, samples_per_cutoff=value, interpolation=setting)
 
 
 def _measured_shapes() -> list[Scene]:
@@ -175,7 +175,7 @@ def _measured_shapes() -> list[Scene]:
     ]
 
 
-def _reference(energy: float) -> Knobs:
+def _reference(energy: float) -> Settings:
     """Numerics that have converged at an e_el / w_int."""
     return _STRONG_REFERENCE if energy > _STRONG else _REFERENCE
 
@@ -195,7 +195,7 @@ def _unseen() -> list[Scene]:
     return [
         Scene(
             f"{name}-{energy:g}", kind, SelfAffineSpectrum(*spectrum), energy, cutoffs,
-            reference=_reference(energy), single_knobs=False,
+            reference=_reference(energy), varies_single=False,
         )
         for name, kind, spectrum, cutoffs, energies in shapes
         for energy in energies
@@ -208,11 +208,11 @@ SCENES: dict[str, Scene] = {
         *_measured_shapes(),
         Scene(
             "small-0.04", "roughness", SelfAffineSpectrum(0.1, 0.1, 1.0), 0.04, 64,
-            single_knobs=False,
+            varies_single=False,
         ),
         Scene(
             "large-0.04", "roughness", SelfAffineSpectrum(0.005, 0.1, 0.3), 0.04, 200,
-            step=0.03, reference=_LARGE_REFERENCE, single_knobs=False,
+            step=0.03, reference=_LARGE_REFERENCE, varies_single=False,
         ),
         Scene(
             "paper-0.05", "roughness", SelfAffineSpectrum(0.000625, 0.01, 0.8), 0.05, 256,
@@ -221,7 +221,7 @@ SCENES: dict[str, Scene] = {
                 _REFERENCE, angles_per_cutoff=2.7, samples_per_cutoff=5, pixels_per_cutoff=4,
                 tolerance=1e-5,
             ),
-            single_knobs=False,
+            varies_single=False,
         ),
         *_unseen(),
     )

@@ -17,10 +17,10 @@ from crackfront.core.cycle.record import Recorder
 from crackfront.core.outcome import Direction
 from crackfront.core.variables import ADHESION, FORCE, variable
 from crackfront.simulate.costs import featured_cost, features
-from crackfront.simulate.laws import Knobs
+from crackfront.simulate.laws import Settings
 from crackfront.simulate.simulation import simulation_field
 from crackfront.simulate.sphere.steady import forward_circle
-from studies.accuracy.scenes import Progress, Scene, Setting
+from studies.accuracy.scenes import Progress, Scene, Trial
 
 _RUN, _BRANCH, _PER_CUTOFF = "realisation", "branch", "1 / short cutoff"
 
@@ -48,11 +48,11 @@ class Branches:
 class Errors:
     """Errors of one setting against the reference on the same surfaces at the same loads.
 
-    What is varied is a knob of :data:`crackfront.simulate.laws.KNOBS`, `finer` or `asked`.
+    What is varied is one of :data:`crackfront.simulate.laws.SETTINGS`, `finer` or `requested`.
     """
 
-    knob: str = variable("what is varied", "1")
-    value: float = variable("its value; of asked the error of k", "1")
+    setting: str = variable("what is varied", "1")
+    value: float = variable("its value; of requested the error of k", "1")
     seconds: Array = variable("processor time of both branches, synthesis included", "s", _RUN)
     adhesion: Array = variable("error of w_appr and w_retr", ADHESION, _RUN, _BRANCH)
     force: Array = variable("rms error of the normal force", FORCE, _RUN)
@@ -89,23 +89,23 @@ class SceneErrors:
         return np.array(seconds), np.array([rms(self.hysteresis_errors(e)) for e in self.errors])
 
 
-def branches_seconds(scene: Scene, knobs: Knobs) -> float:
+def branches_seconds(scene: Scene, settings: Settings) -> float:
     """Processor time that both branches of a surface are expected to take (Units: s)."""
-    cycle = features(scene.simulation(knobs, 0))
+    cycle = features(scene.simulation(settings, 0))
     both = replace(cycle, full_cycle=False, n_state=2.0 * scene.penetrations.size)
     return featured_cost(both, fronts=False).seconds
 
 
-def setting_seconds(scene: Scene, settings: list[Setting]) -> float:
+def trial_seconds(scene: Scene, trials: list[Trial]) -> float:
     """Processor time that a surface is expected to take in `scene_errors` (Units: s)."""
-    tried = [scene.reference, *(setting.knobs for setting in settings)]
-    return sum(branches_seconds(scene, knobs) for knobs in tried)
+    tried = [scene.reference, *(trial.settings for trial in trials)]
+    return sum(branches_seconds(scene, settings) for settings in tried)
 
 
 def scene_errors(
-    scene: Scene, settings: list[Setting], surfaces: range, progress: Progress = lambda line: None
+    scene: Scene, trials: list[Trial], surfaces: range, progress: Progress = lambda line: None
 ) -> SceneErrors:
-    """Errors of settings of the numerics on numbered surfaces of a scene."""
+    """Errors of trials of the numerics on numbered surfaces of a scene."""
     exact = [measured_branches(scene, scene.reference, number) for number in surfaces]
     study = SceneErrors(
         scene=scene,
@@ -116,15 +116,15 @@ def scene_errors(
     seconds = study.reference_seconds.mean()
     progress(f"reference: hysteresis {study.hysteresis:.5g} w_int, {seconds:.2f} s")
     errors = []
-    for setting in settings:
-        found = [measured_branches(scene, setting.knobs, number) for number in surfaces]
-        errors.append(_errors(scene, setting, found, exact))
+    for trial in trials:
+        found = [measured_branches(scene, trial.settings, number) for number in surfaces]
+        errors.append(_errors(scene, trial, found, exact))
         of_k, seconds = rms(errors[-1].adhesion) / scene.elastic_energy, errors[-1].seconds.mean()
-        progress(f"{setting.knob} {setting.value:g}: rms error of k {of_k:.2g}, {seconds:.2f} s")
+        progress(f"{trial.setting} {trial.value:g}: rms error of k {of_k:.2g}, {seconds:.2f} s")
     return replace(study, errors=tuple(errors))
 
 
-def _errors(scene: Scene, setting: Setting, found: list[Branches], exact: list[Branches]) -> Errors:
+def _errors(scene: Scene, trial: Trial, found: list[Branches], exact: list[Branches]) -> Errors:
     """Differences of the found branches from the exact ones, surface by surface."""
     pairs = list(zip(found, exact, strict=True))
     adhesion = np.array(
@@ -132,11 +132,11 @@ def _errors(scene: Scene, setting: Setting, found: list[Branches], exact: list[B
     )
     force, cutoff = np.array([a.force - b.force for a, b in pairs]), scene.spectrum.short_cutoff
     fronts = [front_difference(a.radius, b.radius) / cutoff for a, b in pairs]
-    numerics = asdict(setting.knobs)
+    numerics = asdict(trial.settings)
     del numerics["angles"]  # None in all settings: they count sites per cutoff
     return Errors(
-        knob=setting.knob,
-        value=setting.value,
+        setting=trial.setting,
+        value=trial.value,
         seconds=np.array([one.seconds for one in found]),
         adhesion=np.mean(adhesion, axis=2),
         force=np.sqrt(np.mean(force**2, axis=(1, 2))),
@@ -146,13 +146,13 @@ def _errors(scene: Scene, setting: Setting, found: list[Branches], exact: list[B
     )
 
 
-def measured_branches(scene: Scene, knobs: Knobs, realisation: int) -> Branches:
+def measured_branches(scene: Scene, settings: Settings, realisation: int) -> Branches:
     """Both branches of a scene, each begun at a circle that moves forward.
 
     A load without a state is a RuntimeError.
     """
     begun = time.process_time()
-    simulation = scene.simulation(knobs, realisation)
+    simulation = scene.simulation(settings, realisation)
     field = simulation_field(simulation)
     length = simulation.correlation_length
     adhesion, force, radius = [], [], []

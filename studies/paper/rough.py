@@ -24,7 +24,7 @@ from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.data.section import Count, Energy, Positive, Section, Seed, refusal
 from crackfront.simulate.costs import expected_cost
-from crackfront.simulate.laws import chosen_knobs, measured_energies
+from crackfront.simulate.laws import chosen_settings, measured_energies
 from crackfront.simulate.numerical_errors import missed_error
 from crackfront.simulate.numerics import Numerics
 from crackfront.simulate.run import compile_solver
@@ -120,13 +120,13 @@ class DisorderParameters(Section):
         side = _SIDE * jkr.equilibrium_radius(self.max_penetration)
         # Below the weakest disorder of the laws of errors the numerics are those of there.
         energy = max(elastic_energy, measured_energies()[0])
-        knobs = chosen_knobs(self.error, "roughness", spectrum, energy)
+        settings = chosen_settings(self.error, "roughness", spectrum, energy)
         simulation = simulation_of(
             "roughness",
             spectrum,
             elastic_energy,
             FullCycle(self.max_penetration, max(self.max_penetration, 1.0)),
-            Numerics(knobs, side / self.short_cutoff, tile_cutoffs=1.0),
+            Numerics(settings, side / self.short_cutoff, tile_cutoffs=1.0),
             seed=self.seed,
             realisation=realisation,
             name="flat",

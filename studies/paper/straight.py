@@ -18,7 +18,7 @@ from crackfront.core.geometry.line import initial_front
 from crackfront.core.outcome import Status
 from crackfront.core.solver.relax import Solver
 from crackfront.data.section import Positive, Section
-from crackfront.simulate.laws import Knobs
+from crackfront.simulate.laws import Settings
 from crackfront.simulate.line.loads import LineLoad
 from crackfront.simulate.numerics import Numerics
 from crackfront.simulate.simulation import simulation_adhesion, simulation_field
@@ -57,8 +57,8 @@ class StraightParameters(Section):
         depth = force_correlation_length(_KIND, _SPECTRUM)
         larkin = larkin_length(_KIND, _SPECTRUM, 2 * math.sqrt(energy))
         tolerance = precision * depth / (spring * larkin)
-        knobs = Knobs(None, pixels, 2 * pixels, "cubic", pixels, tolerance)
-        numerics = Numerics(knobs, tile_roll_offs=1.0, tile_cutoffs=_TILE_CUTOFFS)
+        settings = Settings(None, pixels, 2 * pixels, "cubic", pixels, tolerance)
+        numerics = Numerics(settings, tile_roll_offs=1.0, tile_cutoffs=_TILE_CUTOFFS)
         load = LineLoad("larkin_length", self.length, _PERIOD, _TRANSIENT, _STEP, uncorrelated=True)
         schedule = load.for_surface(_KIND, _SPECTRUM, energy, spring, numerics)
         simulation = simulation_of(

@@ -22,7 +22,7 @@ from crackfront.simulate.costs import (
     measured_runs,
     predicted_seconds,
 )
-from crackfront.simulate.laws import Knobs
+from crackfront.simulate.laws import Settings
 from crackfront.simulate.numerics import Numerics
 from crackfront.simulate.run import run_simulation
 from crackfront.simulate.simulation import Simulation
@@ -30,7 +30,7 @@ from crackfront.simulate.sizing import simulation_of
 from crackfront.simulate.sphere.cycle import FullCycle
 from crackfront.simulate.sphere.steady import SteadySchedule
 
-KNOBS = Knobs(None, 2.4, 4, "cubic", 4, 1e-4)
+SETTINGS = Settings(None, 2.4, 4, "cubic", 4, 1e-4)
 ENERGIES = (0.002, 0.01, 0.05, 0.15)
 STEADY = SteadySchedule(start=1.0, max_penetration=1.5, travel=1.5, standard_error=0.1)
 CYCLE = FullCycle(1.0, 0.1)
@@ -44,11 +44,11 @@ def _simulation(
     shape: tuple[float, float, float],
     energy: float,
     schedule: FullCycle | SteadySchedule,
-    knobs: Knobs = KNOBS,
+    settings: Settings = SETTINGS,
     cutoffs: float = 200.0,
 ) -> Simulation:
     """One simulation of a roughness spectrum (short cutoff, roll-off, Hurst exponent)."""
-    spectrum, numerics = SelfAffineSpectrum(*shape), Numerics(knobs, tile_cutoffs=cutoffs)
+    spectrum, numerics = SelfAffineSpectrum(*shape), Numerics(settings, tile_cutoffs=cutoffs)
     return simulation_of("roughness", spectrum, energy, schedule, numerics, seed=7, name=name)
 
 
@@ -67,9 +67,9 @@ def fitted_to() -> Iterator[Simulation]:
         yield _simulation("h08", (0.000625, 0.01, 0.8), energy, STEADY)
     for energy in (0.003, 0.15):
         yield _simulation("h03", (0.000625, 0.1, 0.3), energy, STEADY)
-    coarser, finer = (replace(KNOBS, tolerance=tolerance) for tolerance in (1e-3, 1e-6))
-    for knobs, energy in product((coarser, finer), ENERGIES):
-        yield _simulation("flat", (0.02, 0.02, 1.0), energy, STEADY, knobs)
+    coarser, finer = (replace(SETTINGS, tolerance=tolerance) for tolerance in (1e-3, 1e-6))
+    for settings, energy in product((coarser, finer), ENERGIES):
+        yield _simulation("flat", (0.02, 0.02, 1.0), energy, STEADY, settings)
     for cutoff, energy in product((0.6, 0.3, 0.15), ENERGIES[1:]):
         for schedule in (CYCLE, replace(CYCLE, step=0.02)):
             yield _simulation("flat", (cutoff, cutoff, 1.0), energy, schedule, cutoffs=20)
@@ -81,7 +81,7 @@ def fitted_to() -> Iterator[Simulation]:
 
 def held_out() -> Iterator[Simulation]:
     """Simulations of other spectra, amplitudes, loads and numerics, to hold the model against."""
-    finer = replace(KNOBS, angles_per_cutoff=3.2, tolerance=1e-5)
+    finer = replace(SETTINGS, angles_per_cutoff=3.2, tolerance=1e-5)
     longer = replace(STEADY, max_penetration=2.0, travel=2.0)
     for energy in (0.005, 0.03, 0.1):
         yield _simulation("flat", (0.0125, 0.0125, 1.0), energy, STEADY)

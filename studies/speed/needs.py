@@ -27,7 +27,7 @@ from crackfront.core.variables import variable
 from crackfront.data.files import write_dataset
 from crackfront.data.provenance import provenance
 from crackfront.simulate.files import cycle_dataset, simulation_dataset
-from crackfront.simulate.laws import Knobs
+from crackfront.simulate.laws import Settings
 from crackfront.simulate.numerics import Numerics
 from crackfront.simulate.run import compile_solver, run_simulation
 from crackfront.simulate.simulation import Simulation, simulation_field
@@ -109,13 +109,13 @@ class Row:
 
 def simulation(scene: Scene, need: Need) -> Simulation:
     """Simulation on the surface."""
-    knobs = Knobs(None, 2.4, 5, "cubic", 4, TOLERANCE)
+    settings = Settings(None, 2.4, 5, "cubic", 4, TOLERANCE)
     return simulation_of(
         "roughness",
         scene.spectrum,
         0.05,
         scene.steady if need.load == "steady" else scene.cycle,
-        Numerics(knobs, tile_cutoffs=scene.tile_cutoffs),
+        Numerics(settings, tile_cutoffs=scene.tile_cutoffs),
         seed=1,
         name="surface",
         record=[name for name in ("fronts", "energy") if getattr(need, name)],

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import xarray as xr
 
 from crackfront.data.files import UnreadableFileError
 from crackfront.data.provenance import provenance
@@ -48,6 +49,15 @@ def test_a_run_goes_on_from_any_state_to_the_same_bits(tmp_path, simulation):
         n_known = partial.checkpoint.record.states.direction.size
         assert len(computed) == directions.size - n_known
         assert result.measures.cpu_seconds > partial.cpu_seconds
+
+
+@pytest.mark.parametrize(("simulation", "sites"), [(CYCLE, "angle"), (LINE, "y")])
+def test_fronts_of_a_checkpoint_have_the_sites_of_their_geometry(tmp_path, simulation, sites):
+    _, found = checkpoints(simulation)
+    write_checkpoint(tmp_path / "checkpoint.nc", found[0], provenance())
+    with xr.open_dataset(tmp_path / "checkpoint.nc") as dataset:
+        assert dataset["last_front"].dims == dataset["turning_front"].dims == (sites,)
+        assert dataset["last_front"].attrs["long_name"] == "front of the last state"
 
 
 def test_a_record_without_fronts_and_energies_goes_on_too(tmp_path):

@@ -10,20 +10,20 @@ from hypothesis import strategies as st
 
 from crackfront.core.spectrum import SelfAffineSpectrum, TabulatedSpectrum
 from crackfront.simulate.front_sizes import LAW_SIZE
-from crackfront.simulate.laws import KNOBS, chosen_knobs, combined_error, read_laws
+from crackfront.simulate.laws import SETTINGS, chosen_settings, combined_error, read_laws
 from crackfront.simulate.numerical_errors import numerical_error
-from studies.accuracy.scenes import SCENES, with_knob
+from studies.accuracy.scenes import SCENES, with_setting
 
 ENERGIES = (0.001, 0.0025, 0.01, 0.04, 0.16, 0.4)
 FINER = {"sites": 1.3, "cubic": 1.3, "linear": 1.3, "pixels": 1.3, "tolerance": 0.3}
 START = {"sites": 2.0, "cubic": 4.0, "linear": 12.0, "pixels": 3.0, "tolerance": 1e-3}
 
-scenes = st.sampled_from([scene for scene in SCENES.values() if scene.single_knobs])
+scenes = st.sampled_from([scene for scene in SCENES.values() if scene.varies_single])
 
 
 def chosen(scene, error):
     """Numerics for an error."""
-    return chosen_knobs(error, scene.kind, scene.spectrum, scene.elastic_energy)
+    return chosen_settings(error, scene.kind, scene.spectrum, scene.elastic_energy)
 
 
 def stated(scene, numerics, size=LAW_SIZE):
@@ -32,40 +32,40 @@ def stated(scene, numerics, size=LAW_SIZE):
     return [error / scene.elastic_energy for error in errors]
 
 
-def test_every_shape_amplitude_knob_and_branch_has_a_law():
-    laws = {(law.shape, law.elastic_energy, law.knob, law.direction) for law in read_laws()}
+def test_every_shape_amplitude_setting_and_branch_has_a_law():
+    laws = {(law.shape, law.elastic_energy, law.setting, law.direction) for law in read_laws()}
     assert laws == {
-        (shape, energy, knob, direction)
+        (shape, energy, setting, direction)
         for shape in ("chemical", "flat", "h08", "h03")
         for energy in ENERGIES
-        for knob in KNOBS
+        for setting in SETTINGS
         for direction in (1, -1)
     }
 
 
-@given(scene=scenes, knob=st.sampled_from(KNOBS), steps=st.integers(0, 4))
-def test_no_knob_that_is_made_finer_states_a_larger_error(scene, knob, steps):
-    coarse = with_knob(chosen(scene, 0.03), knob, START[knob] * FINER[knob] ** steps)
-    finer = with_knob(coarse, knob, START[knob] * FINER[knob] ** (steps + 1))
+@given(scene=scenes, setting=st.sampled_from(SETTINGS), steps=st.integers(0, 4))
+def test_no_setting_that_is_made_finer_states_a_larger_error(scene, setting, steps):
+    coarse = with_setting(chosen(scene, 0.03), setting, START[setting] * FINER[setting] ** steps)
+    finer = with_setting(coarse, setting, START[setting] * FINER[setting] ** (steps + 1))
     for before, after in zip(stated(scene, coarse), stated(scene, finer), strict=True):
         assert after <= before * (1 + 1e-12)
 
 
 @given(scene=scenes, error=st.sampled_from([0.1, 0.03, 0.01]))
-def test_the_chosen_knobs_state_no_more_than_the_error_that_was_asked_for(scene, error):
+def test_the_chosen_settings_state_no_more_than_the_error_that_was_asked_for(scene, error):
     assert max(stated(scene, chosen(scene, error))) <= 1.05 * error
 
 
-def test_the_chosen_knobs_are_not_much_finer_than_the_error_needs():
+def test_the_chosen_settings_are_not_much_finer_than_the_error_needs():
     for scene in SCENES.values():
-        if scene.elastic_energy >= 0.04 and scene.single_knobs:
+        if scene.elastic_energy >= 0.04 and scene.varies_single:
             # Where avalanches are rare, scatter is kept below the error by up to three.
             share = 0.65 if scene.elastic_energy >= 0.16 else 0.35
             assert max(stated(scene, chosen(scene, 0.03))) > share * 0.03
 
 
 @given(scene=scenes)
-def test_a_smaller_error_chooses_no_knob_coarser(scene):
+def test_a_smaller_error_chooses_no_setting_coarser(scene):
     coarse, fine = chosen(scene, 0.1), chosen(scene, 0.01)
     assert fine.angles_per_cutoff >= coarse.angles_per_cutoff
     assert fine.samples_per_cutoff >= coarse.samples_per_cutoff
@@ -82,10 +82,10 @@ def test_strong_disorder_needs_more_sites_and_weak_disorder_a_tighter_tolerance(
 
 def test_bias_stays_and_scatter_falls_with_the_root_of_the_size():
     for law in read_laws():
-        small, large = (law.error(START[law.knob], size) for size in (LAW_SIZE, 4 * LAW_SIZE))
+        small, large = (law.error(START[law.setting], size) for size in (LAW_SIZE, 4 * LAW_SIZE))
         assert small / 2 * (1 - 1e-12) <= large <= small
-    huge = law.error(START[law.knob], 1e30)
-    assert huge == pytest.approx(math.exp(law.bias[0] + law.bias[1] * math.log(START[law.knob])))
+    huge = law.error(START[law.setting], 1e30)
+    assert huge == pytest.approx(math.exp(law.bias[0] + law.bias[1] * math.log(START[law.setting])))
 
 
 def test_between_measured_amplitudes_the_error_lies_between_theirs():
@@ -133,10 +133,10 @@ def test_a_measured_scene_takes_its_own_laws(name):
     found = combined_error(scene.kind, scene.spectrum, 0.16, chosen_values, LAW_SIZE)
     for direction, error in zip((1, -1), found, strict=True):
         own = {
-            law.knob: law.parts(chosen_values[law.knob])
+            law.setting: law.parts(chosen_values[law.setting])
             for law in read_laws()
             if (law.shape, law.elastic_energy, law.direction) == (scene.shape, 0.16, direction)
-            and law.knob != "linear"
+            and law.setting != "linear"
         }
         bias = max(own["cubic"][0], own["sites"][0] + own["pixels"][0] + own["tolerance"][0])
         scatter = math.hypot(*(scatter for _, scatter in own.values()))
@@ -146,7 +146,7 @@ def test_a_measured_scene_takes_its_own_laws(name):
 def test_a_narrow_band_is_not_taken_for_a_broad_spectrum():
     # Its Hurst exponent is that of a broad spectrum whose laws left an error of 0.14 for 0.03.
     band, broad = (SelfAffineSpectrum(0.02, length, 0.7) for length in (0.05, 1.0))
-    sites = [chosen_knobs(0.03, "roughness", of, 0.1).angles_per_cutoff for of in (band, broad)]
+    sites = [chosen_settings(0.03, "roughness", of, 0.1).angles_per_cutoff for of in (band, broad)]
     assert sites[0] > 1.3 * sites[1]
 
 
@@ -168,7 +168,7 @@ def test_a_loose_tolerance_counts_at_the_amplitude_itself():
 def test_an_error_is_refused_at_amplitudes_where_none_was_measured(elastic_energy):
     flat = SelfAffineSpectrum(0.02, 0.02, 1.0)
     with pytest.raises(ValueError, match=r"errors were measured for e_el/w_int from 0.001 to 0.4"):
-        chosen_knobs(0.03, "roughness", flat, elastic_energy)
+        chosen_settings(0.03, "roughness", flat, elastic_energy)
     assert np.all(np.isnan(of_spectrum(flat, elastic_energy)))
 
 
@@ -177,12 +177,12 @@ def test_an_error_is_refused_of_spectra_narrower_than_all_that_were_measured():
     with pytest.raises(
         ValueError, match=r"correlation lengths of w_loc from 1.33 short cutoffs on"
     ):
-        chosen_knobs(0.03, "roughness", ring, 0.1)
+        chosen_settings(0.03, "roughness", ring, 0.1)
 
 
 def test_few_cutoffs_along_the_front_ask_for_finer_numerics():
     few, many = (
-        chosen_knobs(0.03, "roughness", SelfAffineSpectrum(size, size, 1.0), 0.04)
+        chosen_settings(0.03, "roughness", SelfAffineSpectrum(size, size, 1.0), 0.04)
         for size in (0.1, 0.02)
     )
     assert few.angles_per_cutoff > many.angles_per_cutoff
@@ -190,7 +190,7 @@ def test_few_cutoffs_along_the_front_ask_for_finer_numerics():
 
 def test_a_straight_front_asks_for_the_same_in_all_units():
     found = {
-        chosen_knobs(0.03, "roughness", SelfAffineSpectrum(size, 4 * size, 0.8), 0.005, LAW_SIZE)
+        chosen_settings(0.03, "roughness", SelfAffineSpectrum(size, 4 * size, 0.8), 0.005, LAW_SIZE)
         for size in (1e-3, 0.02, 1.0)
     }
     assert len(found) == 1

@@ -14,15 +14,15 @@ from crackfront.core.outcome import Status
 from crackfront.core.solver.relax import Newton, Reference
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.units import WORK_OF_ADHESION
-from crackfront.simulate.laws import Knobs
+from crackfront.simulate.laws import Settings
 from crackfront.simulate.numerics import Numerics
 from crackfront.simulate.run import run_simulation
 from crackfront.simulate.simulation import Resolution, Simulation, simulation_adhesion, stems
 from crackfront.simulate.sizing import resolution
 from crackfront.simulate.sphere.cycle import FullCycle
 
-KNOBS = Knobs(None, 2, 4, "cubic", 4, 1e-6)
-NUMERICS = Numerics(KNOBS, 10, 20, max_sweeps=100_000, solver="reference")
+SETTINGS = Settings(None, 2, 4, "cubic", 4, 1e-6)
+NUMERICS = Numerics(SETTINGS, 10, 20, max_sweeps=100_000, solver="reference")
 SIMULATION = Simulation(
     spectrum_name="rough",
     kind="roughness",
@@ -42,7 +42,7 @@ CYCLE = FullCycle(1.0, 0.1)
 
 def test_the_tile_resolves_the_cutoff_and_holds_the_roll_off():
     spectrum = SelfAffineSpectrum(short_cutoff=0.1, roll_off=0.7, hurst=0.5)
-    sizes = resolution(spectrum, NUMERICS, KNOBS, CYCLE)
+    sizes = resolution(spectrum, NUMERICS, SETTINGS, CYCLE)
     assert sizes.tile_side == pytest.approx(7.0, rel=1e-15)
     assert sizes.tile_side / sizes.n_point <= 0.1 / 4
     assert sizes.spacing == 0.1 / 4
@@ -50,12 +50,12 @@ def test_the_tile_resolves_the_cutoff_and_holds_the_roll_off():
 
 def test_a_flat_spectrum_gets_the_smallest_tile_in_cutoffs():
     flat = SelfAffineSpectrum(short_cutoff=0.1, roll_off=0.1, hurst=0.5)
-    assert resolution(flat, NUMERICS, KNOBS, CYCLE).tile_side == 2.0
+    assert resolution(flat, NUMERICS, SETTINGS, CYCLE).tile_side == 2.0
 
 
 def test_the_front_has_enough_sites_for_the_largest_circle_and_fast_transforms():
     spectrum = SelfAffineSpectrum(short_cutoff=0.1, roll_off=0.1, hurst=0.5)
-    n_angle = resolution(spectrum, NUMERICS, KNOBS, CYCLE).n_angle
+    n_angle = resolution(spectrum, NUMERICS, SETTINGS, CYCLE).n_angle
     least = 2 * np.pi * jkr.equilibrium_radius(1.0) / 0.1 * 2
     assert n_angle % 2 == 0
     assert least <= n_angle < 1.2 * least
@@ -66,7 +66,9 @@ def test_the_front_has_enough_sites_for_the_largest_circle_and_fast_transforms()
 
 
 def test_given_angles_are_taken_as_they_are():
-    assert resolution(SIMULATION.spectrum, NUMERICS, replace(KNOBS, angles=90), CYCLE).n_angle == 90
+    assert (
+        resolution(SIMULATION.spectrum, NUMERICS, replace(SETTINGS, angles=90), CYCLE).n_angle == 90
+    )
 
 
 @pytest.mark.parametrize(

@@ -14,7 +14,7 @@ from crackfront.core.units import Scales
 from crackfront.data.files import write_dataset
 from crackfront.data.provenance import provenance
 from crackfront.data.section import ConfigurationError, movable_text, yaml_mapping
-from crackfront.simulate.laws import Knobs
+from crackfront.simulate.laws import Settings
 from crackfront.simulate.sphere.steady import SteadySchedule
 from crackfront.sweep.configuration import load_configuration
 from crackfront.sweep.rows import failed_row
@@ -93,7 +93,7 @@ def test_a_roll_off_that_is_not_given_makes_a_flat_spectrum(tmp_path):
 
 
 def test_numbers_with_an_exponent_but_no_point_are_numbers(tmp_path):
-    assert load_configuration(written(tmp_path, GOOD)).numerics.knobs.tolerance == 1e-6
+    assert load_configuration(written(tmp_path, GOOD)).numerics.settings.tolerance == 1e-6
 
 
 def test_an_rms_is_converted_to_the_energy_of_full_conformity(tmp_path):
@@ -130,18 +130,18 @@ def asking(error):
     return text.replace("  tolerance: 1e-6\n", "")
 
 
-def knobs_of(sweep, item, energy):
-    return sweep.numerics.knobs_of(sweep.kind, item.spectrum, energy)
+def settings_of(sweep, item, energy):
+    return sweep.numerics.settings_of(sweep.kind, item.spectrum, energy)
 
 
 def test_an_error_chooses_the_numerics_of_every_spectrum_and_amplitude(tmp_path):
     sweep = load_configuration(written(tmp_path, asking(0.03)))
     given = sweep.numerics
-    assert (given.knobs, given.tile_cutoffs, given.max_sweeps) == (0.03, 20, 100000)
+    assert (given.settings, given.tile_cutoffs, given.max_sweeps) == (0.03, 20, 100000)
     flat = sweep.named("flat")
-    weak, strong = (knobs_of(sweep, flat, energy) for energy in sweep.elastic_energies)
+    weak, strong = (settings_of(sweep, flat, energy) for energy in sweep.elastic_energies)
     assert strong.angles_per_cutoff > weak.angles_per_cutoff
-    finer = knobs_of(load_configuration(written(tmp_path, asking(0.01))), flat, 0.1)
+    finer = settings_of(load_configuration(written(tmp_path, asking(0.01))), flat, 0.1)
     assert finer.angles_per_cutoff > strong.angles_per_cutoff
     simulation = sweep.simulation(flat, 0.1, 0)
     assert simulation.solver.tolerance == strong.tolerance
@@ -151,13 +151,13 @@ def test_an_error_chooses_the_numerics_of_every_spectrum_and_amplitude(tmp_path)
 def test_an_error_below_that_of_the_finest_numerics_is_refused(tmp_path):
     sentence = refusal(tmp_path, asking(1e-5))
     assert "numerics: error is 1e-05, but the finest numerics leave" in sentence
-    assert "for flat at e_el 0.02; allow that, or give the knobs" in sentence
+    assert "for flat at e_el 0.02; allow that, or give the settings" in sentence
 
 
 def test_given_numerics_serve_every_amplitude(tmp_path):
     sweep = load_configuration(written(tmp_path, GOOD))
-    assert isinstance(sweep.numerics.knobs, Knobs)
-    assert knobs_of(sweep, sweep.named("rough"), 0.1) is sweep.numerics.knobs
+    assert isinstance(sweep.numerics.settings, Settings)
+    assert settings_of(sweep, sweep.named("rough"), 0.1) is sweep.numerics.settings
 
 
 def test_an_error_beside_what_it_decides_is_refused(tmp_path):
@@ -167,7 +167,7 @@ def test_an_error_beside_what_it_decides_is_refused(tmp_path):
     )
 
 
-def test_knobs_that_are_missing_without_an_error_are_named(tmp_path):
+def test_settings_that_are_missing_without_an_error_are_named(tmp_path):
     text = asking(0.03).replace("  error: 0.03\n", "  angles: 64\n  interpolation: cubic\n")
     assert (
         "numerics: samples_per_cutoff, pixels_per_cutoff, tolerance missing; add what is missing "
@@ -666,7 +666,7 @@ def test_an_anchor_may_be_used_as_often_as_it_is_useful(tmp_path):
         "realisations: 2", "realisations: 3"
     )
     text = text.replace("samples_per_cutoff: 4", "samples_per_cutoff: *two")
-    assert load_configuration(written(tmp_path, text)).numerics.knobs.samples_per_cutoff == 2
+    assert load_configuration(written(tmp_path, text)).numerics.settings.samples_per_cutoff == 2
 
 
 def test_many_realisations_are_no_reason_to_refuse(tmp_path):

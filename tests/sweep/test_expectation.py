@@ -10,7 +10,7 @@ import pytest
 from crackfront.analysis.steady import steady_adhesion
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.units import Scales
-from crackfront.simulate.laws import Knobs
+from crackfront.simulate.laws import Settings
 from crackfront.simulate.numerics import Numerics
 from crackfront.simulate.run import run_simulation
 from crackfront.simulate.sizing import simulation_of
@@ -20,7 +20,7 @@ from crackfront.sweep.expectation import expectation
 from tests.commands import run
 from tests.yaml_texts import from_yaml, to_yaml
 
-NUMERICS = Numerics(Knobs(None, 4, 4, "cubic", 4, 1e-5), tile_roll_offs=4, tile_cutoffs=40)
+NUMERICS = Numerics(Settings(None, 4, 4, "cubic", 4, 1e-5), tile_roll_offs=4, tile_cutoffs=40)
 SHALLOW = (FullCycle(0.1, 0.02), SteadySchedule(0.0, 0.1, 0.5, 0.05))
 
 

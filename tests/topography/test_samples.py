@@ -95,7 +95,7 @@ def test_the_page_shows_the_table_of_the_example_and_its_scans_are_there():
         ("B,rough", "A,rough", "line 4: the sample 'A' is in line 3 as well"),
         ("B,rough", ",rough", "line 4: there is no name; write it in the column 'sample'"),
         ("0.8,20nm,,", "1.8,20nm,,", "line 4: hurst is 1.8; it must lie between"),
-        ("hurst", "hurts", "line 3: there is no column 'hurts'; was hurst meant"),
+        ("hurst", "hurts", "line 3: there is no column 'hurts'; did you mean hurst"),
         ("group", "scans", "line 3: the surface is given by scans and rms; name"),
         ("B,rough,40,2,0.8,20nm,,", "B,,,,,,,", "line 4: the surface is given by nothing"),
         ("20nm,,", "20nm,,,,5", "line 4: the row has 10 cells and the heads are 8"),

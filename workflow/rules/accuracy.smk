@@ -16,7 +16,7 @@ COVERED = [scene for scene in MEASURED if scene.endswith(("-0.01", "-0.16", "-0.
 
 
 wildcard_constraints:
-    study="knobs|asked|unseen|averages|coverage",
+    study="settings|requested|unseen|averages|coverage",
     scene="[a-z0-9.-]+",
 
 
@@ -47,7 +47,7 @@ rule accuracy_study:
         # At weak disorder few surfaces have an avalanche, on which the laws depend.
         surfaces=lambda wildcards: (
             24
-            if wildcards.study == "knobs"
+            if wildcards.study == "settings"
             and wildcards.scene.endswith(("-0.001", "-0.0025", "-0.01"))
             else 8
         ),
@@ -59,9 +59,9 @@ rule accuracy_study:
 
 rule accuracy_report:
     input:
-        expand("{results}/knobs-{scene}.nc", results=ACCURACY, scene=MEASURED),
+        expand("{results}/settings-{scene}.nc", results=ACCURACY, scene=MEASURED),
         expand(
-            "{results}/asked-{scene}.nc",
+            "{results}/requested-{scene}.nc",
             results=ACCURACY,
             scene=[*MEASURED, "small-0.04", "large-0.04"],
         ),

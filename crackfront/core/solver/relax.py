@@ -112,7 +112,8 @@ def relax(
         Front to start from; forces against the motion are left as they are.
         (Units: reduced lateral length)
     load : float
-        Penetration of a sphere. (Units: reduced vertical length)
+        Penetration of a sphere, or place of the springs of a straight front.
+        (Units: reduced vertical length, or reduced lateral length)
     direction : {1, -1}
         +1 lets the contact grow, -1 lets it shrink.
     field : Field
@@ -156,8 +157,9 @@ def relax(
     )
     code, sweeps, updates, residual = solver.kernel(moved, problem, int(solver.max_sweeps))
     if code == forces.TURNED:
+        noun = field.geometry.state_type.load_noun
         raise DefectError(
-            f"the {solver.name} solver moved a site past its equilibrium at penetration {load}; "
+            f"the {solver.name} solver moved a site past its equilibrium at {noun} {load}; "
             "this is a defect, please report it and use the solver 'reference' meanwhile"
         )
     status = _CODES[code]
@@ -174,7 +176,8 @@ def front_force(front: Array, load: float, field: Field) -> Array:
     front : (n_site,) array
         Front. (Units: reduced lateral length)
     load : float
-        Penetration of a sphere. (Units: reduced vertical length)
+        Penetration of a sphere, or place of the springs of a straight front.
+        (Units: reduced vertical length, or reduced lateral length)
     field : Field
         Work of adhesion along the rays.
 
@@ -196,11 +199,12 @@ def _refuse_unusable(
     if front.shape != (n_site,):
         raise ValueError(f"front has shape {front.shape}; the field has {n_site} rays")
     if not (np.all(np.isfinite(front)) and math.isfinite(load)):
-        raise ValueError(f"front or penetration ({load}) is not finite; check both")
+        noun = field.geometry.state_type.load_noun
+        raise ValueError(f"the front or the {noun} ({load}) is not finite; check both")
     inner, outer = first_place(field), last_place(field)
     if np.min(front) < inner or np.max(front) > outer:
         raise ValueError(
-            f"front spans radii {np.min(front):.6g} to {np.max(front):.6g}; the field is sampled "
+            f"the front spans {np.min(front):.6g} to {np.max(front):.6g}; the field is sampled "
             f"from {inner:.6g} to {outer:.6g}, so start inside it"
         )
     round_off = float(np.finfo(float).eps) * front.size

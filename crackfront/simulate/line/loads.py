@@ -56,7 +56,7 @@ class LineLoad:
     max_penetration: ClassVar[float] = 0.0
 
     def usual_size(self, spectrum: Spectrum) -> float:
-        """Size of a front for which knobs are chosen, whatever its spectrum."""
+        """Size of a front for which settings are chosen, whatever its spectrum."""
         return LAW_SIZE
 
     def for_surface(
@@ -74,8 +74,8 @@ class LineLoad:
         larkin = larkin_length(kind, spectrum, 2 * math.sqrt(elastic_energy))
         length = correlation_length(kind, spectrum)
         spring *= length if self.spring_unit == "correlation_length" else larkin
-        knobs = numerics.knobs_of(kind, spectrum, elastic_energy, self.usual_size(spectrum))
-        pixel = spectrum.short_cutoff / knobs.pixels_per_cutoff
+        settings = numerics.settings_of(kind, spectrum, elastic_energy, self.usual_size(spectrum))
+        pixel = spectrum.short_cutoff / settings.pixels_per_cutoff
         least = numerics.tile_side(spectrum)
         rms = front_rms(force_correlation_length(kind, spectrum), spring / larkin)
         return LineSchedule(

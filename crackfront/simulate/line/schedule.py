@@ -80,7 +80,7 @@ class LineSchedule(Schedule):
         return self.length
 
     def usual_size(self, spectrum: Spectrum) -> float:
-        """Size of a front for which knobs are chosen, whatever its spectrum."""
+        """Size of a front for which settings are chosen, whatever its spectrum."""
         return LAW_SIZE
 
     def site_count(self, requested: int | None, least: float, n_point: int) -> int:

@@ -16,7 +16,7 @@ from crackfront.core.cycle.schedule import protocol
 from crackfront.core.field.rays import front_adhesion
 from crackfront.core.geometry.line import initial_front, line_field
 from crackfront.core.solver.forces import line_force
-from crackfront.core.solver.relax import SOLVERS, Newton, Reference, front_force
+from crackfront.core.solver.relax import SOLVERS, Newton, Reference, front_force, relax
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.plots.library import plot_fronts, plot_loop
 
@@ -80,6 +80,12 @@ def first_stops(wave, spring, loads, start):
         here = nodes[k - 1] + part
         places.append(here)
     return np.array(places)
+
+
+def test_messages_name_the_load_of_a_line():
+    field = line_field(tile(np.ones((8, 16))), 5.0, (0.0, 20.0))
+    with pytest.raises(ValueError, match=r"the front or the load \(nan\) is not finite"):
+        relax(np.full(16, 4.0), np.nan, 1, field)
 
 
 @every_solver

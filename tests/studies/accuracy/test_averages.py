@@ -37,11 +37,11 @@ def test_the_stated_errors_cover_nine_in_ten_over_shapes_and_amplitudes():
 @pytest.mark.slow
 def test_schedules_change_the_mean_within_its_error():
     samples = sampling_errors(SCENES["flat-0.04"], range(3))
-    schedules = [item for item in samples if item.knob != "tile"]
+    schedules = [item for item in samples if item.setting != "tile"]
     known = [item for item in schedules if np.all(np.isfinite(item.hysteresis))]
     assert len(known) >= len(schedules) - 1
     for item in known:
         difference = np.mean(item.hysteresis - samples[0].hysteresis)
         assert abs(difference) < 2 * np.mean(item.standard_error)
-    seconds = [item.seconds.mean() for item in known if item.knob == "step"]
+    seconds = [item.seconds.mean() for item in known if item.setting == "step"]
     assert seconds[0] > 2 * seconds[-1]

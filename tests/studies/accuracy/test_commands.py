@@ -9,7 +9,7 @@ from click.testing import CliRunner
 from studies.__main__ import main
 from studies.accuracy.files import STUDIES
 from studies.accuracy.scenes import SCENES
-from studies.accuracy.study import scene_errors, setting_seconds
+from studies.accuracy.study import scene_errors, trial_seconds
 from studies.pages import kept_parts
 
 
@@ -35,13 +35,13 @@ def test_an_empty_folder_has_nothing_to_report(tmp_path):
 @pytest.mark.parametrize(
     ("study", "tables"),
     [
-        ("asked", {"Time to an error of the hysteresis", "Errors that were asked for"}),
+        ("requested", {"Time to an error of the hysteresis", "Errors that were requested"}),
         ("unseen", {"Errors on unseen surfaces"}),
         ("coverage", {"Stated and true errors"}),
     ],
 )
 def test_one_measured_scene_is_reported_and_kept(study, tables, tmp_path, monkeypatch):
-    assert "asked 0.03: " in measure(tmp_path, study)
+    assert "requested 0.03: " in measure(tmp_path, study)
     monkeypatch.chdir(tmp_path)
     reported = run("report", "--output", tmp_path, "--keep")
     assert reported.exit_code == 0, reported.output
@@ -65,11 +65,11 @@ def test_the_cost_of_a_study_is_told_before_it_is_measured(study, tmp_path, monk
 
 def test_the_cost_of_a_study_is_that_of_its_runs():
     scene = SCENES["small-0.04"]
-    found = scene_errors(scene, scene.asked_settings(), range(2))
-    reference = setting_seconds(scene, [])
+    found = scene_errors(scene, scene.requested_trials(), range(2))
+    reference = trial_seconds(scene, [])
     # The reference says how fast this machine is.
     expected = np.mean(found.reference_seconds) / reference
-    expected *= STUDIES["asked"].seconds(scene) - reference
+    expected *= STUDIES["requested"].seconds(scene) - reference
     spent = sum(np.mean(one.seconds) for one in found.errors)
     assert spent / 4 < expected < 4 * spent
 

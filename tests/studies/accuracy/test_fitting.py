@@ -29,21 +29,23 @@ def rare(rng, shape):
 
 
 def synthetic_study(bias, scatter, noise=gaussian, n_realisation=400, seed=5):
-    """A study whose errors of k have a given bias and scatter, by knob and value."""
+    """A study whose errors of k have a given bias and scatter, by setting and value."""
     rng = np.random.default_rng(seed)
     one, signs = np.ones(n_realisation), np.array([-1, 1])
     errors, of_few_sites = [], 0.0
-    for knob, value, numerics in MODERATE.single_settings:
-        if knob == "finer":
+    for setting, value, numerics in MODERATE.single_trials:
+        if setting == "finer":
             continue
-        of_k = scatter(knob, value) * noise(rng, (n_realisation, 2)) + signs * bias(knob, value)
-        if knob != "sites":
+        of_k = scatter(setting, value) * noise(rng, (n_realisation, 2)) + signs * bias(
+            setting, value
+        )
+        if setting != "sites":
             of_k += of_few_sites
         elif value == 2.2:
             of_few_sites = of_k
         adhesion = MODERATE.elastic_energy * of_k
-        knobs = {name: of for name, of in asdict(numerics).items() if name != "angles"}
-        errors.append(Errors(knob, value, one, adhesion, one, one, one, **knobs))
+        settings = {name: of for name, of in asdict(numerics).items() if name != "angles"}
+        errors.append(Errors(setting, value, one, adhesion, one, one, one, **settings))
     reference = np.tile([0.9, 1.0], (n_realisation, 1))
     return SceneErrors(MODERATE, tuple(errors), reference, one)
 
@@ -51,22 +53,22 @@ def synthetic_study(bias, scatter, noise=gaussian, n_realisation=400, seed=5):
 def test_rare_avalanches_count_with_their_mean_square():
     def law(seed):
         study = synthetic_study(
-            lambda *_: 0.0, lambda knob, value: value**-3.0, rare, n_realisation=8, seed=seed
+            lambda *_: 0.0, lambda setting, value: value**-3.0, rare, n_realisation=8, seed=seed
         )
-        return next(law for law in fit_laws([study]) if law.knob == "cubic")
+        return next(law for law in fit_laws([study]) if law.setting == "cubic")
 
     squares = [(law(seed).error(3, LAW_SIZE) * 3**3) ** 2 for seed in range(60)]
     assert 0.8 < np.mean(squares) < 1.25
 
 
 def test_the_fit_finds_the_law_behind_the_errors():
-    def bias(knob, value):
-        return math.exp(1 - 2 * value) if knob == "sites" else 0.0
+    def bias(setting, value):
+        return math.exp(1 - 2 * value) if setting == "sites" else 0.0
 
-    def scatter(knob, value):
-        return 0.3 * value**-3 if knob == "cubic" else 1e-3
+    def scatter(setting, value):
+        return 0.3 * value**-3 if setting == "cubic" else 1e-3
 
-    laws = {(law.knob, law.direction): law for law in fit_laws([synthetic_study(bias, scatter)])}
+    laws = {(law.setting, law.direction): law for law in fit_laws([synthetic_study(bias, scatter)])}
     assert laws["sites", -1].bias == pytest.approx((1, -2), abs=0.1)
     assert laws["cubic", 1].scatter == pytest.approx((math.log(0.3), -3), abs=0.2)
     assert laws["cubic", 1].error(4, LAW_SIZE) == pytest.approx(0.3 / 64, rel=0.1)
@@ -77,16 +79,16 @@ def test_laws_are_written_in_full(tmp_path):
     laws = list(fit_laws([synthetic_study(lambda *_: 0.01, lambda *_: 0.01)]))
     lines = laws_text(laws).splitlines()
     assert len(lines) == 1 + len(laws) == 11
-    assert lines[0].startswith("shape,elastic_energy,knob,direction,bias_0")
+    assert lines[0].startswith("shape,elastic_energy,setting,direction,bias_0")
     assert lines[1].startswith("chemical,0.04,sites,1,")
 
 
-def largest_error(name, n_realisation, asked=0.03):
-    """The larger rms error of k of both branches of held-out surfaces, relative to that asked."""
+def largest_error(name, n_realisation, requested=0.03):
+    """The larger rms error of k of both branches of held-out surfaces, relative to the request."""
     scene = SCENES[name]
     numbers = range(HELD_OUT, HELD_OUT + n_realisation)
-    (found,) = scene_errors(scene, scene.asked_settings([asked]), numbers).errors
-    return np.max(np.sqrt(np.mean(found.adhesion**2, axis=0))) / scene.elastic_energy / asked
+    (found,) = scene_errors(scene, scene.requested_trials([requested]), numbers).errors
+    return np.max(np.sqrt(np.mean(found.adhesion**2, axis=0))) / scene.elastic_energy / requested
 
 
 def test_laws_hold_for_a_band_between_the_shapes_that_they_know():
@@ -104,14 +106,14 @@ def test_laws_hold_within_half_for_spectra_and_surfaces_they_never_saw(name):
 @pytest.mark.timeout(900)
 def test_the_laws_of_the_package_are_those_that_the_study_gives():
     stored = {
-        (law.knob, law.direction): law
+        (law.setting, law.direction): law
         for law in read_laws()
         if (law.shape, law.elastic_energy) == ("h08", 0.0025)
     }
     scene = SCENES["h08-0.0025"]
-    study = scene_errors(scene, scene.single_settings, range(24))
+    study = scene_errors(scene, scene.single_trials, range(24))
     for law in fit_laws([study]):
-        before = stored[law.knob, law.direction]
+        before = stored[law.setting, law.direction]
         assert law.bias == pytest.approx(before.bias, abs=0.02)
         assert law.scatter == pytest.approx(before.scatter, abs=0.02)
         assert law.avalanche == pytest.approx(before.avalanche, abs=0.001)

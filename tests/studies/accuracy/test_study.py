@@ -12,11 +12,11 @@ from crackfront.core.solver.relax import Newton
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.data.files import write_dataset
 from crackfront.data.provenance import provenance
-from crackfront.simulate.laws import chosen_knobs
+from crackfront.simulate.laws import chosen_settings
 from crackfront.simulate.simulation import simulation_field
 from crackfront.simulate.sphere.cycle import FullCycle
 from studies.accuracy.files import errors_dataset, read_errors
-from studies.accuracy.scenes import SCENES, with_knob
+from studies.accuracy.scenes import SCENES, with_setting
 from studies.accuracy.study import (
     Errors,
     front_difference,
@@ -50,18 +50,18 @@ def converged():
     return [measured_branches(WEAK, FINEST, number) for number in range(3)]
 
 
-def observed_order(converged, knob, coarse, fine):
+def observed_order(converged, setting, coarse, fine):
     """Order at which the radius converges on the surfaces of the weak scene."""
     errors = []
     for value in (coarse, fine):
-        found = [measured_branches(WEAK, with_knob(FINEST, knob, value), n) for n in range(3)]
+        found = [measured_branches(WEAK, with_setting(FINEST, setting, value), n) for n in range(3)]
         pairs = zip(found, converged, strict=True)
         errors.append(rms(np.array([front_difference(a.radius, b.radius) for a, b in pairs])))
     return -math.log(errors[1] / errors[0]) / math.log(fine / coarse)
 
 
 @pytest.mark.parametrize(
-    ("knob", "coarse", "fine", "order"),
+    ("setting", "coarse", "fine", "order"),
     [
         ("cubic", 6, 16, 4),
         ("linear", 16, 64, 2),
@@ -69,8 +69,8 @@ def observed_order(converged, knob, coarse, fine):
         ("tolerance", 1e-2, 1e-6, -1),
     ],
 )
-def test_the_front_converges_with_the_order_of_the_knob(converged, knob, coarse, fine, order):
-    assert abs(observed_order(converged, knob, coarse, fine) - order) < 0.3
+def test_the_front_converges_with_the_order_of_the_setting(converged, setting, coarse, fine, order):
+    assert abs(observed_order(converged, setting, coarse, fine) - order) < 0.3
 
 
 def test_more_sites_converge_faster_than_any_power(converged):
@@ -79,7 +79,7 @@ def test_more_sites_converge_faster_than_any_power(converged):
 
 
 def test_a_branch_has_the_states_of_a_full_cycle_at_the_same_loads():
-    numerics = chosen_knobs(0.03, "roughness", SMALL.spectrum, 0.04)
+    numerics = chosen_settings(0.03, "roughness", SMALL.spectrum, 0.04)
     numerics = replace(numerics, tolerance=1e-9)
     branches = measured_branches(SMALL, numerics, 1)
     simulation = SMALL.simulation(numerics, 1)
@@ -96,21 +96,21 @@ def test_a_branch_has_the_states_of_a_full_cycle_at_the_same_loads():
 
 @pytest.fixture(scope="module")
 def small_study():
-    finer = [setting for setting in SMALL.single_settings if setting[0] == "finer"]
-    return scene_errors(SMALL, finer + SMALL.asked_settings(), range(3))
+    finer = [setting for setting in SMALL.single_trials if setting[0] == "finer"]
+    return scene_errors(SMALL, finer + SMALL.requested_trials(), range(3))
 
 
 def test_errors_fall_with_the_error_that_is_asked_for(small_study):
     assert SMALL.elastic_energy == 0.04
-    asked = [errors for errors in small_study.errors if errors.knob == "asked"]
-    error = {errors.value: rms(errors.adhesion) for errors in asked}
+    requested = [errors for errors in small_study.errors if errors.setting == "requested"]
+    error = {errors.value: rms(errors.adhesion) for errors in requested}
     assert error[0.1] > 3 * error[0.003]
-    for errors in asked:
+    for errors in requested:
         assert np.all(errors.front_rms <= errors.front_max)
     finer = small_study.errors[0]
-    assert finer.knob == "finer"
+    assert finer.setting == "finer"
     # One surface may have an avalanche that the reference just misses.
-    assert np.median(np.abs(finer.adhesion)) < 0.01 * np.max(np.abs(asked[0].adhesion))
+    assert np.median(np.abs(finer.adhesion)) < 0.01 * np.max(np.abs(requested[0].adhesion))
 
 
 def test_a_study_is_read_as_it_was_written(small_study, tmp_path):
