@@ -170,6 +170,8 @@ reproduce: env  ## The numbers and figures of the pages, but for timings and rep
 	$(IN_ENV) .venv/bin/python -m studies paper experiment --keep
 	$(IN_ENV) .venv/bin/python -m studies accuracy report --keep
 	$(IN_ENV) .venv/bin/python -m studies accuracy energies --scans 12 --keep
+	$(IN_ENV) .venv/bin/python -m studies accuracy movement --keep
+	$(IN_ENV) .venv/bin/python -m studies accuracy loops --loops 20 --keep
 	$(IN_ENV) .venv/bin/python -m studies accuracy predictions --keep
 	$(IN_ENV) .venv/bin/python -m studies accuracy energy-balance --keep
 	$(IN_ENV) .venv/bin/python -m studies boundary-elements numbers --keep
@@ -180,6 +182,11 @@ reproduce: env  ## The numbers and figures of the pages, but for timings and rep
 	$(IN_ENV) .venv/bin/crackfront predict examples/scans/nanodiamond-*.al3d --modulus 0.7MPa --poisson 0.5 \
 	  --radius 1.25mm --work-of-adhesion 63mJ/m2 --panel c --figure docs/figures/prediction-force.png
 	$(IN_ENV) .venv/bin/python -m studies pages
+	$(MAKE) --no-print-directory docs
+	cd docs/examples/images && cp sphx_glr_a_first_loop_001.png ../../figures/tutorial-loop.png \
+	  && cp sphx_glr_a_first_loop_002.png ../../figures/tutorial-fronts.png \
+	  && cp sphx_glr_c_instabilities_001.png ../../figures/tutorial-jumps.png \
+	  && cp sphx_glr_d_si_units_001.png ../../figures/tutorial-si.png
 
 law: env  ## The law of k, from its straight fronts, into results/law (an hour of one core)
 	set -e; for name in $(FRONTS_OF_LAW); do $(MAKE) --no-print-directory SWEEP=config/$$name.yaml; done

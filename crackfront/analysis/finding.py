@@ -54,9 +54,9 @@ def finding(departure: str) -> str:
         "disorder s = w_rms/w_int and rises with the size g, which is the length on which the "
         "contact holds its edge, divided by the Larkin length of the roughness. In the infinite "
         f"contact k is {with_interval(weak)} at vanishing disorder. At s = {STRONG:g}, that of the "
-        f"paper's experiment, it is {strong}. A finite contact has less. So k is {PAPER_FACTOR:g}, "
-        f"as in the paper, only along a line from g = {least_size():.1f} at vanishing disorder to "
-        f"s = {s:.2f} ({low:.2f} to {high:.2f}) in the infinite contact. "
+        f"paper's experiment, it is {strong}. In a finite contact k is smaller. So k is "
+        f"{PAPER_FACTOR:g}, as in the paper, only along a line from g = {least_size():.1f} at "
+        f"vanishing disorder to s = {s:.2f} ({low:.2f} to {high:.2f}) in the infinite contact. "
         f"The law was measured on straight fronts held by springs{departure}."
     )
 
@@ -66,8 +66,8 @@ def departure_of_spheres(
 ) -> str:
     """End of the finding where spheres, named in words, were held against the law."""
     return (
-        f". No sphere entered it; {spheres} have its k within {rms:.1%} rms where g is "
-        f"above 1 ({n_large} of {n_cell} spectra and amplitudes)"
+        f". It was not fitted to spheres; k of {spheres} agrees with it within {rms:.1%} rms "
+        f"where g is above 1 ({n_large} of {n_cell} spectra and amplitudes)"
     )
 
 

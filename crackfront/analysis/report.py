@@ -232,10 +232,10 @@ def _law_agreement(fit: SweepFit) -> str:
         return "; in this sweep no contact is large enough to tell, as g is nowhere above 1"
     counts = int(fit.n_large), fit.cells.size.size
     if not fit.table.on_springs:
-        return departure_of_spheres(float(fit.law_departure), *counts, "those of this sweep")
+        return departure_of_spheres(float(fit.law_departure), *counts, "the spheres of this sweep")
     return (
-        f", and those of this sweep have its k within {fit.law_departure:.1%} rms where g is above "
-        f"1 ({counts[0]} of {counts[1]} spectra and amplitudes)"
+        f", and k of those of this sweep agrees with it within {fit.law_departure:.1%} rms where "
+        f"g is above 1 ({counts[0]} of {counts[1]} spectra and amplitudes)"
     )
 
 

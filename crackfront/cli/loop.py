@@ -41,9 +41,9 @@ def _columns(command: Any) -> Any:
 
 @click.command(
     epilog=examples(
-        "crackfront loop rig.csv --radius 1.25mm --modulus 0.7MPa",
-        "crackfront loop rig.csv --radius 1.25mm --modulus 0.7MPa --scans surface.al3d \\",
-        "    --work-of-adhesion 63mJ/m2",
+        "crackfront loop examples/rig.csv --radius 100um --modulus 0.7MPa",
+        "crackfront loop examples/rig.csv --radius 100um --modulus 0.7MPa \\",
+        "    --scans examples/scans/nanodiamond-overview.al3d --work-of-adhesion 63mJ/m2",
         "crackfront loop cycle.nc",
     )
 )

@@ -57,12 +57,12 @@ def coefficients_part(law: Law) -> str:
     ]
     exponent, error = law.exponent
     text = (
-        f"Measured are s from {law.disorder[0]:.2g} to {law.disorder[1]:.2g} and g up to "
-        f"{law.size[1]:.3g}; the fit begins at g = {law.size[0]:g}. Where g is above 1 the "
-        f"measured k depart from the law by {law.rms:.1%} rms, {law.worst:.1%} at worst. What "
-        "scatter and numerics do not explain of that is stated as the model's error: "
-        f"{law.model_factor:.1%} of k, and {law.model_length:.1%} of g. Left free, the exponent "
-        f"1 - zeta is {exponent:.2f} ± {error:.2f} (one standard error)."
+        f"The measurements have s from {law.disorder[0]:.2g} to {law.disorder[1]:.2g} and g up to "
+        f"{law.size[1]:.3g}; the fit begins at g = {law.size[0]:g}. Where g is above 1, the "
+        f"measured k differ from the law by {law.rms:.1%} rms and by {law.worst:.1%} at most. The "
+        "part of this that scatter and numerics do not explain is the error of the model: "
+        f"{law.model_factor:.1%} of k, and {law.model_length:.1%} of g. If the exponent 1 - zeta "
+        f"is fitted too, it is {exponent:.2f} ± {error:.2f} (one standard error)."
     )
     table = markdown_table("coefficient | value | standard error", rows)
     return f"{table}\n\n{_wrapped(text)}"
@@ -96,8 +96,8 @@ def limit_part() -> str:
     names = (f"k, {name} (beta {breadth:.2f})" for name, breadth in breadths.items())
     header = f"s | {' | '.join(names)} | share of negative w_loc"
     return (
-        f"{markdown_table(header, rows)}\n\nk of the infinite contact, with 95% intervals. It is "
-        f"{PAPER_FACTOR:g} at s = {s:.2f} ({low:.2f} to {high:.2f}) alone, of a typical spectrum."
+        f"{markdown_table(header, rows)}\n\nk of the infinite contact, with 95% intervals. For a "
+        f"typical spectrum it is {PAPER_FACTOR:g} only at s = {s:.2f} ({low:.2f} to {high:.2f})."
     )
 
 

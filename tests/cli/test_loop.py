@@ -21,6 +21,9 @@ def table(tmp_path):
     return path
 
 
+ROOT = Path(__file__).parents[2]
+
+
 def run(*arguments):
     return CliRunner().invoke(main, ["loop", *map(str, arguments)])
 
@@ -35,6 +38,15 @@ def test_a_table_becomes_works_of_adhesion_and_a_figure(table, tmp_path):
     assert (tmp_path / "loop.png").stat().st_size > 1e4
     done = run(table, *sphere)
     assert done.stdout.startswith("hysteresis")
+
+
+def test_the_example_of_the_page_has_the_simulated_hysteresis():
+    options = "--radius 100um --modulus 0.7MPa"
+    assert f"crackfront loop examples/rig.csv {options}" in (ROOT / "docs/loops.md").read_text()
+    done = run(ROOT / "examples/rig.csv", *options.split(), "--json")
+    found = json.loads(done.stdout)["hysteresis"]
+    assert found["low"] < 11.29e-3 < found["high"]
+    assert found["high"] - found["low"] < 4e-3
 
 
 @pytest.mark.parametrize(

@@ -1,5 +1,7 @@
 """Spectral densities as other programs export them: one surface in the convention of each."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -148,3 +150,11 @@ def test_lines_of_heights_stay_scans(tmp_path, rng):
     places = np.arange(1, 200)
     steep.write_text("x z\n" + columns(places, 1e2 * np.exp(-places / 9), " "))
     assert read(steep, unit="nm").is_line
+
+
+def test_the_example_of_the_page_has_the_rms_height_of_its_scan():
+    found = read_psd_file(Path(__file__).parents[3] / "examples/density.csv", PsdOptions())
+    assert not found.is_profile
+    assert found.assumptions == ()
+    q, density = found.wavevector, found.value
+    assert np.sqrt(np.trapezoid(q * density, q) / (2 * np.pi)) == pytest.approx(105e-9, rel=0.1)
