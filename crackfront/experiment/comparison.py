@@ -56,7 +56,8 @@ def comparison_lines(found: MeasuredLoop, predicted: Prediction) -> Iterator[str
     if ratio.value > _FAR:
         yield (
             f"The measured hysteresis is {ratio.value:.2g} times the predicted one; "
-            "docs/questions.md says which measurements distinguish the causes."
+            "the page Questions of an experiment of the documentation (docs/questions.md) says "
+            "which measurements distinguish the causes."
         )
     yield _WHAT_IS_LEFT
 
