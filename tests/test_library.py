@@ -96,6 +96,20 @@ def test_importing_a_part_loads_nothing_that_only_its_work_needs(part, heavy):
     subprocess.run([sys.executable, "-c", code], check=True, timeout=600)
 
 
+def test_reading_the_workflow_loads_nothing_that_only_its_commands_need():
+    rules = ast.parse((ROOT / "workflow/rules/common.smk").read_text(encoding="utf-8"))
+    imports = [node for node in rules.body if isinstance(node, ast.ImportFrom)]
+    ours = [
+        node for node in imports if str(node.module).partition(".")[0] in {"crackfront", "studies"}
+    ]
+    assert len(ours) > 5
+    heavy = {"xarray", "netCDF4", "matplotlib", "mpi4py"}
+    code = "\n".join(
+        [*map(ast.unparse, ours), "import sys", f"assert not {heavy} & sys.modules.keys()"]
+    )
+    subprocess.run([sys.executable, "-c", code], check=True, timeout=600, cwd=ROOT)
+
+
 def test_the_package_offers_the_library_and_its_version():
     typed = ast.parse(Path(cf.__file__).read_text(encoding="utf-8"))
     stated = {alias.asname for node in ast.walk(typed) for alias in getattr(node, "names", ())}

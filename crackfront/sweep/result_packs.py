@@ -29,7 +29,7 @@ from crackfront.data.packs import (
     members,
     record,
 )
-from crackfront.sweep.rows import row_fingerprint
+from crackfront.sweep.fingerprints import row_fingerprint
 
 _CURVE, _ROW = ".nc", ".json"
 """Endings of the names of curves and rows in packs."""
@@ -50,7 +50,7 @@ class Entry:
     parts: dict[str, str]
     """Digests of the parts of its key, by their names."""
     definition: str
-    """:func:`crackfront.sweep.rows.row_fingerprint` of its row."""
+    """:func:`crackfront.sweep.fingerprints.row_fingerprint` of its row."""
     row: SweepRow | None
     """Its row, if rows have the same definition now."""
     arithmetic: str = ""

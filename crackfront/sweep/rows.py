@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import functools
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, fields
@@ -15,7 +14,6 @@ from numpy.typing import NDArray
 from crackfront.analysis.steady import SteadyAdhesion, SteadyMeasures, mean_adhesion
 from crackfront.analysis.table import PLACE, SweepRow
 from crackfront.core.cycle.record import CycleRecord
-from crackfront.core.fingerprint import fingerprint
 from crackfront.core.outcome import Status
 from crackfront.core.variables import ADHESION, variables
 from crackfront.data.labels import label
@@ -67,12 +65,6 @@ def failed_row(simulation: Simulation, status: str, sentence: str) -> SweepRow:
     nothing = dict.fromkeys(("iterations", "n_step", "n_approach", "n_retraction"), 0)
     known = {"status": status, "status_sentence": sentence, "seed": simulation.seed, "curve": ""}
     return SweepRow(**(unknown | nothing | known))
-
-
-@functools.cache
-def row_fingerprint() -> str:
-    """Twelve hexadecimal digits that change with any module that makes a row of a result."""
-    return fingerprint(__name__)
 
 
 def _status(record: CycleRecord, steady: SteadyAdhesion) -> tuple[str, str]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -22,8 +21,8 @@ from crackfront.data.files import (
     write_digest,
 )
 from crackfront.data.provenance import Provenance
-from crackfront.simulate.simulation import Simulation, stems
-from crackfront.sweep.rows import COMPLETE, row_fingerprint
+from crackfront.sweep.fingerprints import shard_fingerprint
+from crackfront.sweep.rows import COMPLETE
 from crackfront.sweep.sweep import Shard, Sweep
 from crackfront.sweep.table import rows_dataset
 
@@ -39,24 +38,13 @@ class FinishedShard:
     spectrum: str
     realisations: range
     fingerprint: str
-    """That of :func:`shard_fingerprint`, when the file was written."""
+    """:func:`~crackfront.sweep.fingerprints.shard_fingerprint` when it was written."""
     failed: int
     """Simulations without a value."""
     cpu_seconds: float
     """Processor time of all simulations. (Units: s)"""
     arithmetic: frozenset[str]
     """Those of the origins of the rows."""
-
-
-def shard_fingerprint(one_per_amplitude: Sequence[Simulation], realisations: range) -> str:
-    """Twelve hexadecimal digits that change with the simulations of a shard, and how rows are made.
-
-    They follow from the first realisation of each amplitude
-    (:meth:`crackfront.sweep.sweep.Sweep.one_per_amplitude`), at the same cost for any number of
-    realisations.
-    """
-    text = "\n".join([*stems(one_per_amplitude), repr(realisations), row_fingerprint()])
-    return hashlib.sha256(text.encode()).hexdigest()[:12]
 
 
 def write_shard(

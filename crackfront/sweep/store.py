@@ -40,6 +40,7 @@ from crackfront.simulate.costs import expected_cost
 from crackfront.simulate.files import read_simulation
 from crackfront.simulate.run import SimulationResult
 from crackfront.simulate.simulation import Simulation, stems
+from crackfront.sweep.fingerprints import shard_fingerprint
 from crackfront.sweep.result_packs import RowIndex, new_pack, pack_paths, repair_packs
 from crackfront.sweep.rows import COMPLETE, sweep_row
 from crackfront.sweep.shards import (
@@ -48,7 +49,6 @@ from crackfront.sweep.shards import (
     curve_names,
     finished_shard,
     shard_columns,
-    shard_fingerprint,
     write_shard,
 )
 from crackfront.sweep.sweep import NamedSpectrum, Shard, Sweep

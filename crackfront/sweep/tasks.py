@@ -21,8 +21,9 @@ from crackfront.simulate.run import PartialRun, SimulationResult, compile_solver
 from crackfront.simulate.simulation import Simulation
 from crackfront.sweep import parallel
 from crackfront.sweep.checkpoints import CheckpointFile
+from crackfront.sweep.fingerprints import row_fingerprint
 from crackfront.sweep.result_packs import Entry
-from crackfront.sweep.rows import failed_row, row_fingerprint, sweep_row
+from crackfront.sweep.rows import failed_row, sweep_row
 from crackfront.sweep.store import Store
 
 _STOPPED, _NOT_STORED = "stopped", "not_stored"

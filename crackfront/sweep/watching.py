@@ -5,10 +5,10 @@ from __future__ import annotations
 import sys
 import threading
 import time
+from pathlib import Path
 
 from tqdm import tqdm
 
-from crackfront.sweep.store import Store
 from crackfront.sweep.sweep import Sweep
 
 _LEAST_WAIT, _SHARE = 1.0, 0.1
@@ -21,8 +21,8 @@ class SweepBar:
     Nothing is drawn where standard error is no terminal: jobs print lines, and logs keep them.
     """
 
-    def __init__(self, sweep: Sweep, store: Store) -> None:
-        self._sweep, self._store = sweep, store
+    def __init__(self, sweep: Sweep, results: Path) -> None:
+        self._sweep, self._results = sweep, results
         self.terminal = sys.stderr.isatty()
         self._ended = threading.Event()
         self._thread = threading.Thread(target=self._draw, daemon=True)
@@ -40,7 +40,11 @@ class SweepBar:
 
     def _stored(self) -> int:
         """How many simulations are stored."""
-        found = [self._store.progress(self._sweep, item) for item in self._sweep.spectra]
+        # Workflows make a bar that most of them never draw.
+        from crackfront.sweep.store import Store
+
+        store = Store(self._results)
+        found = [store.progress(self._sweep, item) for item in self._sweep.spectra]
         return sum(one.done + one.failed for one in found)
 
     def _draw(self) -> None:

@@ -29,10 +29,11 @@ from crackfront.simulate.files import simulation_dataset
 from crackfront.simulate.run import run_simulation
 from crackfront.simulate.simulation import stems
 from crackfront.sweep.configuration import load_configuration
+from crackfront.sweep.fingerprints import row_fingerprint
 from crackfront.sweep.parallel import default_launcher
 from crackfront.sweep.postprocessing import postprocessing_costs
 from crackfront.sweep.result_packs import Entry
-from crackfront.sweep.rows import row_fingerprint, sweep_row
+from crackfront.sweep.rows import sweep_row
 from crackfront.sweep.shards import write_shard
 from crackfront.sweep.store import Store
 from studies.pages import markdown_table

@@ -27,8 +27,9 @@ from crackfront.core.outcome import Status
 from crackfront.core.solver.relax import named_solver
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.sweep.configuration import load_configuration
+from crackfront.sweep.fingerprints import row_fingerprint
 from crackfront.sweep.result_packs import Entry, new_pack
-from crackfront.sweep.rows import failed_row, row_fingerprint
+from crackfront.sweep.rows import failed_row
 from tests.commands import curves, refused, run
 
 TEST = Path(__file__).parents[2] / "config/test.yaml"

@@ -14,7 +14,7 @@ from crackfront.simulate.line.schedule import LineSchedule
 from crackfront.simulate.simulation import simulation_fingerprint
 from crackfront.simulate.sphere.cycle import FullCycle
 from crackfront.simulate.sphere.steady import SteadySchedule
-from crackfront.sweep.rows import row_fingerprint
+from crackfront.sweep.fingerprints import row_fingerprint
 from studies.paper.figure import checks_fingerprint, drawing_fingerprint, figure_fingerprint
 
 KERNEL = "crackfront/core/solver/monotone.py"

@@ -8,8 +8,9 @@ import pytest
 
 from crackfront.data.packs import LONGEST_NAME, checked, record
 from crackfront.sweep.configuration import load_configuration
+from crackfront.sweep.fingerprints import row_fingerprint
 from crackfront.sweep.result_packs import Entry, RowIndex, new_pack, pack_paths, repair_packs
-from crackfront.sweep.rows import failed_row, row_fingerprint
+from crackfront.sweep.rows import failed_row
 
 SWEEP = load_configuration(Path(__file__).parents[2] / "config/test.yaml")
 ONE = next(SWEEP.simulations())

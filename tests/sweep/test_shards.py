@@ -9,10 +9,11 @@ import pytest
 from crackfront.data.digests import digest_path, file_digest
 from crackfront.data.files import damaged_files, read_dataset
 from crackfront.data.provenance import provenance
-from crackfront.sweep import shards
+from crackfront.sweep import fingerprints
 from crackfront.sweep.configuration import load_configuration
+from crackfront.sweep.fingerprints import shard_fingerprint
 from crackfront.sweep.rows import failed_row
-from crackfront.sweep.shards import covering, finished_shard, shard_fingerprint, write_shard
+from crackfront.sweep.shards import covering, finished_shard, write_shard
 from crackfront.sweep.store import Store, lost_curves
 
 SWEEP = load_configuration(Path(__file__).parents[2] / "config/test.yaml")
@@ -53,7 +54,7 @@ def test_the_fingerprint_of_a_shard_changes_with_its_simulations_alone():
 
 def test_the_fingerprint_of_a_shard_changes_with_the_definition_of_rows(monkeypatch):
     before = fingerprint()
-    monkeypatch.setattr(shards, "row_fingerprint", lambda: "newer")
+    monkeypatch.setattr(fingerprints, "row_fingerprint", lambda: "newer")
     assert fingerprint() != before
 
 

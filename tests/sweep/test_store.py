@@ -29,8 +29,9 @@ from crackfront.simulate.files import write_checkpoint
 from crackfront.simulate.run import run_simulation
 from crackfront.sweep import tasks
 from crackfront.sweep.configuration import load_configuration
+from crackfront.sweep.fingerprints import row_fingerprint
 from crackfront.sweep.result_packs import Entry, RowIndex, new_pack, pack_paths
-from crackfront.sweep.rows import failed_row, row_fingerprint
+from crackfront.sweep.rows import failed_row
 from crackfront.sweep.store import Store
 from crackfront.sweep.verification import mixture_sentences, verification
 from tests.commands import curves

@@ -12,9 +12,8 @@ sys.path.insert(0, str(BASE))  # where the studies stand
 from crackfront.core.fingerprint import fingerprint
 from crackfront.simulate.costs import expected_cost
 from crackfront.sweep.configuration import load_configuration, results_folder
+from crackfront.sweep.fingerprints import shard_fingerprint
 from crackfront.sweep.postprocessing import postprocessing_costs
-from crackfront.sweep.shards import shard_fingerprint
-from crackfront.sweep.store import Store
 from crackfront.sweep.watching import SweepBar
 from studies.boundary_elements.parameters import load_validation
 from studies.paper.figure import (
@@ -126,7 +125,7 @@ CRACKFRONT = command("crackfront")
 STUDIES = importable(BASE) + command("python") + " -m studies"
 LOGGED = " > >(trap '' INT TERM HUP; exec tee {log:q}) 2>&1"
 # Of simulations a terminal shows one bar of the whole sweep, and what goes wrong; a log all lines.
-BAR = SweepBar(SWEEP, Store(Path(RESULTS)))
+BAR = SweepBar(SWEEP, Path(RESULTS))
 SIMULATED = (
     " >> {log:q} 2> >(trap '' INT TERM HUP; exec tee --append {log:q} >&2)"
     if BAR.terminal
