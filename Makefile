@@ -132,7 +132,7 @@ test-portable: env  ## Run the tests of predictions as on another processor (two
 	  tests/topography/density tests/topography/spectrum tests/topography/prediction
 
 test-cluster: env  ## Run the tests that need a Slurm, on one started for them (5 minutes)
-	@$(IN_ENV) tests/cluster/with-slurm.sh .venv/bin/python -m pytest -m slurm tests/cluster
+	@$(IN_ENV) tests/cluster/with-slurm.sh .venv/bin/python -m pytest -m slurm --timeout 1800 tests/cluster
 
 nightly: env  ## Run all tests, the slow ones and those on a Slurm too
 	@mkdir -p $(dir $(REPORT))
@@ -149,6 +149,7 @@ benchmark: env  ## Solvers against the reference, what requests cost, how sweeps
 
 timings: env  ## What depends on the machine, for the pages (an hour)
 	$(IN_ENV) .venv/bin/python -m studies speed solvers --keep
+	$(IN_ENV) .venv/bin/python -m studies speed profile --keep
 	$(IN_ENV) .venv/bin/python -m studies speed needs --keep
 	$(IN_ENV) .venv/bin/python -m studies speed scaling --keep
 	$(IN_ENV) .venv/bin/python -m studies pages

@@ -96,7 +96,7 @@ def undisturbed(sweep, folder):
     return dataset(folder)
 
 
-def run(command, timeout=600, **options):
+def run(command, timeout=850, **options):
     """Run a command to its end."""
     return subprocess.run(
         command,
@@ -109,7 +109,7 @@ def run(command, timeout=600, **options):
     )
 
 
-def until(condition, seconds=120):
+def until(condition, seconds=600):
     """Wait for something that must happen."""
     end = time.monotonic() + seconds
     while not condition():
@@ -148,7 +148,7 @@ def test_the_profile_runs_a_shard_and_the_sweep_is_the_undisturbed_one(started, 
     folder, sweep, process = started[way]
     target, _ = WAYS[way]
     results = folder / "results/sweep"
-    told = process.communicate(timeout=600)[1]
+    told = process.communicate(timeout=850)[1]
     assert process.returncode == 0, told
     assert "has been submitted with SLURM jobid" in told
     assert len(list((results / "curves").glob("*.tar"))) == 1

@@ -51,7 +51,7 @@ shared=$(shared_memory)
 if ! type slurmctld slurmd munged srun >/dev/null 2>&1; then
   before=$(installed)
   export DEBIAN_FRONTEND=noninteractive
-  if ! { timeout 120 apt-get update && timeout 240 apt-get install --yes --no-install-recommends "${packages[@]}"; } \
+  if ! { timeout 300 apt-get update && timeout 600 apt-get install --yes --no-install-recommends "${packages[@]}"; } \
     >"$folder/apt.log" 2>&1; then
     echo "Slurm cannot be installed here: $(tail -1 "$folder/apt.log")"
     "$@"
