@@ -2,9 +2,9 @@
 Which scales matter
 ===================
 
-A self-affine surface with a roll-off. The bars span the wavevectors that carry 80% of the mean
-square of heights, of half-derivatives and of slopes. Hysteresis follows from the half-derivative,
-that is, from scales between those of the heights and those of the slopes.
+This is a self-affine surface with a roll-off. The bars span the wavevectors that carry 80% of the
+mean square of heights, of half-derivatives and of slopes. Hysteresis follows from the
+half-derivative, that is, from scales between those of the heights and those of the slopes.
 """
 
 from matplotlib import pyplot

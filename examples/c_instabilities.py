@@ -15,7 +15,7 @@ jumps = cf.find_instabilities(surface, error=0.1)
 axes = cf.plot_instabilities(jumps)
 
 # %%
-# Load steps were halved until the front moved smoothly or jumped however small the step.
+# Load steps were halved until the front either moved smoothly or jumped at every size of the step.
 
 jumps
 

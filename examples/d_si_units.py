@@ -25,7 +25,7 @@ loop = cf.in_si_units(cf.run_loop(surface, loads=[0, 1, 0.4, 1, -2], step=0.02),
 loop[["penetration", "mean_radius", "force"]]
 
 # %%
-# What comes out is in SI units, says so, and is drawn in them.
+# All results are in SI units, which their attributes state, and are drawn in these units.
 
 axes = cf.plot_loop(loop)
 

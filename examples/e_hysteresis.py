@@ -3,9 +3,9 @@ Hysteresis against roughness
 ============================
 
 The same surface, scaled to several amplitudes. The line is what the paper finds for fine roughness,
-2 k e_el with k = 3. Roughness as coarse as this one makes less, and next to nothing where it is so
-weak that the front follows the load without jumps. A sweep over realisations, ``crackfront
-simulate``, averages over surfaces and gives k an interval.
+2 k e_el with k = 3. Roughness as coarse as this one causes less hysteresis, and almost none where
+it is so weak that the front follows the load without jumps. A sweep over realisations,
+``crackfront simulate``, averages over surfaces and gives k an interval.
 """
 
 import numpy as np

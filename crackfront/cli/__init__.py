@@ -107,7 +107,7 @@ Exit codes:
   2   the input cannot be used; one sentence says why, and nothing was computed
   3   predict, samples with --strict: the theory applies with reservations
   4   predict, samples: the theory does not apply; the output says which modulus,
-      radius or roughness would meet the condition
+      radius, roughness or w_int would meet the condition
   75  interrupted (Ctrl-C or SIGTERM); run the same command to continue
 
 \b

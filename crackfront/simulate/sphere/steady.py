@@ -58,7 +58,7 @@ both branches share most of the variance: a contact of few such lengths is pinne
 
 @dataclass(frozen=True, slots=True)
 class SteadySchedule(SphereSchedule):
-    """Approach from a penetration until w_appr is known well enough, and back over the same radii.
+    """Approach from a penetration until k is known well enough, and back over the same radii.
 
     ValueError if a number is not positive, or the start negative or not below the largest
     penetration.

@@ -52,7 +52,10 @@ _NOT_CHECKED = (
 )
 """What only scans show."""
 
-_EXACT = "The spectrum is taken as exact: intervals hold the errors of the law of k alone."
+_EXACT = (
+    "The spectrum is taken as exact: intervals hold only the errors of the law of k and of the "
+    "ratio to boundary elements."
+)
 
 
 def surface_remarks(surface: Surface) -> list[Remark]:
