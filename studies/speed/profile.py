@@ -73,13 +73,15 @@ def shares() -> list[Share]:
         raise RuntimeError("there is no perf on this machine; install linux-perf or linux-tools")
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        samples, control = folder / "samples", folder / "control"
+        samples, control, answer = (folder / one for one in ("samples", "control", "answer"))
         os.mkfifo(control)
+        os.mkfifo(answer)
         perf = ["perf", "record", "--quiet", "--event", "cpu-clock:u", "--freq", "997"]
-        perf += ["--delay", "-1", "--control", f"fifo:{control}", "--output", str(samples), "--"]
-        code = "import sys; from studies.speed.profile import run; run(sys.argv[1])"
+        perf += ["--delay", "-1", "--control", f"fifo:{control},{answer}"]
+        perf += ["--output", str(samples), "--"]
+        code = "import sys; from studies.speed.profile import run; run(*sys.argv[1:])"
         ran = subprocess.run(
-            [*perf, sys.executable, "-c", code, str(control)],
+            [*perf, sys.executable, "-c", code, str(control), str(answer)],
             check=False,
             capture_output=True,
             text=True,
@@ -125,7 +127,7 @@ def _kernel(symbol: str) -> str:
     return ".".join(names[-2:]) if names else symbol
 
 
-def run(control: str) -> None:
+def run(control: str, answer: str) -> None:
     """Run the simulations while perf looks at the load steps.
 
     Prints the processor seconds a simulation of making the tile, of the load steps and of the
@@ -135,7 +137,7 @@ def run(control: str) -> None:
     # The first run loads kernels, which is no part of a simulation.
     _timed(simulations[0], lambda _: None)
     runs = [
-        _timed(simulation, lambda word: _tell(control, word))
+        _timed(simulation, lambda word: _tell(control, answer, word))
         for simulation in simulations
         for _ in range(_REPEATS)
     ]
@@ -173,10 +175,11 @@ def _timed(simulation: Simulation, tell: Callable[[str], None]) -> tuple[float, 
     return made, loaded, time.process_time() - begin
 
 
-def _tell(control: str, word: str) -> None:
-    """Tell perf to sample or to stop; it looks at its pipe some times a second."""
+def _tell(control: str, answer: str, word: str) -> None:
+    """Tell perf to sample or to stop, and wait until it says that it does."""
     Path(control).write_text(f"{word}\n", encoding="utf-8")
-    time.sleep(0.3)
+    with Path(answer).open("rb", buffering=0) as pipe:
+        pipe.read(len(b"ack\n\0"))
 
 
 def _loaded_objects() -> list[bytes]:
