@@ -97,10 +97,10 @@ def _add_bars(axes: Axes, names: Sequence[str], lowest: Array, highest: Array) -
     name_room = _NAME * (right - left)
     bars = np.clip(np.log([lowest, highest]).T, left, right)
     are_beside = all(max(low - left, right - high) > name_room for low, high in bars)
-    # Decades from bar to bar, so that names have room on axes of many decades, too.
-    step = max(1.9, 0.19 * math.log10(top / axes.get_ylim()[0]))
+    # Heights are in decades; densities of more than ten make each decade shorter.
+    stretch = max(1.0, 0.1 * math.log10(top / axes.get_ylim()[0]))
     for level, (name, (low, high)) in enumerate(zip(names, bars, strict=True)):
-        height = top * 10.0 ** ((2.84 - level) * step)
+        height = top * 10.0 ** (stretch * (5.4 - 1.9 * level))
         ends = lowest[level], highest[level]
         axes.plot(ends, [height, height], color=BLACK, linewidth=2.5, solid_capstyle="butt")
         on_right = bool(right - high > low - left)
@@ -114,7 +114,7 @@ def _add_bars(axes: Axes, names: Sequence[str], lowest: Array, highest: Array) -
             va="center" if are_beside else "bottom",
             bbox={"facecolor": "white", "linewidth": 0, "pad": 1} if are_beside else None,
         )
-    axes.set_ylim(top=top * 10.0 ** ((3.47 if are_beside else 3.9) * step))
+    axes.set_ylim(top=top * 10.0 ** (stretch * (6.6 if are_beside else 7.4)))
 
 
 def set_density_scales(axes: Axes, wavevector: Array) -> None:
