@@ -33,25 +33,29 @@ def moved(one, other):
 
 
 MEASURED = {
-    "detail": lambda: read_measurements([DETAIL]),
-    "overview": lambda: read_measurements([OVERVIEW]),
-    "both": lambda: read_measurements([DETAIL, OVERVIEW]),
+    name: lambda files=files: measured_surface(read_measurements(files))
+    for name, files in {"detail": [DETAIL], "overview": [OVERVIEW], "both": [DETAIL, OVERVIEW]}.items()
 } | {
-    kind.name: lambda kind=kind: [one.measurement for one in found_scan(kind, 0).surface.scans]
+    kind.name: lambda kind=kind: found_scan(kind, 0).surface
     for kind in KINDS
     if kind.name in ("roll-off outside", "optic, Gaussian", "deep scratches", "three line scans")
 }
 
 
 @pytest.fixture(scope="module", params=MEASURED)
-def measurements(request):
+def surface(request):
     return MEASURED[request.param]()
 
 
 @pytest.fixture(scope="module")
-def known(measurements):
+def measurements(surface):
+    return [one.measurement for one in surface.scans]
+
+
+@pytest.fixture(scope="module")
+def known(surface):
     """Ends of the interval of e_el as it is computed."""
-    return ends(measured_surface(measurements))
+    return ends(surface)
 
 
 @pytest.fixture
