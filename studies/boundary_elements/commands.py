@@ -12,6 +12,7 @@ from crackfront.cli.report import (
     announce_compilation,
     examples,
     refuse_unwritable,
+    with_progress,
 )
 from studies.pages import keep_option, tell
 
@@ -30,8 +31,10 @@ def validate(configuration: Path, output: Path | None) -> None:
     """Run rough spheres by boundary elements and by the crack front, and compare them.
 
     Every load step of the boundary elements is stored at once: a run that was killed continues with
-    the next one. The tables grow with every finished case.
+    the next one. The tables grow with every finished case. A terminal shows a bar of the cases.
     """
+    from tqdm import tqdm
+
     from crackfront.data.digests import forget_sums
     from crackfront.data.files import write_sums
     from crackfront.data.provenance import provenance
@@ -47,7 +50,13 @@ def validate(configuration: Path, output: Path | None) -> None:
     announce_compilation()
     try:
         forget_sums(folder)
-        study.write_validation(folder, parameters, origin, click.echo)
+        study.write_validation(
+            folder,
+            parameters,
+            origin,
+            tqdm.write,  # above the bar
+            lambda cases: with_progress(cases, len(cases), "cases"),
+        )
         write_sums(folder)
     except KeyboardInterrupt as error:
         raise StoppedError("Run the same command to continue with the next load step") from error

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from importlib import import_module
 from pathlib import Path
 
@@ -41,12 +41,17 @@ def refuse_missing_libraries() -> None:
 
 
 def write_validation(
-    folder: Path, parameters: ValidationParameters, origin: Provenance, progress: Progress
+    folder: Path,
+    parameters: ValidationParameters,
+    origin: Provenance,
+    progress: Progress,
+    watched: Callable[[tuple[Case, ...]], Iterable[Case]] = iter,
 ) -> None:
     """Compare the front with boundary elements, case by case, and write what is found so far.
 
-    Every load step of the boundary elements is kept in the folder, and found again. A ValueError
-    says if a front fails.
+    Every load step of the boundary elements is kept in the folder, and found again. Cases are
+    computed as `watched` yields them, which may show how far this is. A ValueError says if a front
+    fails.
     """
     fronts: dict[tuple[object, ...], FrontCycle] = {}
 
@@ -61,7 +66,7 @@ def write_validation(
     loops: list[Differences] = []
     edges: list[EdgeForces] = []
     pictured: tuple[float, ...] = ()
-    for case in validation_cases(parameters):
+    for case in watched(validation_cases(parameters)):
         boundary = _cycle(folder, case, origin, progress)
         rows.append(hysteresis(case, boundary, front(case)))
         write_records(folder / "hysteresis.nc", rows, "case", origin)
