@@ -6,15 +6,15 @@ from crackfront.simulate.costs import Cost
 from crackfront.sweep.sweep import Sweep
 
 _LAWS = {
-    "aggregate": (1.0, 2.5e-4, 2.4e8, 1.2e3, 0),
-    "fit": (1.2, 2e-6, 2.4e8, 7e2, 1),
-    "figures": (5.5, 4.5e-5, 3.2e8, 7e2, 1),
-    "summary": (1.2, 2e-6, 2.4e8, 7e2, 1),
+    "aggregate": (1.0, 1.1e-5, 2.4e8, 7e2, 0),
+    "fit": (1.2, 2e-6, 2.4e8, 2.5e2, 1),
+    "figures": (5.5, 2e-6, 3.2e8, 2.5e2, 1),
+    "summary": (1.2, 2e-6, 2.4e8, 2.5e2, 1),
 }
 """Of each command: seconds without rows and per row, bytes of memory without rows and per row, and
 1 if it draws the bootstrap, else 0. `python -m studies speed scaling` measures them."""
 
-_DRAWN_SECONDS, _DRAWN_BYTES, _MOST_DRAWN = 4.2e-8, 16.0, 1.35e8
+_DRAWN_SECONDS, _DRAWN_BYTES, _MOST_DRAWN = 2.7e-8, 16.0, 1.35e8
 """Bootstrap: seconds per row and sample, bytes per realisation and sample, most bytes at once."""
 
 
