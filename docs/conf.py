@@ -17,9 +17,11 @@ import crackfront
 from crackfront.core.geometry.line import LineState
 from crackfront.core.geometry.sphere import ContactState
 from crackfront.core.variables import variables
+from crackfront.experiment.loop import MeasuredLoop
 from crackfront.sweep.configuration import Configuration
 from crackfront.sweep.table import SweepRow
 from crackfront.topography.options import Options, ReadingOptions
+from crackfront.topography.prediction.prediction import Prediction
 
 project = "crackfront"
 author = "crackfront developers"
@@ -208,13 +210,17 @@ def _write_references(app: Sphinx) -> None:
             default = "required" if key in one.get("required", ()) else f"`{value.get('default')}`"
             lines.append(f"| `{key}` | {meanings[section, key]} | {_kind(value)} | {default} |")
     files = {
-        "A simulation in `hysteresis.nc`": SweepRow,
-        "A curve of a sphere": ContactState,
-        "A curve of a straight front": LineState,
+        "A simulation in `hysteresis.nc`": variables(SweepRow),
+        "A curve of a sphere": variables(ContactState),
+        "A curve of a straight front": variables(LineState),
+        "`prediction` in `crackfront predict --json`": variables(Prediction),
+        # Its arrays, which have an entry for each row of the recording, are not printed.
+        "`crackfront loop --json`": [item for item in variables(MeasuredLoop) if not item.dims],
     }
-    tables = ["# Variables of files", "", "For those who read one.", ""]
+    tables = ["# Variables of files and of JSON", "", "For those who read one of them.", ""]
     tables += ["What is said of a file's origin stands in {py:mod}`crackfront.data.provenance`."]
-    for name, kind in files.items():
+    tables += ["In JSON a number with an interval has `value`, `standard_error`, `low` and `high`."]
+    for name, listed in files.items():
         tables += [
             "",
             f"## {name}",
@@ -222,7 +228,7 @@ def _write_references(app: Sphinx) -> None:
             "| variable | dimensions | unit | what |",
             "|---|---|---|---|",
         ]
-        for item in variables(kind):
+        for item in listed:
             dims = ", ".join(item.dims)
             tables.append(f"| `{item.name}` | {dims} | {item.units} | {item.long_name} |")
     folder = Path(app.srcdir) / "api"

@@ -32,9 +32,10 @@ def moved(one, other):
     return np.max(np.abs(one - other)) / (one[2] - one[0])
 
 
+FILES = {"detail": [DETAIL], "overview": [OVERVIEW], "both": [DETAIL, OVERVIEW]}
 MEASURED = {
     name: lambda files=files: measured_surface(read_measurements(files))
-    for name, files in {"detail": [DETAIL], "overview": [OVERVIEW], "both": [DETAIL, OVERVIEW]}.items()
+    for name, files in FILES.items()
 } | {
     kind.name: lambda kind=kind: found_scan(kind, 0).surface
     for kind in KINDS
