@@ -8,8 +8,9 @@ from pathlib import Path
 import click
 
 from crackfront.cli import Commands
-from crackfront.cli.report import examples
+from crackfront.cli.report import FILE, examples
 from crackfront.data.files import write_text
+from studies.pages import keep_option, tell
 
 STUDIES = {
     "paper": "Figures of the paper: compute their data, draw them, compare them with the paper.",
@@ -70,6 +71,25 @@ def pages(check: bool) -> None:
         click.echo(f"page: {path}")
     for told in stale(parts):
         click.echo(told)
+
+
+@main.command(epilog=examples("python -m studies differences elsewhere/docs/reference/parts"))
+@click.argument("folder", type=FILE)
+@click.option("--machine", help="What computed there.  [default: the machine of its parts]")
+@keep_option
+def differences(folder: Path, machine: str | None, keep: bool) -> None:
+    """Compare the numbers of the pages with those of another run, whose parts are in FOLDER.
+
+    A number differs if it has moved by more than its own error.
+    """
+    from studies.differences import differences_text
+    from studies.pages import kept_parts
+
+    there = kept_parts(folder)
+    if not there:
+        raise ValueError(f"{folder} holds no parts of pages; give docs/reference/parts of a clone")
+    text = differences_text(kept_parts(), there, machine)
+    tell("differences", {"processors": text}, "studies.differences", keep=keep)
 
 
 if __name__ == "__main__":
