@@ -2,7 +2,8 @@
 
 A number differs if it has moved by more than its own error: half of the interval or the tolerance
 that its cell states, or that the claim states which it is compared with. The change of a number
-without an error is relative. Times, memory and remarks are not compared.
+without an error is relative; what is below 1e-12 in both runs is round-off, and equal. Times,
+memory and remarks are not compared.
 """
 
 from __future__ import annotations
@@ -22,6 +23,8 @@ _STATED = re.compile(
 _TIME = re.compile(rf"{_NUMBER} s\b")
 _LEFT_OUT = re.compile(r"remark|CPU s|.*\b[Mk]B")
 """Headings of columns that are not compared."""
+
+_ROUND_OFF = 1e-12
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,7 +46,7 @@ class Change:
     @property
     def is_equal(self) -> bool:
         """Whether every digit is equal."""
-        return self.here.value == self.there.value
+        return self.relative == 0
 
     @property
     def in_errors(self) -> float:
@@ -54,7 +57,7 @@ class Change:
     def relative(self) -> float:
         """Difference over the larger number."""
         largest = max(abs(self.here.value), abs(self.there.value))
-        return abs(self.here.value - self.there.value) / largest if largest else 0.0
+        return abs(self.here.value - self.there.value) / largest if largest > _ROUND_OFF else 0.0
 
 
 def numbers(text: str) -> Iterator[Number]:

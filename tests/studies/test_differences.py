@@ -52,6 +52,13 @@ def test_a_number_differs_beyond_its_error():
     assert beyond == "- k, k of all, found: 2.22 and 2.25, 1.5 times the error"
 
 
+def test_round_off_is_equal():
+    [change] = changes("3e-15", "1e-14")
+    assert change.is_equal
+    [change] = changes("3e-11", "1e-10")
+    assert change.relative == pytest.approx(0.7)
+
+
 def test_tables_of_other_rows_are_not_compared_number_by_number():
     with pytest.raises(ValueError, match="not the same rows"):
         changes(TABLE, TABLE.replace("lowest force", "force"))
