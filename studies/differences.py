@@ -106,8 +106,8 @@ def differences_text(
 ) -> str:
     """A row for each part that two runs have, by study and name; a line for each that differs.
 
-    Parts of one and the same run are left out, and so are speeds. `machine` names what computed
-    there in place of the machine of its parts.
+    Parts of one and the same run are left out, and so are speeds; parts of other rows or columns
+    have a line alone. `machine` names what computed there in place of the machine of its parts.
     """
     rows, beyond = [], []
     for study in sorted({*here} & {*there} - {"speed", "differences"}):
@@ -115,7 +115,11 @@ def differences_text(
             one, other = here[study][name], there[study][name]
             if one == other:
                 continue
-            found = changes(one.text, other.text)
+            try:
+                found = changes(one.text, other.text)
+            except ValueError as error:
+                beyond.append(f"- {name}: {error}")
+                continue
             stated = [change for change in found if not math.isnan(change.in_errors)]
             unstated = [change.relative for change in found if math.isnan(change.in_errors)]
             moved = [change for change in stated if change.in_errors > 1]

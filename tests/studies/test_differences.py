@@ -62,6 +62,8 @@ def test_round_off_is_equal():
 def test_tables_of_other_rows_are_not_compared_number_by_number():
     with pytest.raises(ValueError, match="not the same rows"):
         changes(TABLE, TABLE.replace("lowest force", "force"))
+    other = {"law": {"k": part(TABLE.replace("lowest force", "force"))}}
+    assert "- k: the two texts" in differences_text({"law": {"k": part(TABLE)}}, other)
 
 
 def test_a_folder_without_parts_is_refused(tmp_path):
