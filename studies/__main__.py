@@ -82,13 +82,10 @@ def differences(folder: Path, machine: str | None, keep: bool) -> None:
 
     A number differs if it has moved by more than its own error.
     """
-    from studies.differences import differences_text
-    from studies.pages import kept_parts
+    from studies.differences import differences_text, parts_of
+    from studies.pages import KEPT
 
-    there = kept_parts(folder)
-    if not there:
-        raise ValueError(f"{folder} holds no parts of pages; give docs/reference/parts of a clone")
-    text = differences_text(kept_parts(), there, machine)
+    text = differences_text(parts_of(KEPT), parts_of(folder), machine)
     tell("differences", {"processors": text}, "studies.differences", keep=keep)
 
 

@@ -8,10 +8,12 @@ memory and remarks are not compared.
 
 from __future__ import annotations
 
+import json
 import math
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from pathlib import Path
 
 from studies.pages import Part, markdown_table
 
@@ -91,6 +93,17 @@ def _stated(place: str, text: str, expected: str = "") -> Iterator[Number]:
         yield Number(place, float(found["value"]), error)
 
 
+def parts_of(folder: Path) -> dict[str, dict[str, Part]]:
+    """Parts that a clone keeps in a folder, by study and name; ValueError if there are none."""
+    files = {path.stem: json.loads(path.read_text("utf-8")) for path in folder.glob("*.json")}
+    if not files:
+        raise ValueError(f"{folder} holds no parts of pages; give docs/reference/parts of a clone")
+    return {
+        study: {name: Part(**one) for name, one in listed.items()}
+        for study, listed in files.items()
+    }
+
+
 def changes(here: str, there: str) -> list[Change]:
     """Numbers of two texts of one form, in their order; ValueError if the forms differ."""
     pairs = [*numbers(here)], [*numbers(there)]
@@ -106,14 +119,15 @@ def differences_text(
 ) -> str:
     """A row for each part that two runs have, by study and name; a line for each that differs.
 
-    Parts of one and the same run are left out, and so are speeds; parts of other rows or columns
-    have a line alone. `machine` names what computed there in place of the machine of its parts.
+    Speeds are left out; parts of other rows or columns have a line alone. `machine` names what
+    computed there; without it, parts of the same commit and machine are those of one run, and are
+    left out.
     """
     rows, beyond = [], []
     for study in sorted({*here} & {*there} - {"speed", "differences"}):
         for name in sorted({*here[study]} & {*there[study]}):
             one, other = here[study][name], there[study][name]
-            if one == other:
+            if machine is None and one == other:
                 continue
             try:
                 found = changes(one.text, other.text)

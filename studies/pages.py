@@ -105,9 +105,9 @@ def tell(
         click.echo("kept for the pages, which python -m studies pages writes")
 
 
-def kept_parts(folder: Path = KEPT) -> dict[str, dict[str, Part]]:
-    """All parts of a folder, by study and name."""
-    files = {path.stem: json.loads(path.read_text("utf-8")) for path in folder.glob("*.json")}
+def kept_parts() -> dict[str, dict[str, Part]]:
+    """All parts by study and name."""
+    files = {path.stem: json.loads(path.read_text("utf-8")) for path in KEPT.glob("*.json")}
     return {
         study: {name: Part(**one) for name, one in listed.items()}
         for study, listed in files.items()

@@ -14,7 +14,6 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-import netCDF4
 import numpy as np
 import xarray as xr
 
@@ -89,24 +88,10 @@ def write_dataset(path: Path, dataset: xr.Dataset, origin: Provenance) -> None:
     stamped, encoding = _stamped(dataset, origin)
 
     def write(part: Path) -> None:
-        with utf8_path(part) as named, _small_chunk_caches():
+        with utf8_path(part) as named:
             stamped.to_netcdf(named, engine="netcdf4", encoding=encoding)
 
     replace_atomically(path, write)
-
-
-@contextlib.contextmanager
-def _small_chunk_caches() -> Iterator[None]:
-    """Let netCDF cache a megabyte of each variable of a file instead of 64.
-
-    A variable is written at once and never read, but its cache stays until the file is closed.
-    """
-    before = netCDF4.get_chunk_cache()
-    netCDF4.set_chunk_cache(10**6, *before[1:])
-    try:
-        yield
-    finally:
-        netCDF4.set_chunk_cache(*before)
 
 
 @contextlib.contextmanager

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import math
 from collections import Counter
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import asdict
 from operator import attrgetter
 from pathlib import Path
 from typing import Any
 
+import netCDF4
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
@@ -62,7 +64,22 @@ def write_hysteresis(
         columns[variable.name] = np.concatenate(spectra)
     axes = labelled_fields(_axes(sweep, range(sweep.n_realisation)))
     dataset = xr.Dataset(labelled_columns(columns), axes, _attributes(sweep))
-    write_dataset(path, dataset, origin)
+    with _small_chunk_caches():
+        write_dataset(path, dataset, origin)
+
+
+@contextlib.contextmanager
+def _small_chunk_caches() -> Iterator[None]:
+    """Let netCDF cache a megabyte of each variable that it writes instead of 64.
+
+    A column is written at once and never read, but its cache stays until the file is closed.
+    """
+    before = netCDF4.get_chunk_cache()
+    netCDF4.set_chunk_cache(10**6, *before[1:])
+    try:
+        yield
+    finally:
+        netCDF4.set_chunk_cache(*before)
 
 
 def read_table(path: Path) -> SweepTable:

@@ -160,30 +160,6 @@ def test_a_failed_write_leaves_the_old_file_and_no_other(tmp_path, result, monke
     assert [item.name for item in tmp_path.iterdir()] == ["cycle.nc"]
 
 
-def test_a_file_of_many_arrays_is_written_in_the_memory_that_one_of_them_needs(tmp_path):
-    script = """
-import resource, sys
-from pathlib import Path
-import netCDF4, numpy as np, xarray as xr
-from crackfront.data.files import write_dataset
-from crackfront.data.provenance import provenance
-
-def peak():
-    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-
-values, origin = np.ones((10, 10**5)), provenance()
-dataset = xr.Dataset({f"x{number}": (("row", "column"), values) for number in range(20)})
-write_dataset(Path(sys.argv[1]), dataset.isel(row=slice(0, 1)), origin)
-cache, before = netCDF4.get_chunk_cache(), peak()
-write_dataset(Path(sys.argv[1]), dataset, origin)
-assert netCDF4.get_chunk_cache() == cache
-print((peak() - before) * 1024 / values.nbytes)
-"""
-    command = [sys.executable, "-c", script, str(tmp_path / "many.nc")]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=600, check=True)
-    assert float(done.stdout) < 8
-
-
 def test_files_of_the_future_get_one_date_of_now_and_others_keep_theirs(tmp_path):
     for name, moment in (("a.nc", 4e9), ("b.nc", 4e9 + 5), ("old.nc", 1e9), ("flat.tar", 4e9)):
         (tmp_path / name).write_text("text")

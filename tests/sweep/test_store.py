@@ -271,6 +271,42 @@ def test_a_sweep_is_aggregated_from_the_files_of_its_shards_alone_whatever_the_b
     assert [*whole["curve"].values.flat] == [f"{one.stem}.nc" for one in SWEEP.simulations()]
 
 
+def test_a_table_is_written_in_less_memory_than_its_rows_take(tmp_path):
+    script = """
+import resource, sys
+from dataclasses import fields, replace
+from pathlib import Path
+import netCDF4, numpy as np
+from crackfront.analysis.table import SweepRow
+from crackfront.data.provenance import provenance
+from crackfront.sweep.configuration import load_configuration
+from crackfront.sweep.table import write_hysteresis
+
+KINDS = {"float": float, "int": np.int64, "str": "S40"}
+
+def write(n_realisation):
+    sweep = replace(load_configuration(Path(sys.argv[1])), n_realisation=n_realisation)
+    shape = 1, len(sweep.elastic_energies), n_realisation
+    kinds = {one.name: KINDS[one.type] for one in fields(SweepRow)} | {"status": np.int8}
+    parts = [[{name: np.zeros(shape, kind) for name, kind in kinds.items()}] for _ in sweep.spectra]
+    for [columns] in parts:
+        for values in columns.values():
+            values.fill(1)
+    size = sum(one.nbytes for [columns] in parts for one in columns.values())
+    before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    write_hysteresis(Path(sys.argv[2]), sweep, parts, provenance())
+    return 1024 * (resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before) / size
+
+cache = netCDF4.get_chunk_cache()
+write(10)
+print(write(50_000))
+assert netCDF4.get_chunk_cache() == cache
+"""
+    command = [sys.executable, "-c", script, str(TEST), str(tmp_path / "hysteresis.nc")]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=600, check=True)
+    assert float(done.stdout) < 1  # beside the rows themselves
+
+
 def test_rows_that_stand_in_two_files_count_once(made, store):
     shutil.copytree(made.folder, store.folder)
     for shard in SWEEP.shards(1)[:2]:
