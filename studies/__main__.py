@@ -75,7 +75,7 @@ def pages(check: bool) -> None:
 
 @main.command(epilog=examples("python -m studies differences elsewhere/docs/reference/parts"))
 @click.argument("folder", type=FILE)
-@click.option("--machine", help="What computed there.  [default: the machine of its parts]")
+@click.option("--machine", help="What computed there, if it is the machine that computed here.")
 @keep_option
 def differences(folder: Path, machine: str | None, keep: bool) -> None:
     """Compare the numbers of the pages with those of another run, whose parts are in FOLDER.

@@ -53,7 +53,10 @@ class Change:
     @property
     def in_errors(self) -> float:
         """Difference over the larger error; NaN where none is stated."""
-        return abs(self.here.value - self.there.value) / max(self.here.error, self.there.error)
+        error = max(self.here.error, self.there.error)
+        if error == 0:
+            return 0.0 if self.is_equal else math.inf
+        return abs(self.here.value - self.there.value) / error
 
     @property
     def relative(self) -> float:
@@ -120,8 +123,8 @@ def differences_text(
     """A row for each part that two runs have, by study and name; a line for each that differs.
 
     Speeds are left out; parts of other rows or columns have a line alone. `machine` names what
-    computed there; without it, parts of the same commit and machine are those of one run, and are
-    left out.
+    computed there where the machine is the same; without it, equal parts of one machine and commit
+    are those of one run, and are left out.
     """
     rows, beyond = [], []
     for study in sorted({*here} & {*there} - {"speed", "differences"}):
@@ -134,6 +137,7 @@ def differences_text(
             except ValueError as error:
                 beyond.append(f"- {name}: {error}")
                 continue
+            elsewhere = machine if machine and other.machine == one.machine else other.machine
             stated = [change for change in found if not math.isnan(change.in_errors)]
             unstated = [change.relative for change in found if math.isnan(change.in_errors)]
             moved = [change for change in stated if change.in_errors > 1]
@@ -146,7 +150,7 @@ def differences_text(
                 [
                     name,
                     f"{one.machine}, {one.commit[:7]}",
-                    f"{machine or other.machine}, {other.commit[:7]}",
+                    f"{elsewhere}, {other.commit[:7]}",
                     f"{len(found)}",
                     f"{sum(change.is_equal for change in found)}",
                     f"{max((change.in_errors for change in stated), default=0.0):.2g}",

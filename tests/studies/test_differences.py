@@ -52,6 +52,12 @@ def test_a_number_differs_beyond_its_error():
     assert beyond == "- k, k of all, found: 2.22 and 2.25, 1.5 times the error"
 
 
+def test_without_width_any_change_is_beyond_the_error():
+    [same] = changes("1.5 (1.5 to 1.5)", "1.5 (1.5 to 1.5)")
+    [other] = changes("1.5 (1.5 to 1.5)", "1.6 (1.6 to 1.6)")
+    assert (same.in_errors, other.in_errors) == (0, math.inf)
+
+
 def test_round_off_is_equal():
     [change] = changes("3e-15", "1e-14")
     assert change.is_equal
