@@ -7,8 +7,6 @@ import threading
 import time
 from pathlib import Path
 
-from tqdm import tqdm
-
 from crackfront.sweep.sweep import Sweep
 
 _LEAST_WAIT, _SHARE = 1.0, 0.1
@@ -49,6 +47,8 @@ class SweepBar:
 
     def _draw(self) -> None:
         """Read the folder repeatedly, and update the bar with newly stored simulations."""
+        from tqdm import tqdm
+
         total, first = self._sweep.n_simulation, self._stored()
         if first == total:
             return
