@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import importlib
 from pathlib import Path
 
@@ -73,19 +74,24 @@ def pages(check: bool) -> None:
         click.echo(told)
 
 
-@main.command(epilog=examples("python -m studies differences elsewhere/docs/reference/parts"))
-@click.argument("folder", type=FILE)
+@main.command(epilog=examples("python -m studies differences ../other-clone"))
+@click.argument("clone", type=FILE)
 @click.option("--machine", help="What computed there, if it is the machine that computed here.")
 @keep_option
-def differences(folder: Path, machine: str | None, keep: bool) -> None:
-    """Compare the numbers of the pages with those of another run, whose parts are in FOLDER.
+def differences(clone: Path, machine: str | None, keep: bool) -> None:
+    """Compare the numbers of the pages with those that the same studies gave in another CLONE.
 
     A number differs if it has moved by more than its own error.
     """
-    from studies.differences import differences_text, parts_of
-    from studies.pages import KEPT
+    from studies.differences import differences_text
+    from studies.pages import KEPT, kept_parts
 
-    text = differences_text(parts_of(KEPT), parts_of(folder), machine)
+    here = kept_parts()
+    with contextlib.chdir(clone):
+        there = kept_parts()
+    if not there:
+        raise ValueError(f"{clone} has no numbers in {KEPT}; give the folder of a clone")
+    text = differences_text(here, there, machine)
     tell("differences", {"processors": text}, "studies.differences", keep=keep)
 
 

@@ -8,12 +8,10 @@ memory and remarks are not compared.
 
 from __future__ import annotations
 
-import json
 import math
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from pathlib import Path
 
 from studies.pages import Part, markdown_table
 
@@ -94,17 +92,6 @@ def _stated(place: str, text: str, expected: str = "") -> Iterator[Number]:
         else:
             error = tolerances[0] if tolerances else math.nan
         yield Number(place, float(found["value"]), error)
-
-
-def parts_of(folder: Path) -> dict[str, dict[str, Part]]:
-    """Parts that a clone keeps in a folder, by study and name; ValueError if there are none."""
-    files = {path.stem: json.loads(path.read_text("utf-8")) for path in folder.glob("*.json")}
-    if not files:
-        raise ValueError(f"{folder} holds no parts of pages; give docs/reference/parts of a clone")
-    return {
-        study: {name: Part(**one) for name, one in listed.items()}
-        for study, listed in files.items()
-    }
 
 
 def changes(here: str, there: str) -> list[Change]:

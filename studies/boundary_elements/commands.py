@@ -42,6 +42,10 @@ def validate(configuration: Path, output: Path | None) -> None:
     from studies.boundary_elements import study
     from studies.boundary_elements.parameters import load_validation
 
+    def above_the_bar(line: str) -> None:
+        with tqdm.external_write_mode():
+            click.echo(line)
+
     parameters = load_validation(configuration)
     folder = output or results_folder(configuration)
     study.refuse_missing_libraries()
@@ -54,7 +58,7 @@ def validate(configuration: Path, output: Path | None) -> None:
             folder,
             parameters,
             origin,
-            tqdm.write,  # above the bar
+            above_the_bar,
             lambda cases: with_progress(cases, len(cases), "cases"),
         )
         write_sums(folder)

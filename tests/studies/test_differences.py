@@ -1,13 +1,15 @@
 """Numbers of two runs: which are compared, with which error, and which differ."""
 
 import math
+import re
+import shutil
 
 import pytest
 from click.testing import CliRunner
 
 from studies.__main__ import main
 from studies.differences import changes, differences_text, numbers
-from studies.pages import Part
+from studies.pages import Part, keep_parts
 
 TABLE = """Scale paper, 3 s of one core.
 
@@ -72,7 +74,14 @@ def test_tables_of_other_rows_are_not_compared_number_by_number():
     assert "- k: the two texts" in differences_text({"law": {"k": part(TABLE)}}, other)
 
 
-def test_a_folder_without_parts_is_refused(tmp_path):
+def test_a_folder_without_parts_is_refused_and_that_of_a_clone_is_compared(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
     done = CliRunner().invoke(main, ["differences", str(tmp_path)])
     assert done.exit_code
-    assert "holds no parts of pages" in done.output
+    assert "has no numbers in docs/reference/parts" in done.output
+    keep_parts("law", {"k": "k is 2.0 ± 0.1"}, "studies.pages")
+    (tmp_path / "other").mkdir()
+    shutil.copytree("docs", "other/docs")
+    done = CliRunner().invoke(main, ["differences", "other", "--machine", "another"])
+    assert done.exit_code == 0, done.output
+    assert re.search(r"\| k \| .* \| another, .* \| 1 \| 1 \| 0 \| 0 \| 0 \|", done.output)
