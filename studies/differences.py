@@ -66,7 +66,7 @@ class Change:
 def numbers(text: str) -> Iterator[Number]:
     """Numbers of a text in Markdown, with the row and the column of each that is in a table."""
     heads: list[str] = []
-    for line in text.splitlines():
+    for line in text.replace("**", "").splitlines():
         if not line.startswith("|"):
             heads = []
             yield from _stated("", line)
