@@ -85,7 +85,13 @@ def write_dataset(path: Path, dataset: xr.Dataset, origin: Provenance) -> None:
 
     The folder is created.
     """
-    stamped, encoding = _stamped(dataset, origin)
+    _write(path, dataset, origin, sums=True)
+
+
+def _write(path: Path, dataset: xr.Dataset, origin: Provenance, *, sums: bool) -> None:
+    """Write a dataset as netCDF with its origin, atomically; checksums of arrays are a choice."""
+    stamped = _stamped(dataset, origin)
+    encoding = {str(name): _encoding(values, sums) for name, values in stamped.variables.items()}
 
     def write(part: Path) -> None:
         with utf8_path(part) as named:
@@ -110,27 +116,28 @@ def utf8_path(path: Path) -> Iterator[Path]:
 
 
 def dataset_content(dataset: xr.Dataset, origin: Provenance) -> bytes:
-    """Content of the file that :func:`write_dataset` would write."""
+    """Content of a netCDF file of a dataset for a pack, which has a checksum of each of its files.
+
+    Those of arrays would double the size of a curve.
+    """
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "dataset.nc"
-        write_dataset(path, dataset, origin)
+        _write(path, dataset, origin, sums=False)
         return path.read_bytes()
 
 
-def _stamped(
-    dataset: xr.Dataset, origin: Provenance
-) -> tuple[xr.Dataset, dict[str, dict[str, Any]]]:
-    """A dataset with its origin, and how its variables are stored."""
+def _stamped(dataset: xr.Dataset, origin: Provenance) -> xr.Dataset:
+    """A dataset with its origin."""
     date = utc_now()
     stamped = dataset.assign_attrs({"title": "results of crackfront"} | dataset.attrs)
     stamped.attrs |= {"Conventions": "CF-1.11", "history": f"{date}: {origin.command}"}
     stamped.attrs |= asdict(origin) | {"date": date}
-    return stamped, {str(name): _encoding(values) for name, values in stamped.variables.items()}
+    return stamped
 
 
-def _encoding(values: xr.Variable) -> dict[str, Any]:
+def _encoding(values: xr.Variable, sums: bool) -> dict[str, Any]:
     """How a variable is stored: HDF5 has checksums for arrays of numbers or letters alone."""
-    encoding: dict[str, Any] = {"fletcher32": True} if values.ndim else {}
+    encoding: dict[str, Any] = {"fletcher32": True} if values.ndim and sums else {}
     if values.dtype.kind in "OU":
         return encoding | ({"dtype": "S1"} if values.ndim else {})
     if np.issubdtype(values.dtype, np.floating):

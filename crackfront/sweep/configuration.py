@@ -136,8 +136,8 @@ def load_configuration(path: Path) -> Sweep:
     return sweep
 
 
-_LISTED_BYTES = 500.0
-"""Memory of a simulation in a list."""
+_LISTED_BYTES, _SAMPLE_BYTES = 500.0, 100.0
+"""Memory of a simulation in a list, and of the means of a bootstrap sample at an amplitude."""
 
 
 def _refuse_infeasible(sweep: Sweep) -> None:
@@ -148,8 +148,8 @@ def _refuse_infeasible(sweep: Sweep) -> None:
         "lower their number",
     )
     refuse_beyond_memory(
-        f"fit: {sweep.fit.n_bootstrap} bootstrap samples of {sweep.n_realisation} realisations",
-        16.0 * sweep.fit.n_bootstrap * sweep.n_realisation,
+        f"fit: {sweep.fit.n_bootstrap} bootstrap samples",
+        _SAMPLE_BYTES * sweep.fit.n_bootstrap * len(sweep.elastic_energies),
         "lower bootstrap",
     )
     seconds, numerics, schedule = 0.0, sweep.numerics, sweep.schedule

@@ -14,7 +14,7 @@ _LAWS = {
 """Of each command: seconds without rows and per row, bytes of memory without rows and per row, and
 1 if it draws the bootstrap, else 0. `python -m studies speed scaling` measures them."""
 
-_DRAWN_SECONDS, _DRAWN_BYTES, _MOST_DRAWN = 2.7e-8, 16.0, 1.35e8
+_DRAWN_SECONDS, _DRAWN_BYTES, _MOST_DRAWN = 8e-9, 24.0, 1.95e8
 """Bootstrap: seconds per row and sample, bytes per realisation and sample, most bytes at once."""
 
 

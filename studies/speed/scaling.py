@@ -142,6 +142,13 @@ def million(
     return shards
 
 
+def disk_of_simulation() -> float:
+    """Expected mean size of a curve and its row in a pack, of `config/default.yaml`, in bytes."""
+    sweep = load_configuration(ROOT / "config/default.yaml")
+    firsts = [one for item in sweep.spectra for one in sweep.one_per_amplitude(item)]
+    return float(np.mean([expected_cost(one).disk for one in firsts]))
+
+
 def hand_out_seconds(n_worker: int = 4, n_task: int = 5000) -> float:
     """Time of the rank that hands out for a task whose curve of 25 kB it stores."""
     script = f"""
@@ -283,6 +290,7 @@ def parts() -> dict[str, str]:
         "late": late_table((10**4, 10**5, 10**6)),
         "efficiency": f"{sum(map(len, sweeps[0]))} simulations of {useful:.0f} core hours; "
         f"{1e3 * losses.hand_out:.2f} ms to hand out and store one, {losses.start:.1f} s to start "
-        f"a job. A simulation takes {slower:.2f} times what the cost model expects."
+        f"a job. A simulation takes {slower:.2f} times what the cost model expects, and "
+        f"{disk_of_simulation() / 1e3:.0f} kB of a pack."
         f"\n\n{markdown_table(header, cells)}",
     }

@@ -669,6 +669,11 @@ def test_an_anchor_may_be_used_as_often_as_it_is_useful(tmp_path):
     assert load_configuration(written(tmp_path, text)).numerics.settings.samples_per_cutoff == 2
 
 
-def test_many_realisations_are_no_reason_to_refuse(tmp_path):
-    text = changed("realisations: 2", "realisations: 100000")
+def test_many_realisations_are_no_reason_to_refuse_but_samples_that_no_memory_holds(
+    tmp_path, monkeypatch
+):
+    monkeypatch.setattr("crackfront.data.bounds.memory_at_hand", lambda: 1e9)
+    text = changed("realisations: 2", "realisations: 100000").replace("p: 500", "p: 5000")
     assert load_configuration(written(tmp_path, text)).n_simulation == 400_000
+    message = refusal(tmp_path, text.replace("p: 5000", "p: 10000000"))
+    assert "fit: 10000000 bootstrap samples would need 2 GB of memory" in message
