@@ -8,6 +8,7 @@ from pathlib import Path
 import click
 
 from crackfront.cli.report import FILE, as_json, echo_answer, examples
+from crackfront.data.bounds import counted
 
 
 @click.command(
@@ -45,8 +46,8 @@ def verify(place: Path, as_json: bool) -> None:
                 "aggregate with one configuration, or make"
             )
         raise click.ClickException(
-            f"{place}: {len(found.damaged)} files are damaged and {len(found.missing)} missing; "
-            "make computes them anew, an archive is to be packed again"
+            f"{place}: {counted(len(found.damaged), 'damaged file')}, {len(found.missing)} "
+            "missing; make computes them anew, an archive is to be packed again"
         )
 
 
@@ -130,12 +131,12 @@ def compare(one: Path, other: Path, tolerance: float, as_json: bool) -> None:
     ]
     lines += [f"without a counterpart: {path}" for path in found.alone]
     if agree:
-        within = "" if found.largest == 0 else f" within {found.largest:.1e}"
+        within = "" if found.largest == 0 else f", within {found.largest:.1e}"
         bits = "in bits" if found.in_bits else "in values, not in bits"
-        lines.append(f"{found.n_file} files agree {bits}{within}")
+        lines.append(f"agreement of {counted(found.n_file, 'file')} {bits}{within}")
     echo_answer(content, lines, as_json=as_json)
     if not agree:
         difference = f"the largest difference is {found.largest:.1e}"
         if found.alone:
-            difference = f"{len(found.alone)} files have no counterpart"
+            difference = f"{counted(len(found.alone), 'file')} without a counterpart"
         raise click.ClickException(f"{one} and {other} do not agree: {difference}")

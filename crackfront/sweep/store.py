@@ -396,8 +396,8 @@ class Store:
         }
         if damaged := [file for file, name in found.items() if is_damaged(file, listed.get(name))]:
             raise ValueError(
-                f"{len(damaged)} files of {self.folder} are damaged, the first is {damaged[0]}; "
-                "run make, which makes them anew, before it is archived"
+                f"{self.folder} holds {counted(len(damaged), 'damaged file')}, the first is "
+                f"{damaged[0]}; run make, which makes them anew, before it is archived"
             )
 
         root = Path(self.folder.name)

@@ -55,4 +55,4 @@ def test_a_difference_is_told_and_ends_with_1_unless_it_is_tolerated(paths):
     assert variables["approach"] == 0.0
     result = compared(other, one, "--tolerance", "1e-5")
     assert result.exit_code == 0
-    assert "1 files agree in values, not in bits within 1.0e-06" in result.output
+    assert "agreement of 1 file in values, not in bits, within 1.0e-06" in result.output

@@ -540,7 +540,7 @@ def test_the_table_of_another_configuration_is_refused(whole):
 
 def test_a_damaged_file_is_not_archived(whole, tmp_path):
     flip_curve(whole, FLAT[0])
-    with pytest.raises(ValueError, match=r"1 files of .* are damaged, the first is .*flat.0-1"):
+    with pytest.raises(ValueError, match=r"holds 1 damaged file, the first is .*flat.0-1"):
         whole.archive(tmp_path / "sweep.zip", curves=True)
     assert not (tmp_path / "sweep.zip").exists()
     whole.archive(tmp_path / "sweep.zip", curves=False)
@@ -562,7 +562,7 @@ def test_a_folder_and_its_archive_are_verified(whole, tmp_path):
     assert found.missing == (f"{FLAT[1].stem}.nc",)
     result = CliRunner().invoke(main, ["verify", str(whole.folder)])
     assert result.exit_code == 1
-    assert "2 files are damaged and 1 missing" in result.output
+    assert "2 damaged files, 1 missing" in result.output
     flip(archive)
     result = CliRunner().invoke(main, ["verify", str(archive)])
     assert result.exit_code in (1, 2)
@@ -670,7 +670,7 @@ def test_two_stores_of_one_sweep_agree_in_bits_and_another_sweep_does_not(whole,
     assert found.by_variable()["force"].largest > 0
     result = CliRunner().invoke(main, ["compare", str(whole.folder), str(twin.folder)])
     assert result.exit_code == 0
-    assert "11 files agree in bits" in result.output
+    assert "agreement of 11 files in bits" in result.output
 
 
 def test_the_fit_of_a_sweep_that_was_interrupted_is_that_of_an_undisturbed_one(
