@@ -83,10 +83,13 @@ def test_memory_is_predicted_within_a_factor_one_and_a_half():
         "from crackfront.sweep.configuration import load_configuration\n"
         "from crackfront.simulate.costs import expected_cost\n"
         "from crackfront.simulate.run import run_simulation\n"
+        "from studies.speed.machine import peak_memory\n"
         f"sweep = load_configuration(Path({str(ROOT / 'config/test.yaml')!r}))\n"
         "one = sweep.simulation(sweep.spectra[0], 0.1, 0)\n"
         "one = replace(one, resolution=replace(one.resolution, n_point=2500))\n"
-        "print(run_simulation(one).measures.peak_memory / expected_cost(one).memory)\n"
+        "run_simulation(one)\n"
+        # The peak in its measures is that of the tests, if theirs is higher: a process inherits it.
+        "print(1e6 * peak_memory() / expected_cost(one).memory)\n"
     )
     done = subprocess.run(
         [sys.executable, "-c", code], capture_output=True, text=True, timeout=600, check=True
