@@ -625,7 +625,7 @@ def test_an_archive_has_the_whole_name_of_its_folder_and_an_empty_one_is_refused
     sentence = refused("archive", folder)
     assert "holds no hysteresis.nc; run the sweep before it is archived" in sentence
     (folder / "hysteresis.nc").write_bytes(b"data")
-    assert "1 files of" in refused("archive", folder)
+    assert "holds 1 damaged file" in refused("archive", folder)
     xr.Dataset().to_netcdf(folder / "hysteresis.nc")
     assert run("archive", folder).exit_code == 0
     assert [path.name for path in tmp_path.glob("*.zip")] == ["of.2026.zip"]
