@@ -232,7 +232,7 @@ def test_a_surface_and_a_mask_in_npy_are_read_by_the_manager_alone(tmp_path, rng
     np.save(tmp_path / "mask.npy", masked)
     (tmp_path / "own.yaml").write_text(OWN)
     told = ("simulate", str(tmp_path / "own.yaml"), "--output", str(tmp_path / "own"))
-    done = crackfront(*told, "--ranks", "2")
+    done = crackfront(*told, ranks=2)
     assert done.returncode == 0, done.stderr
     assert "[2/2]" in done.stdout
 

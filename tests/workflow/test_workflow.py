@@ -20,7 +20,7 @@ import pytest
 import xarray as xr
 
 import crackfront as cf
-from tests.commands import curves, slow
+from tests.commands import curves, run, slow
 from tests.yaml_texts import from_yaml, to_yaml
 
 ROOT = Path(__file__).parents[2]
@@ -52,8 +52,8 @@ def snakemake(*arguments, errors=subprocess.PIPE, **options):
 
 def repair(sweep, results):
     """Take back what is damaged or missing, as `make` does before the workflow plans."""
-    told = [sys.executable, "-m", "crackfront", "repair", str(sweep), "--output", str(results)]
-    subprocess.run(told, check=True, timeout=600)
+    done = run("repair", sweep, "--output", results)
+    assert done.exit_code == 0, done.output
 
 
 def states(folder):
