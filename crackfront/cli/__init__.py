@@ -108,7 +108,7 @@ Exit codes:
   3   predict, samples with --strict: the theory applies with reservations
   4   predict, samples: the theory does not apply; the output says which modulus,
       radius, roughness or w_int would meet the condition
-  75  interrupted (Ctrl-C or SIGTERM); run the same command to continue
+  75  interrupted (Ctrl-C or SIGTERM); run the same command again
 
 \b
 Examples:

@@ -66,7 +66,7 @@ def _columns(command: Any) -> Any:
 @click.option("--stiffness", help="Stiffness of the machine, as in 200N/m.")
 @click.option("--window", help="Contact radii to average over, as in 50um:150um.")
 @_columns
-@click.option("--scans", type=FILE, multiple=True, help="Scans of the surface, for a prediction.")
+@click.option("--scans", type=FILE, multiple=True, help="Scan of the surface, for a prediction. May be repeated.")
 @click.option("--work-of-adhesion", help="w_int of the prediction, as in 63mJ/m2.")
 @click.option("--figure", type=FILE, help="Figure of the loop; without suffix PDF and PNG.")
 @as_json

@@ -134,7 +134,8 @@ def predict(
     SCANS are files of instruments in any format that SurfaceTopography reads, one measurement of
     the surface or several. In their place --psd names the export of a spectral density, and --rms
     with --hurst and --correlation-length or --roll-off the numbers of one. Works of adhesion are
-    w_int - e_el -+ k e_el, with k by the law of `crackfront law`.
+    w_int - e_el -+ k e_el. k is that of `crackfront law`, divided by the ratio of the front to
+    boundary elements.
 
     Exit code 0: a prediction, with reservations where there are any or where it cannot be decided
     whether the theory applies (3 with --strict). 4: the theory does not apply; nothing is

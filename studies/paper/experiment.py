@@ -50,7 +50,7 @@ def hystereses(contact: NanodiamondContact) -> tuple[Hysteresis, ...]:
             Estimate(front, error, front - REACH * error, front + REACH * error),
             BLUE,
         ),
-        Hysteresis("front over its excess of\nboundary elements", below, VERMILION),
+        Hysteresis("front, divided by its ratio\nto boundary elements", below, VERMILION),
     )
 
 
@@ -60,7 +60,7 @@ def hystereses_table(shown: tuple[Hysteresis, ...]) -> str:
     rows = [
         (" ".join(one.name.split()), one.text, f"{measured / one.value.value:.1f}") for one in shown
     ]
-    return markdown_table("nanodiamond | hysteresis (mJ/m2) | measured over it", rows)
+    return markdown_table("nanodiamond | hysteresis (mJ/m2) | measured / this", rows)
 
 
 def hystereses_figure(shown: tuple[Hysteresis, ...]) -> Figure:
