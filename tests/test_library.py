@@ -389,7 +389,11 @@ def test_an_array_is_the_same_surface_in_all_units():
 @pytest.mark.parametrize(
     ("values", "given", "sentence"),
     [
-        (1 + WAVE, {}, r"3.142 w_int, .* in reduced; .* were they in units of w_int\? Then set"),
+        (
+            1 + WAVE,
+            {},
+            r"3.142 w_int, .* in reduced units; .* were they in units of w_int\? Then set",
+        ),
         ((1 + WAVE) / np.pi, {"units": "w_int"}, "0.3183 w_int, .* were they in reduced units"),
         (WAVE, {"units": "w_int"}, "were they deviations from it"),
         (5 + WAVE, {"units": "w_int"}, "check the values, or take their mean for w_int"),

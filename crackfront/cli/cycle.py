@@ -24,11 +24,12 @@ from crackfront.cli.report import (
     as_json,
     echo_answer,
     examples,
+    refuse_overwriting,
     refuse_unwritable,
     whole,
 )
 from crackfront.core.solver import DEFAULT_TOLERANCE
-from crackfront.data.bounds import DENSITY, NUMBER, SITES, Range, regular_file
+from crackfront.data.bounds import DENSITY, NUMBER, SITES, Range, counted, regular_file
 from crackfront.sweep.checkpoints import CheckpointFile
 from crackfront.sweep.parallel import deferring_stops
 
@@ -56,9 +57,12 @@ def _loads(_: click.Context, __: click.Parameter, given: str | None) -> tuple[fl
 
     if given is None:
         return None
-    if re.fullmatch(r"[-+.\de]+(,[-+.\de]+)*", given):
-        return load_values(given.split(","))
-    text = regular_file(Path(given), _MOST_BYTES).read_text(encoding="utf-8")
+    if re.fullmatch(r"[-+.\de]+", given) or ("," in given and not Path(given).exists()):
+        return load_values([one.strip() for one in given.split(",")])
+    try:
+        text = regular_file(Path(given), _MOST_BYTES).read_text(encoding="utf-8")
+    except UnicodeDecodeError as error:
+        raise ValueError(f"--loads is {given}, which is no text; name one of numbers") from error
     try:
         return load_values(re.sub("#.*", "", text).replace(",", " ").split())
     except ValueError as error:
@@ -67,14 +71,13 @@ def _loads(_: click.Context, __: click.Parameter, given: str | None) -> tuple[fl
 
 @click.command(
     epilog=examples(
-        "crackfront cycle --field tile.nc --max-penetration 1 --output cycle.nc --watch",
-        "crackfront cycle --field surface.nc --max-penetration 1 --step 0.02 --output cycle.nc \\",
+        "crackfront cycle --field field.nc --max-penetration 1 --output cycle.nc --watch",
+        "crackfront cycle --field field.nc --max-penetration 1 --step 0.02 --output cycle.nc \\",
         "  --figure cycle",
-        "crackfront cycle --field tile.nc --max-penetration 1 --step 0.05 --record fronts \\",
+        "crackfront cycle --field field.nc --max-penetration 1 --step 0.05 --record fronts \\",
         "  --record energy --output cycle.nc",
-        "crackfront cycle --spring 32 --field tile.nc --loads 300,1100,300 \\",
-        "  --step 10 --record fronts --output line.nc",
-        "crackfront cycle --field tile.nc --loads loads.txt --step 0.02 --output minor.nc",
+        "crackfront cycle --field field.nc --loads 0,1,0.2,1,0 --step 0.02 --output minor.nc",
+        "crackfront cycle --spring 2 --field field.nc --loads 0,4,0 --step 0.1 --output line.nc",
     )
 )
 @click.option("--field", "field_file", type=FILE, required=True, help="netCDF file of the field.")
@@ -148,9 +151,10 @@ def cycle(
     """Run one approach and retraction on a field from a file.
 
     The field is a surface on a periodic tile, work_of_adhesion(x, y) or height(x, y); the apex of
-    the sphere is at its centre. crackfront.surface of the Python library makes a field from an
-    array. All quantities are in reduced units: R = 1, w_int = 1/pi, E' = 3/4. Works of adhesion
-    are in units of w_int if their attribute units is w_int.
+    the sphere is at its centre. `crackfront surface --field` makes a field from a scan, and
+    crackfront.surface of the Python library from an array. All quantities are in reduced units:
+    R = 1, w_int = 1/pi, E' = 3/4. Works of adhesion are in units of w_int if their attribute
+    units is w_int.
 
     With --spring the front is straight along y, with one site for every y of the tile. Springs
     pull it along x; the loads are the positions of their other ends, in lengths of the tile. On a
@@ -174,6 +178,8 @@ def cycle(
     from crackfront.simulate.user_surface import read_field
 
     refuse_no_file(output)
+    written = {"--output": output, "--figure": figure, "the checkpoint": _checkpoint(output)}
+    refuse_overwriting([field_file], written)
     for path in (output, figure or output):
         refuse_unwritable(path.parent)
     solution = named_solver(solver, DEFAULT_TOLERANCE)
@@ -202,7 +208,10 @@ def cycle(
     keeper.path.unlink(missing_ok=True)
     drawn = () if figure is None else _draw(found, figure)
     end = f"{recorder.load_noun} {recorder.load:.6g}"
-    lines = [f"{len(recorder.states)} states: {output}", *(f"figure: {path}" for path in drawn)]
+    lines = [
+        f"{counted(len(recorder.states), 'state')}: {output}",
+        *(f"figure: {path}" for path in drawn),
+    ]
     lines.append(found.attrs["result"])
     if recorder.status is Status.LOST_CONTACT:
         lines.append(f"contact was lost at {end}")
@@ -250,7 +259,7 @@ class _States:
     """The states of a cycle in a file beside its output, from which the same command goes on."""
 
     def __init__(self, output: Path, key: str, geometry: Geometry) -> None:
-        self.path = output.with_name(f"{output.stem}.checkpoint.nc")
+        self.path = _checkpoint(output)
         self._key, self._geometry = key, geometry
         self._file = CheckpointFile(self.path, _SECONDS_BETWEEN_CHECKPOINTS)
 
@@ -268,10 +277,12 @@ class _States:
             click.echo(f"{self.path} is damaged; {aside}", err=True)
             return None
         if found is None:
-            click.echo(f"{self.path} is of another cycle; this one begins anew", err=True)
-        else:
-            count = found.record.states.direction.size
-            click.echo(f"going on from {self.path}, after state {count}", err=True)
+            raise ValueError(
+                f"{self.path} holds the states of another cycle, of another field, other options "
+                "or other sources; remove it, or name another --output"
+            )
+        count = found.record.states.direction.size
+        click.echo(f"going on from {self.path}, after state {count}", err=True)
         return found
 
     def __call__(self, recorder: Recorder) -> None:
@@ -289,6 +300,11 @@ class _States:
             raise StoppedError(
                 f"{count} states are stored in {self.path}; run the same command to continue"
             )
+
+
+def _checkpoint(output: Path) -> Path:
+    """File beside an output that keeps the states of an interrupted cycle."""
+    return output.with_name(f"{output.stem}.checkpoint.nc")
 
 
 def _key(field_file: Path, *options: object) -> str:

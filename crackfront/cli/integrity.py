@@ -2,22 +2,23 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import asdict
 from pathlib import Path
 
 import click
 
-from crackfront.cli.report import FILE, as_json, echo_answer, examples
-from crackfront.data.bounds import counted
+from crackfront.cli.report import FILE, Number, as_json, echo_answer, examples
+from crackfront.data.bounds import Range, counted
 
 
 @click.command(
     epilog=examples("crackfront verify results/default", "crackfront verify default.zip --json")
 )
-@click.argument("place", metavar="FOLDER", type=FILE)
+@click.argument("place", metavar="PLACE", type=FILE)
 @as_json
 def verify(place: Path, as_json: bool) -> None:
-    """Check a folder of results, or an archive of it, against its list of checksums, SHA256SUMS.
+    """Check a folder of results, or its archive (ZIP), against its checksums, SHA256SUMS.
 
     `sha256sum --check SHA256SUMS` in the folder does the same. Files that the list does not name
     are checked where they have checksums of their own: netCDF files, and curves in packs. The exit
@@ -29,7 +30,7 @@ def verify(place: Path, as_json: bool) -> None:
 
     found = verification(place)
     lines = [
-        f"{found.listed} files in SHA256SUMS, {found.unlisted} others",
+        f"{counted(found.listed, 'file')} in SHA256SUMS, {counted(found.unlisted, 'other')}",
         *(f"damaged: {name}" for name in found.damaged),
         *(f"missing: {name}" for name in found.missing),
         *found.mixture,
@@ -102,7 +103,7 @@ def repair(places: tuple[Path, ...], output: Path | None) -> None:
 @click.argument("other", type=FILE)
 @click.option(
     "--tolerance",
-    type=click.FloatRange(min=0),
+    type=Number(Range(0, math.inf)),
     default=0.0,
     help="Largest difference at which results agree.",
 )

@@ -13,6 +13,7 @@ from crackfront.cli.report import (
     as_json,
     echo_json,
     examples,
+    refuse_overwriting,
     refuse_unwritable,
 )
 from crackfront.data.bounds import Range
@@ -66,7 +67,12 @@ def _columns(command: Any) -> Any:
 @click.option("--stiffness", help="Stiffness of the machine, as in 200N/m.")
 @click.option("--window", help="Contact radii to average over, as in 50um:150um.")
 @_columns
-@click.option("--scans", type=FILE, multiple=True, help="Scan of the surface, for a prediction. May be repeated.")
+@click.option(
+    "--scans",
+    type=FILE,
+    multiple=True,
+    help="Scan of the surface, for a prediction. May be repeated.",
+)
 @click.option("--work-of-adhesion", help="w_int of the prediction, as in 63mJ/m2.")
 @click.option("--figure", type=FILE, help="Figure of the loop; without suffix PDF and PNG.")
 @as_json
@@ -93,6 +99,7 @@ def loop(
 
     if scans and work_of_adhesion is None:
         raise ValueError("a prediction for --scans needs w_int; give --work-of-adhesion")
+    refuse_overwriting([path, *scans], {"--figure": figure})
     if figure is not None:
         refuse_unwritable(figure.parent)
     radius = None if sphere is None else si_value(sphere, "m", what="--radius")
@@ -108,6 +115,8 @@ def loop(
                 f"{path} is in reduced units, and predictions are not; give --radius and --modulus"
             )
     else:
+        if work_of_adhesion is not None and not scans:
+            raise ValueError("--work-of-adhesion is of a prediction; name --scans too")
         found = _measured(path, radius, contact_modulus, of_rig)
     predicted = _predicted(scans, found, work_of_adhesion) if scans else None
     if as_json:
@@ -135,6 +144,9 @@ def _measured(
     from crackfront.experiment.loop import Rig, analyse_loop
     from crackfront.experiment.recording import read_recording
 
+    named = {name: of_rig[name] for name, _ in _COLUMNS if of_rig[name]}
+    units = {name: of_rig[f"{name}_unit"] for name, _ in _COLUMNS if of_rig[f"{name}_unit"]}
+    recording = read_recording(path, named, units)
     if radius is None:
         raise ValueError(f"{path} does not state the sphere; give its --radius, as in 1.25mm")
     stiffness, window = of_rig["stiffness"], of_rig["window"]
@@ -146,9 +158,7 @@ def _measured(
         stiffness=None if stiffness is None else si_value(stiffness, "N/m", what="--stiffness"),
         window=None if window is None else _window(window),
     )
-    named = {name: of_rig[name] for name, _ in _COLUMNS if of_rig[name]}
-    units = {name: of_rig[f"{name}_unit"] for name, _ in _COLUMNS if of_rig[f"{name}_unit"]}
-    return analyse_loop(read_recording(path, named, units), rig)
+    return analyse_loop(recording, rig)
 
 
 def _simulated(
@@ -161,6 +171,8 @@ def _simulated(
     from crackfront.simulate.si_units import in_si_units, stated_scales
 
     cycle = read_dataset(path)
+    if "direction" not in cycle.variables:
+        raise ValueError(f"{path} holds no cycle; name a file of crackfront cycle or of a sweep")
     if radius is None and contact_modulus is None:
         return simulated_loop(cycle, str(path))
     if stated_scales(cycle) is not None:

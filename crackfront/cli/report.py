@@ -6,11 +6,12 @@ import json
 import math
 import sys
 import time
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, TypeVar
 
 import click
+from click.core import ParameterSource
 
 from crackfront.data.bounds import Range, in_time
 from crackfront.data.jsonable import to_jsonable
@@ -29,6 +30,10 @@ class Number(click.FloatRange):
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
         """The number of a text."""
+        try:
+            float(value)
+        except ValueError:
+            self.fail(f"{value!r} is no number", param, ctx)
         number = super().convert(value, param, ctx)
         if math.isnan(number):
             self.fail("nan is no number", param, ctx)
@@ -131,6 +136,63 @@ def refuse_unwritable(folder: Path) -> None:
     """Raise an OSError where a folder cannot be made or written to, before anything is computed."""
     import tempfile
 
-    folder.mkdir(parents=True, exist_ok=True)
-    with tempfile.TemporaryFile(dir=folder):
-        pass
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=folder):
+            pass
+    except OSError as error:
+        # The name of the temporary file says nothing to a user.
+        raise OSError(error.errno, error.strerror, str(folder)) from error
+
+
+def refuse_overwriting(inputs: Iterable[Path], outputs: Mapping[str, Path | None]) -> None:
+    """Raise ValueError if an output is a file that the command reads, or two outputs are one.
+
+    The outputs are those of options by their names; a figure without suffix is a PDF and a PNG.
+    """
+    read = {path.resolve() for path in inputs}
+    written: dict[Path, str] = {}
+    for option, given in outputs.items():
+        if given is None:
+            continue
+        is_stem = option == "--figure" and not given.suffix
+        for path in [Path(f"{given}{end}") for end in (".pdf", ".png")] if is_stem else [given]:
+            place = path.resolve()
+            if place in read:
+                raise ValueError(
+                    f"{option} would overwrite {path}, which the command reads; name another file"
+                )
+            if place in written:
+                raise ValueError(
+                    f"{written[place]} and {option} are the same file, {path}; name two files"
+                )
+            written[place] = option
+
+
+def refuse_other_kind(option: str, path: Path | None, suffix: str) -> None:
+    """Raise ValueError if the file of an option exists and its suffix is of another kind."""
+    if path is not None and path.is_file() and path.suffix.lower() != suffix:
+        raise ValueError(
+            f"{option} is {path}, a file that exists and is no {suffix} file; name another one"
+        )
+
+
+def refuse_without(context: click.Context, needed: str, *names: str) -> None:
+    """Raise ValueError if an option is given that has an effect only beside another one."""
+    if not context.params[needed]:
+        for name in names:
+            if context.get_parameter_source(name) is not ParameterSource.DEFAULT:
+                raise ValueError(f"{_option(name)} has an effect only with {_option(needed)}")
+
+
+def refuse_together(context: click.Context, one: str, *names: str) -> None:
+    """Raise ValueError if an option is given beside another one that leaves it without effect."""
+    if context.params[one]:
+        for name in names:
+            if context.get_parameter_source(name) is not ParameterSource.DEFAULT:
+                raise ValueError(f"{_option(name)} has no effect with {_option(one)}; drop one")
+
+
+def _option(name: str) -> str:
+    """Name of an option, of that of its parameter."""
+    return f"--{name.removeprefix('as_').removeprefix('is_').replace('_', '-')}"

@@ -148,6 +148,10 @@ def archive(folder: Path, output: Path | None, no_curves: bool) -> None:
             "or make, before it is archived"
         )
     path = folder.with_name(f"{folder.name}.zip") if output is None else output
+    if path.suffix.lower() != ".zip":
+        raise ValueError(f"--output is {path}; name a ZIP file, as in {folder.name}.zip")
+    if folder.resolve() in path.resolve().parents:
+        raise ValueError(f"--output is {path}, among the results; name a file outside of {folder}")
     click.echo(f"archive: {path}, {Store(folder).archive(path, curves=not no_curves)} files")
 
 

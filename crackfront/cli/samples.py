@@ -11,7 +11,14 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from crackfront.cli.options import options_of
-from crackfront.cli.report import FILE, examples, refuse_unwritable
+from crackfront.cli.report import (
+    FILE,
+    examples,
+    refuse_other_kind,
+    refuse_overwriting,
+    refuse_together,
+    refuse_unwritable,
+)
 from crackfront.topography.options import PredictionOptions, ReadingOptions, SphereOptions
 
 if TYPE_CHECKING:
@@ -73,6 +80,9 @@ def samples(
     """
     from crackfront.topography.samples import read_samples
 
+    refuse_together(context, "no_figure", "figure", "quantity")
+    refuse_overwriting([path], {"--csv": table, "--figure": figure})
+    refuse_other_kind("--csv", table, ".csv")
     stem = Path("results/samples", path.stem)
     table = table or stem.with_name(f"{stem.name}.csv")
     common = {name: value for name, value in options.items() if value not in (None, ())}
@@ -95,11 +105,12 @@ def samples(
 
 def write_samples(path: Path, samples: Sequence[Sample], first: str) -> list[SampleResult]:
     """Write a table with a row for each sample, as soon as it is known; - is standard output."""
-    from crackfront.data.files import write_text
+    from crackfront.data.files import refuse_no_file, write_text
     from crackfront.topography.samples import predicted_samples
 
     is_printed, found = str(path) == "-", []
     if not is_printed:
+        refuse_no_file(path)
         refuse_unwritable(path.parent)
     text = ""
     for one in predicted_samples(samples):

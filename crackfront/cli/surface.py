@@ -16,7 +16,11 @@ from crackfront.cli.report import (
     echo_answer,
     echo_json,
     examples,
+    refuse_other_kind,
+    refuse_overwriting,
+    refuse_together,
     refuse_unwritable,
+    refuse_without,
     whole,
 )
 from crackfront.cli.samples import exit_code, write_samples
@@ -49,6 +53,8 @@ def _listed(
 ) -> tuple[Path, ...]:
     """The scans, unless a command is to list their channels instead of what it does."""
     if context.params.get("list_channels"):
+        if not scans:
+            raise ValueError("--list-channels lists those of scans; name SCANS")
         from crackfront.topography.scan.instruments import list_channels
 
         for scan in scans:
@@ -148,6 +154,12 @@ def predict(
     scales = _scales(options)
     given = checked_options(PredictionOptions, options, "--")
     name = _origin(scans, psd, options)
+    refuse_without(context, "simulate", "realisations", "seed")
+    refuse_together(context, "no_figure", "figure", "panel")
+    refuse_together(context, "as_json", "is_long")
+    inputs = scans if psd is None else (psd,)
+    refuse_overwriting(inputs, {"--csv": table, "--figure": figure})
+    refuse_other_kind("--csv", table, ".csv")
     if table is not None:
         if not scans:
             raise ValueError("--csv writes a row for each scan; name scans")
@@ -184,8 +196,9 @@ def predict(
 
 def _origin(scans: tuple[Path, ...], psd: Path | None, options: Mapping[str, Any]) -> str:
     """Name for the figure of a surface, which is refused unless it is given in one way."""
-    is_stated = any(options[name] is not None for name in SelfAffineOptions.model_fields)
-    ways = {"SCANS": bool(scans), "--psd": psd is not None, "--rms": is_stated}
+    stated = [name for name in SelfAffineOptions.model_fields if options[name] is not None]
+    number = f"--{stated[0].replace('_', '-')}" if stated else "--rms"
+    ways = {"SCANS": bool(scans), "--psd": psd is not None, number: bool(stated)}
     named = [way for way, is_named in ways.items() if is_named]
     if len(named) != 1:
         raise ValueError(
@@ -253,8 +266,15 @@ def surface(scans: tuple[Path, ...], as_json: bool, field: Path | None, **option
 
     is_pressed = any(options[name] is not None for name in SphereOptions.model_fields)
     scales = _scales(options) if is_pressed or field is not None else None
-    if field is not None and len(scans) > 1:
-        raise ValueError(f"--field takes one scan, not {len(scans)}; name the one to press on")
+    refuse_overwriting(scans, {"--field": field})
+    refuse_other_kind("--field", field, ".nc")
+    if field is not None:
+        from crackfront.data.files import refuse_no_file
+
+        if len(scans) > 1:
+            raise ValueError(f"--field takes one scan, not {len(scans)}; name the one to press on")
+        refuse_no_file(field)
+        refuse_unwritable(field.parent)
     found = _surface(scans, options)
     content = machine_readable(found, scales)
     echo_answer(content, [report_text(found, scales)], as_json=as_json)

@@ -120,8 +120,9 @@ def _refuse_strange_mean(values: Array, units: str) -> None:
         cause = "were they in reduced units, in which w_int is 1/pi? Then set units to 'reduced'"
     elif abs(mean) < 0.1:
         cause = "were they deviations from it? Then add w_int"
+    in_units = "units of w_int" if units == "w_int" else "reduced units"
     raise ValueError(
-        f"the mean work of adhesion is {mean:.4g} w_int, with values in {units}; it must lie "
+        f"the mean work of adhesion is {mean:.4g} w_int, with values in {in_units}; it must lie "
         f"between 0.5 and 2: {cause}"
     )
 
@@ -170,7 +171,7 @@ def surface_adhesion(surface: xr.DataArray) -> AdhesionMap:
     if bad.size:
         raise ValueError(
             f"{surface.name} is {samples[tuple(bad[0])]} at x index {bad[0, 0]}, y index "
-            f"{bad[0, 1]} ({len(bad)} such values); replace them by finite values"
+            f"{bad[0, 1]} ({counted(len(bad), 'such value')}); write finite values"
         )
     _refuse_extreme(SURFACES[kind].name, samples, unit)
     if kind == "roughness":
@@ -298,5 +299,5 @@ def _refuse_extreme(name: str, values: Array, unit: float = 1.0) -> None:
         bounds = f"{VALUES.least:g} and {VALUES.most:g}"
         raise ValueError(
             f"{name} is {float(values[place]) / unit:g} at index {', '.join(map(str, place))} "
-            f"({len(beyond)} such values); it must lie between {bounds}"
+            f"({counted(len(beyond), 'such value')}); it must lie between {bounds}"
         )

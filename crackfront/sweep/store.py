@@ -296,6 +296,7 @@ class Store:
 
     def about(self, sweep: Sweep) -> dict[str, str]:
         """Attributes of the file of the whole sweep; refused as by :meth:`table`."""
+        self._refuse_no_table()
         about = read_attributes(self.hysteresis)
         if about.get(SWEEP_FINGERPRINT) != sweep.table_fingerprint:
             raise ValueError(
@@ -303,6 +304,14 @@ class Store:
                 "crackfront simulate and crackfront aggregate with this one, or make"
             )
         return {name: str(value) for name, value in about.items()}
+
+    def _refuse_no_table(self) -> None:
+        """Raise ValueError if there is no file of the whole sweep."""
+        if not self.hysteresis.exists():
+            raise ValueError(
+                f"{self.folder} holds no hysteresis.nc; run crackfront aggregate with the "
+                "configuration of the sweep, or make"
+            )
 
     def repair(self, configuration: Path) -> Iterator[str]:
         """Set aside what is damaged, and remove shards whose curves are gone, to be made anew.
@@ -360,6 +369,7 @@ class Store:
         Curves of other numerics, which the packs may hold too, are left out. ValueError if any is
         missing or damaged, before a file is written.
         """
+        self._refuse_no_table()
         wanted = dict.fromkeys(curve_names(self.hysteresis))
         found: dict[str, Member] = {}
         for path in pack_paths(self.curves):

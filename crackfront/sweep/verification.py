@@ -23,6 +23,9 @@ from crackfront.sweep.shards import curve_names, finished_shard
 from crackfront.sweep.store import Store, lost_curves
 from crackfront.sweep.table import SWEEP_FINGERPRINT
 
+_RESULTS = (".nc", ".tar", ".json")
+"""Suffixes of files, one of which every folder of results has."""
+
 
 @dataclass(frozen=True, slots=True)
 class Verification:
@@ -49,7 +52,10 @@ def verification(place: Path) -> Verification:
         listed = read_sums(folder)
         names = [str(path.relative_to(folder)) for path in result_files(folder)]
         damaged = [str(path.relative_to(folder)) for path in damaged_files(folder)]
-        missing = sorted({*listed} - {*names}) + list(lost_curves(folder))
+        missing = sorted({*listed} - {*names})
+        # An archive may have been packed without curves.
+        if place.is_dir() or (folder / "curves").is_dir():
+            missing += lost_curves(folder)
         shards = map(finished_shard, (folder / "shards").glob("*.nc"))
         arithmetic = frozenset[str]().union(*(one.arithmetic for one in shards if one))
         mixture = tuple(
@@ -57,8 +63,8 @@ def verification(place: Path) -> Verification:
         )
         if place.is_file() and not listed:
             damaged.append(place.name)  # the list is the last file of an archive
-        elif not names and not listed:
-            raise UnreadableFileError(f"{place} holds no file; name a folder of results")
+        elif not listed and not any(name.endswith(_RESULTS) for name in names):
+            raise UnreadableFileError(f"{place} holds no results; name a folder of results")
     unlisted = len({*names} - {*listed})
     absent = tuple(dict.fromkeys(missing))
     return Verification(len(listed), unlisted, arithmetic, tuple(damaged), absent, mixture)
@@ -98,6 +104,11 @@ def _folder(place: Path) -> Iterator[Path]:
         return
     if not place.is_file():
         raise UnreadableFileError(f"{place} does not exist; name a folder of results or an archive")
+    with place.open("rb") as file:
+        if place.suffix.lower() != ".zip" and file.read(2) != b"PK":
+            raise UnreadableFileError(
+                f"{place} is neither a folder of results nor an archive (ZIP) of one"
+            )
     with tempfile.TemporaryDirectory() as temporary:
         _unpack(place, Path(temporary))
         inner = list(Path(temporary).iterdir())

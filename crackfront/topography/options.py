@@ -42,8 +42,8 @@ REPEATED = "May be repeated."
 """Marks a field of which one scan may have several values."""
 
 
-_ZERO = re.compile(r"\s*[-+]?0*\.?0+\.?\s*(\S.*?)?\s*")
-"""Zero, and its unit if it has one."""
+_ZERO = re.compile(r"\s*[-+]?0*\.?0+\.?\s*([^\s\d.].*?)?\s*")
+"""Zero, and its unit if it has one, which begins with no digit: 0.1um is not zero."""
 
 
 class Options(BaseModel):
@@ -190,7 +190,7 @@ def number(bounds: Range) -> BeforeValidator:
     def checked(value: Any, info: ValidationInfo) -> float:
         try:
             found = float(value)
-        except ValueError as error:
+        except (TypeError, ValueError) as error:
             raise ValueError(f"{_named(info)} is {value!r}; write a number") from error
         refuse_outside(_named(info), found, bounds)
         return found
@@ -328,7 +328,7 @@ class PredictionOptions(Options):
     """What a prediction takes into account beside the surface and the sphere."""
 
     pull_off: Force | None = None
-    """Measured pull-off force, as in 0.4mN, from which w_int is computed and printed."""
+    """Measured pull-off force, as in 0.4mN; the w_int that would explain it is printed too."""
 
     range: Length | None = None
     """Range of the attraction, as in 0.3nm; by default 0.5nm, that of van der Waals forces."""
@@ -341,7 +341,7 @@ class PsdOptions(Options):
     """Series by name or number, for files with several."""
 
     psd_units: Text | None = None
-    """Units of both columns, as in 1/um,um^3, if their headings have none."""
+    """Units of both columns, as in 1/um,um^3, in place of those in their headings."""
 
     psd_kind: PsdKind | None = None
     """Kind of the density: 1d (profiles), 2d (isotropic), radial (its integral is the mean

@@ -368,6 +368,9 @@ def _yaml_rows(path: Path) -> Iterator[tuple[int, dict[str, Any]]]:
         where = "" if error.problem_mark is None else f", line {error.problem_mark.line + 1}"
         raise ValueError(f"{path}{where}: this is no YAML: {error.problem}; correct it") from error
     rows = content.get("samples") if isinstance(content, dict) else content
+    others = [name for name in content if name != "samples"] if isinstance(content, dict) else []
+    if rows is not None and others:
+        raise ValueError(f"{path} has {str(others[0])!r} beside samples; remove it")
     if not isinstance(rows, list) or not all(isinstance(one, dict) for one in rows):
         raise ValueError(
             f"{path} has no list of samples; write 'samples:' with '- sample: A' below"
@@ -377,7 +380,7 @@ def _yaml_rows(path: Path) -> Iterator[tuple[int, dict[str, Any]]]:
         yield (
             row.lc.line + 1,
             {
-                name: _with_unit(str(value), unit, ",") if unit else value
+                name: list(value) if isinstance(value, list) else _with_unit(str(value), unit, ",")
                 for (name, unit), value in cells.items()
             },
         )

@@ -75,14 +75,20 @@ def measured_cells() -> tuple[LawCell, ...]:
 
 
 def csv_rows(text: str, kind: type[Row]) -> tuple[Row, ...]:
-    """Records of texts, whole numbers and numbers from comma-separated values."""
+    """Records of texts, whole numbers and numbers from comma-separated values.
+
+    ValueError if there is no row, or a column is missing.
+    """
     record: Any = kind
     numbers = {"int": int, "float": float}
     types = {item.name: numbers.get(str(item.type), str) for item in fields(record)}
-    return tuple(
-        kind(**{name: read(row[name]) for name, read in types.items()})
-        for row in csv.DictReader(text.splitlines())
-    )
+    rows = list(csv.DictReader(text.splitlines()))
+    if not rows or (missing := types.keys() - rows[0].keys()):
+        lacks = f"the column {min(missing)}" if rows else "rows"
+        raise ValueError(
+            f"the table lacks {lacks}; name one that python -m studies law has written"
+        )
+    return tuple(kind(**{name: read(row[name]) for name, read in types.items()}) for row in rows)
 
 
 def csv_text(rows: Sequence[Any]) -> str:

@@ -121,7 +121,7 @@ def test_a_tile_with_a_value_that_is_not_finite_is_refused_with_its_place(
         "cycle", "--field", tmp_path / "bad.nc", "--max-penetration", 1, "--step", 0.5,
         "--output", tmp_path / "out.nc",
     )  # fmt: skip
-    assert f"work_of_adhesion is {value} at x index 3, y index 5 (1 such values)" in sentence
+    assert f"work_of_adhesion is {value} at x index 3, y index 5 (1 such value)" in sentence
 
 
 def test_a_sweep_runs_from_its_plan_to_its_figures_and_tells_what_a_missing_loop_costs(
@@ -312,8 +312,9 @@ def test_a_simulation_that_cannot_be_stored_ends_the_run_with_exit_code_one(tmp_
 def test_missing_input_of_the_later_steps_is_refused(tmp_path):
     output = ("--output", tmp_path)
     assert "8 of 8 simulations are in no finished shard" in refused("aggregate", TEST, *output)
-    assert "hysteresis.nc does not exist" in refused("fit", TEST, *output)
-    assert "hysteresis.nc does not exist" in refused("figures", TEST, *output)
+    for command in ("fit", "figures"):
+        sentence = refused(command, TEST, *output)
+        assert "holds no hysteresis.nc; run crackfront aggregate" in sentence
 
 
 @pytest.mark.parametrize("command", ["plan", "simulate", "aggregate", "fit", "figures"])
@@ -492,11 +493,35 @@ def kept_states(rough_surface, tmp_path, monkeypatch, _heeded_signals):
     return tmp_path / "out.checkpoint.nc"
 
 
-def test_what_another_cycle_kept_is_told_and_begins_anew(rough_surface, kept_states, tmp_path):
+def test_what_another_cycle_kept_is_never_lost(rough_surface, kept_states, tmp_path):
+    before = kept_states.read_bytes()
     result = cycle(rough_surface, tmp_path, step=0.2)
-    assert result.exit_code == 0
-    assert result.stderr == f"{kept_states} is of another cycle; this one begins anew\n"
-    assert not kept_states.exists()
+    assert result.exit_code == 2
+    assert f"{kept_states} holds the states of another cycle" in result.stderr
+    assert kept_states.read_bytes() == before
+    assert cycle(rough_surface, tmp_path).exit_code == 0
+
+
+@pytest.mark.parametrize("place", ["--output", "--figure", "checkpoint", "both"])
+def test_a_cycle_overwrites_nothing_that_it_reads(rough_surface, tmp_path, place):
+    name = "own.checkpoint.nc" if place == "checkpoint" else "own.nc"
+    field = Path(shutil.copy(rough_surface, tmp_path / name))
+    before = field.read_bytes()
+    output = {"--output": field, "checkpoint": tmp_path / "own.nc"}.get(place, tmp_path / "o.svg")
+    figure = {"--figure": field, "both": output}.get(place, tmp_path / "figure.svg")
+    named = ("--output", output, "--figure", figure)
+    sentence = refused("cycle", "--field", field, "--max-penetration", 0.5, "--step", 0.5, *named)
+    assert "name two files" if place == "both" else "which the command reads" in sentence
+    assert field.read_bytes() == before
+
+
+def test_loads_in_a_list_may_have_blanks_and_must_be_numbers(rough_surface, tmp_path):
+    given = ("cycle", "--field", rough_surface, "--output", tmp_path / "o.nc", "--step", 0.5)
+    assert run(*given, "--loads", "0, 0.5, 0").exit_code in (0, 1)
+    assert "a load is ''; write numbers alone" in refused(*given, "--loads", "0,,0.5")
+    picture = tmp_path / "loads.png"
+    picture.write_bytes(b"\x89PNG")
+    assert "which is no text" in refused(*given, "--loads", picture)
 
 
 @pytest.mark.parametrize("harm", ["a flipped bit", "cut off", "something else"])

@@ -2,6 +2,7 @@
 
 import csv
 import json
+import shutil
 from dataclasses import replace
 from pathlib import Path
 
@@ -53,7 +54,8 @@ def predict(tmp_path, monkeypatch):
     def command(*more, scans=(DETAIL, OVERVIEW), drawn=False, **changes):
         if not drawn:
             monkeypatch.setattr("crackfront.plots.style.save_figure", lambda figure, stem: ())
-        return run("predict", *scans, *sphere(**changes), "--figure", tmp_path / "figure", *more)
+        figure = () if "--no-figure" in more else ("--figure", tmp_path / "figure")
+        return run("predict", *scans, *sphere(**changes), *figure, *more)
 
     return command
 
@@ -285,6 +287,42 @@ def test_a_surface_alone_has_no_energy_and_with_a_sphere_it_has(surface):
 def test_a_sphere_that_makes_no_sense_is_refused(tmp_path, changes, sentence):
     figure = ("--figure", tmp_path / "figure")
     assert sentence in refused("predict", OVERVIEW, *sphere(**changes), *figure)
+
+
+def test_no_command_overwrites_what_it_reads(tmp_path):
+    scan, other = (shutil.copy(OVERVIEW, tmp_path / f"{name}.al3d") for name in "ab")
+    table = Path(shutil.copy(ROOT / "examples/samples.csv", tmp_path / "samples.csv"))
+    before = {path: path.read_bytes() for path in tmp_path.iterdir()}
+    for words in (
+        ("predict", scan, *sphere(), "--csv", scan),
+        ("predict", other, *sphere(), "--csv", scan),  # the name of the table was forgotten
+        ("surface", scan, *sphere(), "--field", scan),
+        ("surface", other, *sphere(), "--field", scan),
+        ("samples", table, *sphere(), "--csv", table),
+        ("samples", table, *sphere(), "--csv", scan),
+    ):
+        sentence = refused(*words)
+        assert "which the command reads" in sentence or "a file that exists" in sentence
+    assert {path: path.read_bytes() for path in tmp_path.iterdir()} == before
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        (("--seed", "1"), "--seed has an effect only with --simulate"),
+        (("--realisations", "2"), "--realisations has an effect only with --simulate"),
+        (("--no-figure", "--panel", "c"), "--panel has no effect with --no-figure"),
+        (("--json", "--long"), "--long has no effect with --json"),
+        (("--csv", "."), "cannot be used: Is a directory"),
+        (("--hurst", "0.8"), "by SCANS and --hurst"),
+    ],
+)
+def test_an_option_without_an_effect_is_refused_before_any_work(words, sentence):
+    assert sentence in refused("predict", OVERVIEW, *sphere(), *words)
+
+
+def test_channels_are_listed_of_scans():
+    assert "name SCANS" in refused("predict", "--list-channels")
 
 
 def test_a_field_needs_the_whole_sphere_and_one_scan(tmp_path):

@@ -34,7 +34,7 @@ from crackfront.sweep.result_packs import Entry, RowIndex, new_pack, pack_paths
 from crackfront.sweep.rows import failed_row
 from crackfront.sweep.store import Store
 from crackfront.sweep.verification import mixture_sentences, verification
-from tests.commands import curves
+from tests.commands import curves, refused
 
 TEST = Path(__file__).parents[2] / "config/test.yaml"
 SWEEP = load_configuration(TEST)
@@ -567,6 +567,35 @@ def test_a_folder_and_its_archive_are_verified(whole, tmp_path):
     result = CliRunner().invoke(main, ["verify", str(archive)])
     assert result.exit_code in (1, 2)
     assert "Traceback" not in result.output
+
+
+def test_an_archive_without_curves_is_whole(whole, tmp_path):
+    archive = tmp_path / "sweep.zip"
+    whole.archive(archive, curves=False)
+    found = verification(archive)
+    assert found.damaged == found.missing == ()
+
+
+def test_what_is_no_result_is_neither_whole_nor_damaged(tmp_path):
+    (tmp_path / "notes").mkdir()
+    for name in ("fit.md", "notes/a.txt"):
+        (tmp_path / name).write_text("text")
+    assert "is neither a folder of results nor an archive" in refused("verify", tmp_path / "fit.md")
+    assert "holds no results" in refused("verify", tmp_path / "notes")
+
+
+def test_an_archive_is_a_zip_file_outside_of_the_results(whole, tmp_path):
+    told = ("archive", whole.folder, "--output")
+    assert "name a ZIP file" in refused(*told, tmp_path / "sweep.tar.gz")
+    assert "among the results" in refused(*told, whole.folder / "sweep.zip")
+
+
+def test_what_needs_the_table_names_the_command_that_makes_it(whole, tmp_path):
+    whole.hysteresis.unlink()
+    with pytest.raises(ValueError, match=r"holds no hysteresis.nc; run crackfront aggregate"):
+        whole.table(SWEEP)
+    with pytest.raises(ValueError, match=r"holds no hysteresis.nc; run crackfront aggregate"):
+        whole.unpack_curves(tmp_path / "curves")
 
 
 @pytest.mark.parametrize("encrypted", ["all", "one"])

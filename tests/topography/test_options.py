@@ -71,6 +71,12 @@ def test_a_crop_begins_at_zero_in_any_unit_of_length(crop):
         checked_options(ReadingOptions, {"crop": "0kg:10um"})
 
 
+@pytest.mark.parametrize("low", ["0.1um", "0.10um", "0.0001mm", "0.1 um", "100nm"])
+def test_a_place_is_zero_only_if_its_number_is(low):
+    [[found, _]] = checked_options(ReadingOptions, {"crop": f"{low}:1um"}).crop
+    assert found == pytest.approx(1e-7)
+
+
 def test_an_option_is_given_once_for_all_scans_or_once_for_each():
     crops = ["0:1um,0:1um", "1um:2um,0um:1um"]
     each = reading_options({"crop": crops, "channel": ("A",), "unit": "um"}, 2)

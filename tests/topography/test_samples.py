@@ -31,8 +31,8 @@ samples:
     rms (nm): 20
     roll_off: 2um
     hurst: 0.8
-    short_cutoff: 2e-8
-    radius: 1.25e-3
+    short_cutoff: 2e-8 m
+    radius: 1.25e-3 m
     measured_hysteresis: 2mJ/m2
   - {sample: B, group: rough, rms: 40nm, roll_off: 2um, hurst: 0.8, short_cutoff: 20nm}
 """
@@ -111,6 +111,25 @@ def test_a_row_that_cannot_be_used_is_refused_with_its_line(tmp_path, old, new, 
         read_samples(path, SPHERE)
     assert sentence in str(caught.value)
     assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "sentence"),
+    [
+        ("rms (nm): 20", "rms: 20", "line 2: rms is '20', without a unit"),
+        ("radius: 1.25e-3 m", "radius: true", "line 2: radius is 'True', which is no number"),
+        ("measured_hysteresis: 2mJ/m2", "measured_hysteresis: 2", "is '2', without a unit"),
+        ("hurst: 0.8", "hurst: [0.8]", "line 2: hurst is [0.8]; write a number"),
+        ("samples:", "sphere: 1\nsamples:", "has 'sphere' beside samples; remove it"),
+    ],
+)
+def test_yaml_is_read_as_strictly_as_cells(tmp_path, old, new, sentence):
+    path = tmp_path / "samples.yaml"
+    assert old in YAML
+    path.write_text(YAML.replace(old, new, 1))
+    with pytest.raises((ValueError, TypeError)) as caught:
+        read_samples(path, SPHERE)
+    assert sentence in str(caught.value)
 
 
 def test_what_a_row_lacks_is_refused_before_any_work(tmp_path):

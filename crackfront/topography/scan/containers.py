@@ -114,7 +114,7 @@ def contained_surfaces(path: Path) -> tuple[ContainedSurface, ...]:
         return _Metadata.model_validate(content).surfaces
     except ValidationError as error:
         first, *_ = error.errors(include_url=False)
-        place = ".".join(map(str, first["loc"]))
+        place = ".".join(map(str, first["loc"])) or "the whole"
         raise ValueError(
             f"{path}: {found} does not say what the container holds: {place}: "
             f"{first['msg'].lower()}; download it again"

@@ -31,7 +31,7 @@ from crackfront.topography.scan.points import (
     read_points,
     refuse_positions,
 )
-from crackfront.topography.scan.psd import refuse_spectrum
+from crackfront.topography.scan.psd import column_lengths, refuse_spectrum
 from crackfront.topography.scan.text import NumberText, number_text
 
 _LIBRARY = "SurfaceTopography"
@@ -64,6 +64,7 @@ _REASONS = (
     (r"Units for x-coordinate and heights.*", "its sides and heights have different units"),
     (r"Units for x- and y-coordinate.*", "its sides have different units"),
     (r"Could not find any topography data.*", "none of its channels has a unit of length"),
+    (r".*'NoneType' object .*", "a part of it is missing or damaged"),
 )
 """Reasons of the library, and what they say to one who has only the file."""
 
@@ -308,10 +309,26 @@ def _text_reader(path: Path, text: NumberText) -> Any:
         refuse_positions(path, text)
         with _errors_as_sentences(path, "text"):
             return library_part("IO").AscReader(io.StringIO("\n".join([*text.lines, ""])))
+    if unit is None:
+        unit, factor = _stated_units(text)
     points = read_points(path, text, kind)
     heights = points.heights * (factor or 1.0)
     grid = Grid("default", Points(heights, points.size), None)
     return _GridsReader("xyz", [grid], unit, info)
+
+
+def _stated_units(text: NumberText) -> tuple[str | None, float]:
+    """Unit of the places of points, and that of their heights in it, as the heads state them.
+
+    The unit is None unless every place and the heights, the last of the lengths, have one.
+    """
+    *places, heights = column_lengths(text) or [""]
+    if not places or len(set(places)) > 1:
+        return None, 1.0
+    [metres], [metres_of_heights] = (
+        in_metres(_length_unit("", one), 1.0) for one in (places[0], heights)
+    )
+    return _length_unit("", places[0]), metres_of_heights / metres
 
 
 @dataclass(frozen=True, slots=True)
@@ -525,7 +542,7 @@ def _length_unit(option: str, given: str) -> str:
     with suppress(ValueError):
         metres = unit_value(given, "m")
         for name, value in known.items():
-            if math.isclose(value, metres, rel_tol=1e-9):
+            if math.isclose(value, metres, rel_tol=1e-9) and not given.strip()[0].isdigit():
                 return str(name)
     raise ValueError(f"{option} {given} is no unit of length; name one, as in um")
 

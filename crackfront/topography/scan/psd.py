@@ -45,6 +45,8 @@ _HEIGHTS = r"height|topograph|elevation|position|distance|\b[xz]\b"
 """Heads of line scans."""
 
 _UNIT = re.compile(r"[\[(]\s*([^\[\]()]+(?:\([^()]*\)[^\[\]()]*)?)\s*[\])]|\s/\s*(\S.*)$")
+_BRACKETED = re.compile(r"[\[(][^\[\]()]+[\])]")
+_UNIT_OF_LENGTH = re.compile(r"[\[(]\s*([^\[\]()]+?)\s*[\])]|/\s*([A-Za-zµμ]\S*)\s*$")
 _MARKUP = re.compile(r"</?su[bp]>")
 _SPLITS = (r";", r"\t", r",", r"\s{2,}", r"\s+")
 
@@ -158,6 +160,28 @@ def refuse_spectrum(path: Path, text: NumberText) -> None:
             f"{path} holds a spectral density, no line scan: {named}; predict from it with "
             f"--psd {path}, or name the columns x and z in its head if they are a line"
         )
+
+
+def column_lengths(text: NumberText) -> list[str]:
+    """Units of length in the heads of all columns, but of a first one that counts; else empty."""
+    lines = [_MARKUP.sub("", line.strip().lstrip("#%! ")) for line in text.head]
+    lines = [line for line in lines if line.strip(" -=")]
+    heads, below = _heads(lines, text.n_column)
+    cells = below or heads
+    if not cells and lines:
+        # Names and units between blanks alone, as in x [um] z [nm].
+        cells = tuple(found[0] for found in _BRACKETED.finditer(lines[-1]))
+        cells = cells if len(cells) == text.n_column else ()
+    units = [cell.strip("[]() ") if below else _unit_of_length(cell) for cell in cells]
+    lengths = units[1:] if units and not is_unit(units[0] or "1", "m") else units
+    are_lengths = all(one and not one[0].isdigit() and is_unit(one, "m") for one in lengths)
+    return lengths if are_lengths else []
+
+
+def _unit_of_length(head: str) -> str:
+    """What stands in brackets in the head of a column, or behind a stroke; empty if nothing."""
+    found = _UNIT_OF_LENGTH.search(head)
+    return (found[1] or found[2]) if found else ""
 
 
 def _looks_like_density(one: _Series) -> bool:

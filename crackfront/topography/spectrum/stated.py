@@ -113,14 +113,14 @@ def self_affine_surface_of(given: SelfAffineOptions) -> StatedSurface:
     ValueError, of one sentence, where a number is missing or they contradict each other.
     """
     rms, hurst = given.rms, given.hurst
-    if (
-        rms is None
-        or hurst is None
-        or (given.correlation_length is None) == (given.roll_off is None)
-    ):
-        raise ValueError(
-            "a surface of numbers needs rms and hurst, and one of correlation length and roll-off"
-        )
+    needs = "a surface of numbers needs rms and hurst, and one of correlation length and roll-off"
+    if given.correlation_length is not None and given.roll_off is not None:
+        raise ValueError(f"{needs}; both of these are named")
+    is_bounded = given.correlation_length is not None or given.roll_off is not None
+    if rms is None or hurst is None or not is_bounded:
+        missing = ["rms"] * (rms is None) + ["hurst"] * (hurst is None)
+        missing += ["correlation length"] * (not is_bounded)
+        raise ValueError(f"{needs}; name {' and '.join(missing)}")
     cutoff, doubts = given.short_cutoff, []
     if cutoff is None:
         if hurst <= 0.5:
@@ -241,7 +241,8 @@ def _roll_off(length: float, hurst: float, cutoff: float) -> float:
     """Roll-off wavelength of a spectrum of a correlation length, all in metres."""
 
     def excess(logarithm: float) -> float:
-        return _autocorrelation(length, math.exp(logarithm), hurst, cutoff) - math.exp(-1)
+        roll_off = max(cutoff, math.exp(logarithm))  # shorter by round-off alone
+        return _autocorrelation(length, roll_off, hurst, cutoff) - math.exp(-1)
 
     ends = math.log(max(cutoff, length / 2)), math.log(100 * max(cutoff, length))
     if excess(ends[0]) > 0:
@@ -249,7 +250,7 @@ def _roll_off(length: float, hurst: float, cutoff: float) -> float:
             f"waves longer than a cutoff of {prefixed('m', cutoff)} have no correlation length of "
             f"{prefixed('m', length)}; name a shorter short cutoff"
         )
-    return math.exp(scipy.optimize.brentq(excess, *ends, xtol=1e-10))
+    return max(cutoff, math.exp(scipy.optimize.brentq(excess, *ends, xtol=1e-10)))
 
 
 def _autocorrelation(distance: float, roll_off: float, hurst: float, cutoff: float) -> float:

@@ -9,7 +9,7 @@ from click.testing import CliRunner
 
 from crackfront.analysis.law import law_value, shipped_law
 from studies.__main__ import main
-from studies.law.cells import MEASURED, LawCell, measured_cells
+from studies.law.cells import MEASURED, LawCell, csv_rows, measured_cells
 from studies.law.fitting import fitted_law
 
 
@@ -54,3 +54,9 @@ def test_the_command_fits_the_law_of_the_package_to_the_kept_cells(tmp_path):
         cell.size >= known.size[0] for cell in measured_cells()
     )
     np.testing.assert_allclose(again["departures"], known.departures, rtol=1e-5, atol=1e-6)
+
+
+@pytest.mark.parametrize("text", ["", "spectrum,kind\nflat,roughness\n"])
+def test_a_table_of_something_else_is_refused(text):
+    with pytest.raises(ValueError, match=r"the table lacks (rows|the column approach);"):
+        csv_rows(text, LawCell)

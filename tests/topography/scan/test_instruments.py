@@ -200,6 +200,10 @@ def test_files_that_cannot_be_read_are_refused(rng, tmp_path, scan):
     assert "in no format that SurfaceTopography reads" in refusal(noise)
     assert "is empty" in refusal(empty)
     assert "cut.al3d" in refusal(cut)
+    hollow = tmp_path / "hollow.x3p"
+    with zipfile.ZipFile(hollow, "w") as file:
+        file.writestr("main.xml", "<p:ISO5436_2 xmlns:p='http://www.opengps.eu/2008/ISO5436_2'/>")
+    assert "a part of it is missing or damaged; export it" in refusal(hollow)
     with pytest.raises(FileNotFoundError):
         read_measurements([tmp_path / "absent.al3d"])
 

@@ -86,6 +86,38 @@ def test_omitted_and_invalid_points_of_a_line_are_missing(tmp_path, line):
     assert found.size == pytest.approx((0.153e-6 * COUNT,))
 
 
+HEADS = {
+    "x (um),z (nm)\n": ",",
+    "x/um,z/nm\n": ",",
+    "x [um]\tz [nm]\n": "\t",
+    "# x [um] z [nm]\n": " ",
+    "x;z\n(µm);(nm)\n": ";",
+    "a line\nn,x (um),z (nm)\n": ",",
+}
+
+
+@pytest.mark.parametrize("head", HEADS)
+def test_units_in_the_heads_of_columns_are_those_of_the_points(tmp_path, line, head):
+    path, between = tmp_path / "line.csv", HEADS[head]
+    cells = [(f"{0.1 * i:.4f}", f"{1e9 * z:.6f}") for i, z in enumerate(line)]
+    if "n," in head:
+        cells = [(str(number), *row) for number, row in enumerate(cells)]
+    path.write_text(head + "".join(f"{between.join(row)}\n" for row in cells), encoding="utf-8")
+    found = read(path, detrend="center")
+    assert found.size == pytest.approx((0.1e-6 * COUNT,))
+    np.testing.assert_allclose(found.heights, line - line.mean(), atol=1e-14)
+    assert "leave out --height-unit nm" in refusal(path, height_unit="nm")
+
+
+@pytest.mark.parametrize("head", ["x (um),z\n", "x,z (nm)\n", "x (um),z (V)\n"])
+def test_heads_without_a_length_for_each_column_state_no_unit(tmp_path, line, head):
+    path = tmp_path / "line.csv"
+    rows = (f"{0.1 * i:.4f},{1e9 * z:.6f}\n" for i, z in enumerate(line))
+    path.write_text(head + "".join(rows))
+    assert "states no unit of length; name it, as in --unit um" in refusal(path)
+    assert "--unit 1um is no unit of length" in refusal(path, unit="1um")
+
+
 def test_a_line_of_a_stylus_with_one_decimal_is_read_in_its_units(tmp_path, line):
     head = "Scan Parameters,,,\nStylus,Radius: 12.5 µm\n\nScan Data,,,\n\nLateral µm,Raw nm,,\n"
     rows = "".join(f"{0.153 * i:.1f},{1e9 * z:.6f},,\n" for i, z in enumerate(line))

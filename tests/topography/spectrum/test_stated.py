@@ -101,9 +101,12 @@ def test_an_unnamed_cutoff_is_assumed_or_asked_for():
             {"rms": "60nm", "roll_off": "1um", "short_cutoff": "2um", "hurst": 0.8},
             "the roll-off, 1 um, is shorter than the short cutoff, 2 um",
         ),
-        (
-            {"rms": "60nm", "correlation_length": "1um", "short_cutoff": "20um", "hurst": 0.8},
-            "no correlation length of 1 um; name a shorter",
+        *(
+            (
+                {"rms": "60nm", "correlation_length": "1um", "short_cutoff": cutoff, "hurst": 0.8},
+                "no correlation length of 1 um; name a shorter",
+            )
+            for cutoff in ("10um", "20um")
         ),
         ({"rms": "60", "roll_off": "1um", "hurst": 0.8}, "rms is '60', without a unit"),
     ],
