@@ -240,7 +240,7 @@ _COPIES = 6
 def read_field(path: Path) -> xr.DataArray:
     """Surface in a netCDF file, `height(x, y)` or `work_of_adhesion(x, y)`.
 
-    ValueError if the file is missing or truncated, or holds no surface of real numbers.
+    ValueError if the file is missing or truncated, or holds no surface of real numbers, or both.
     """
     dataset = read_dataset(path, copies=_COPIES)
     names = [item.name for item in SURFACES.values() if item.name in dataset]
@@ -249,7 +249,9 @@ def read_field(path: Path) -> xr.DataArray:
             f"{path} has no surface (it has: {', '.join(map(str, dataset.data_vars))}); name its "
             f"variable {' or '.join(item.name for item in SURFACES.values())}"
         )
-    values = dataset[names[-1]]
+    if len(names) > 1:
+        raise ValueError(f"{path} has both {' and '.join(names)}; keep one in the file")
+    values = dataset[names[0]]
     for name, part in {values.name: values, **values.coords}.items():
         if part.dtype.kind not in _REAL:
             raise UnreadableFileError(f"{path}: {name} is {part.dtype}; it must be real numbers")

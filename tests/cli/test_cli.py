@@ -515,6 +515,14 @@ def test_a_cycle_overwrites_nothing_that_it_reads(rough_surface, tmp_path, place
     assert field.read_bytes() == before
 
 
+def test_a_file_with_heights_and_works_of_adhesion_is_refused(rough_surface, tmp_path):
+    surface = xr.load_dataarray(rough_surface)
+    both = xr.Dataset({"height": surface, "work_of_adhesion": surface + 1})
+    both.to_netcdf(tmp_path / "both.nc")
+    told = ("cycle", "--field", tmp_path / "both.nc", "--max-penetration", 1, "--step", 0.5)
+    assert "has both height and work_of_adhesion" in refused(*told, "--output", tmp_path / "o.nc")
+
+
 def test_loads_in_a_list_may_have_blanks_and_must_be_numbers(rough_surface, tmp_path):
     given = ("cycle", "--field", rough_surface, "--output", tmp_path / "o.nc", "--step", 0.5)
     assert run(*given, "--loads", "0, 0.5, 0").exit_code in (0, 1)
