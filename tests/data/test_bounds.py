@@ -150,7 +150,7 @@ def test_a_field_with_one_absurd_value_is_refused_with_its_place(tile, tmp_path,
     sentence = refused(
         *("cycle", "--field", tile, "--max-penetration", 1, "--output", tmp_path / "out.nc")
     )
-    assert "at index 3, 5 (1 such values); it must lie between -10000 and 10000" in sentence
+    assert "at index 3, 5 (1 such value); it must lie between -10000 and 10000" in sentence
 
 
 def test_many_sites_are_announced_with_their_price(tile, tmp_path, monkeypatch):

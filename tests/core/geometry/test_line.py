@@ -257,7 +257,7 @@ def test_the_command_writes_a_cycle_of_the_line(command):
         ({"spring": 0}, "Invalid value for '--spring': 0.0 is not in the range"),
         ({"spring": -2}, "Invalid value for '--spring': -2.0 is not in the range"),
         ({"loads": None}, "a straight front needs loads"),
-        ({"loads": "3,x"}, "3,x cannot be used: No such file"),
+        ({"loads": "3,x"}, "a load is 'x'; write numbers alone"),
         ({"step": 0}, "load step is 0.0; it must be positive"),
         ({"max_penetration": 1}, "a straight front needs loads, and no max_penetration"),
     ],
