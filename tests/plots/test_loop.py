@@ -7,10 +7,11 @@ import pytest
 
 from crackfront.analysis.steady import steady_adhesion
 from crackfront.core import jkr
+from crackfront.core.adhesion import chemical_adhesion
 from crackfront.core.cycle.run import run_cycle
 from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.geometry.line import LineState
-from crackfront.core.geometry.sphere import polar_field
+from crackfront.core.geometry.sphere import contact_field
 from crackfront.core.solver.relax import Newton
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.plots.loop import draw_loop, draw_pinning, steady_loop_figure
@@ -19,13 +20,11 @@ from crackfront.plots.style import COLUMN, blank_figure, house_style
 
 @pytest.fixture(scope="module")
 def record():
-    """A cycle over a small pinning field."""
-    radii = np.linspace(0.02, 2.2, 110)
-    angle = np.linspace(0, 2 * np.pi, 32, endpoint=False)
-    bumps = 1 + 0.2 * np.sin(8 * np.pi * radii)[:, None] * np.cos(4 * angle)
-    return run_cycle(
-        polar_field(radii, WORK_OF_ADHESION * bumps), LoadSchedule(1.0, 0.05), Newton(1e-6)
-    )
+    """A cycle over a small pinning field, on a tile, for which every environment has kernels."""
+    x, y = np.meshgrid(*[np.arange(64) * np.pi / 16] * 2, indexing="ij")
+    adhesion = chemical_adhesion(0.2 * WORK_OF_ADHESION * np.sin(2 * x) * np.cos(2 * y), 4.8 / 64)
+    field = contact_field(adhesion, 1.0, n_angle=32, spacing=0.02)
+    return run_cycle(field, LoadSchedule(1.0, 0.05), Newton(1e-6))
 
 
 def drawn(draw, *states, **options):
