@@ -320,15 +320,14 @@ def _text_reader(path: Path, text: NumberText) -> Any:
 def _stated_units(text: NumberText) -> tuple[str | None, float]:
     """Unit of the places of points, and that of their heights in it, as the heads state them.
 
-    The unit is None unless every place and the heights, the last of the lengths, have one.
+    The unit is None unless all columns have one, of which the last has the heights, and the places
+    the same.
     """
-    *places, heights = column_lengths(text) or [""]
-    if not places or len(set(places)) > 1:
+    units = [_length_unit("", one) for one in column_lengths(text)]
+    if len(units) < 2 or len(set(units[:-1])) > 1:
         return None, 1.0
-    [metres], [metres_of_heights] = (
-        in_metres(_length_unit("", one), 1.0) for one in (places[0], heights)
-    )
-    return _length_unit("", places[0]), metres_of_heights / metres
+    place, height = units[0], units[-1]
+    return place, in_metres(height, 1.0)[0] / in_metres(place, 1.0)[0]
 
 
 @dataclass(frozen=True, slots=True)

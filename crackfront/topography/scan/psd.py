@@ -163,19 +163,23 @@ def refuse_spectrum(path: Path, text: NumberText) -> None:
 
 
 def column_lengths(text: NumberText) -> list[str]:
-    """Units of length in the heads of all columns, but of a first one that counts; else empty."""
+    """Units of length in the heads of all columns; empty where one of them has none."""
     lines = [_MARKUP.sub("", line.strip().lstrip("#%! ")) for line in text.head]
     lines = [line for line in lines if line.strip(" -=")]
     heads, below = _heads(lines, text.n_column)
     cells = below or heads
     if not cells and lines:
         # Names and units between blanks alone, as in x [um] z [nm].
-        cells = tuple(found[0] for found in _BRACKETED.finditer(lines[-1]))
-        cells = cells if len(cells) == text.n_column else ()
+        bracketed = tuple(found[0] for found in _BRACKETED.finditer(lines[-1]))
+        cells = bracketed if len(bracketed) == text.n_column else ()
     units = [cell.strip("[]() ") if below else _unit_of_length(cell) for cell in cells]
-    lengths = units[1:] if units and not is_unit(units[0] or "1", "m") else units
-    are_lengths = all(one and not one[0].isdigit() and is_unit(one, "m") for one in lengths)
-    return lengths if are_lengths else []
+    # Of a column without one, as of numbers of points or of a signal, nothing says what it is.
+    return units if all(map(_is_length, units)) else []
+
+
+def _is_length(unit: str) -> bool:
+    """Whether a text is the name of a unit of length."""
+    return unit != "" and not unit[0].isdigit() and is_unit(unit, "m")
 
 
 def _unit_of_length(head: str) -> str:
