@@ -24,6 +24,7 @@ from crackfront.cli.report import (
     as_json,
     echo_answer,
     examples,
+    refuse_foreign_netcdf,
     refuse_overwriting,
     refuse_unwritable,
     whole,
@@ -180,6 +181,7 @@ def cycle(
     refuse_no_file(output)
     written = {"--output": output, "--figure": figure, "the checkpoint": _checkpoint(output)}
     refuse_overwriting([field_file], written)
+    refuse_foreign_netcdf("--output", output)
     for path in (output, figure or output):
         refuse_unwritable(path.parent)
     solution = named_solver(solver, DEFAULT_TOLERANCE)

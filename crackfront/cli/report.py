@@ -169,12 +169,34 @@ def refuse_overwriting(inputs: Iterable[Path], outputs: Mapping[str, Path | None
             written[place] = option
 
 
-def refuse_other_kind(option: str, path: Path | None, suffix: str) -> None:
-    """Raise ValueError if the file of an option exists and its suffix is of another kind."""
-    if path is not None and path.is_file() and path.suffix.lower() != suffix:
-        raise ValueError(
-            f"{option} is {path}, a file that exists and is no {suffix} file; name another one"
-        )
+def refuse_foreign_table(option: str, path: Path | None, first: str) -> None:
+    """Raise ValueError if a file exists and is no table that begins with such a column."""
+    if path is None or not path.is_file():
+        return
+    with path.open("rb") as file:
+        if file.read(len(first)) != first.encode():
+            raise _foreign(option, path)
+
+
+def refuse_foreign_netcdf(option: str, path: Path | None) -> None:
+    """Raise ValueError if a file exists and is no netCDF file of crackfront."""
+    from crackfront.data.files import UnreadableFileError, read_attributes
+
+    if path is None or not path.is_file():
+        return
+    try:
+        attributes = read_attributes(path)
+    except UnreadableFileError:
+        attributes = {}
+    if "crackfront_version" not in attributes:
+        raise _foreign(option, path)
+
+
+def _foreign(option: str, path: Path) -> ValueError:
+    """Refusal to replace a file that crackfront has not written."""
+    return ValueError(
+        f"{option} is {path}, a file that exists and that crackfront has not written; name another"
+    )
 
 
 def refuse_without(context: click.Context, needed: str, *names: str) -> None:

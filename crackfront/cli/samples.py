@@ -14,7 +14,7 @@ from crackfront.cli.options import options_of
 from crackfront.cli.report import (
     FILE,
     examples,
-    refuse_other_kind,
+    refuse_foreign_table,
     refuse_overwriting,
     refuse_together,
     refuse_unwritable,
@@ -82,7 +82,7 @@ def samples(
 
     refuse_together(context, "no_figure", "figure", "quantity")
     refuse_overwriting([path], {"--csv": table, "--figure": figure})
-    refuse_other_kind("--csv", table, ".csv")
+    refuse_foreign_table("--csv", table, "sample")
     stem = Path("results/samples", path.stem)
     table = table or stem.with_name(f"{stem.name}.csv")
     common = {name: value for name, value in options.items() if value not in (None, ())}

@@ -16,7 +16,8 @@ from crackfront.cli.report import (
     echo_answer,
     echo_json,
     examples,
-    refuse_other_kind,
+    refuse_foreign_netcdf,
+    refuse_foreign_table,
     refuse_overwriting,
     refuse_together,
     refuse_unwritable,
@@ -159,7 +160,7 @@ def predict(
     refuse_together(context, "as_json", "is_long")
     inputs = scans if psd is None else (psd,)
     refuse_overwriting(inputs, {"--csv": table, "--figure": figure})
-    refuse_other_kind("--csv", table, ".csv")
+    refuse_foreign_table("--csv", table, "scan")
     if table is not None:
         if not scans:
             raise ValueError("--csv writes a row for each scan; name scans")
@@ -267,7 +268,7 @@ def surface(scans: tuple[Path, ...], as_json: bool, field: Path | None, **option
     is_pressed = any(options[name] is not None for name in SphereOptions.model_fields)
     scales = _scales(options) if is_pressed or field is not None else None
     refuse_overwriting(scans, {"--field": field})
-    refuse_other_kind("--field", field, ".nc")
+    refuse_foreign_netcdf("--field", field)
     if field is not None:
         from crackfront.data.files import refuse_no_file
 

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import xarray as xr
 
 import crackfront as cf
 from crackfront.analysis.estimate import Estimate
@@ -291,18 +292,23 @@ def test_a_sphere_that_makes_no_sense_is_refused(tmp_path, changes, sentence):
 
 def test_no_command_overwrites_what_it_reads(tmp_path):
     scan, other = (shutil.copy(OVERVIEW, tmp_path / f"{name}.al3d") for name in "ab")
+    line, grid = tmp_path / "line.csv", tmp_path / "grid.nc"
+    line.write_text("x (um),z (nm)\n0,1\n1,3\n2,2\n")
+    xr.DataArray(np.eye(4), dims=("x", "y"), name="height").to_netcdf(grid)
     table = Path(shutil.copy(ROOT / "examples/samples.csv", tmp_path / "samples.csv"))
     before = {path: path.read_bytes() for path in tmp_path.iterdir()}
     for words in (
         ("predict", scan, *sphere(), "--csv", scan),
         ("predict", other, *sphere(), "--csv", scan),  # the name of the table was forgotten
+        ("predict", other, *sphere(), "--csv", line),
         ("surface", scan, *sphere(), "--field", scan),
+        ("surface", other, *sphere(), "--field", grid),
         ("surface", other, *sphere(), "--field", scan),
         ("samples", table, *sphere(), "--csv", table),
         ("samples", table, *sphere(), "--csv", scan),
     ):
         sentence = refused(*words)
-        assert "which the command reads" in sentence or "a file that exists" in sentence
+        assert "which the command reads" in sentence or "has not written" in sentence
     assert {path: path.read_bytes() for path in tmp_path.iterdir()} == before
 
 
