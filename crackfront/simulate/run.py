@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import functools
-import resource
-import sys
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -14,6 +12,7 @@ import numpy as np
 from crackfront.analysis.measures import RunMeasures
 from crackfront.core.adhesion import chemical_adhesion
 from crackfront.core.cycle.record import Checkpoint, CycleRecord, Recorder
+from crackfront.core.memory import peak_memory
 from crackfront.core.solver.relax import SOLVERS
 from crackfront.core.solver.window import HALF_BAND
 from crackfront.simulate.schedule import Schedule
@@ -81,10 +80,7 @@ def run_simulation(
         correlation_length=simulation.correlation_length,
         elastic_energy=simulation.elastic_energy,
     )
-    # Linux counts in KiB, macOS in bytes.
-    unit = 1 if sys.platform == "darwin" else 1024
-    peak = float(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * unit)
-    measures = RunMeasures(*measured, *costs(), peak)
+    measures = RunMeasures(*measured, *costs(), peak_memory())
     return SimulationResult(simulation, record, measures)
 
 

@@ -1,13 +1,14 @@
-"""The memory of a process, and processes of their own for what is measured."""
+"""Processes of their own for what is measured, and the peak of the memory of one."""
 
 from __future__ import annotations
 
 import multiprocessing
-import resource
 from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 from typing import Any, TypeVar
+
+from crackfront.core.memory import peak_memory
 
 Result = TypeVar("Result")
 
@@ -20,19 +21,8 @@ def in_fresh_process(function: Callable[..., Result], *arguments: Any) -> Result
 
 
 def restart_peak() -> float:
-    """Reset the peak of this process's memory, where the system can; return its memory in MB."""
+    """Reset the peak of this process's memory, where the system can; return its memory in bytes."""
     forget = Path("/proc/self/clear_refs")
     if forget.exists():
         forget.write_text("5", encoding="utf-8")
     return peak_memory()
-
-
-def peak_memory() -> float:
-    """Largest resident memory of this process since the last reset, in MB."""
-    status = Path("/proc/self/status")
-    lines = status.read_text(encoding="utf-8").splitlines() if status.exists() else []
-    marks = [int(line.split()[1]) for line in lines if line.startswith("VmHWM")]
-    if marks:
-        return marks[0] * 1024 / 1e6
-    # This peak cannot be reset, and a process may inherit that of its parent; macOS: in bytes.
-    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e6

@@ -19,6 +19,7 @@ from crackfront.core.cycle.run import run_cycle
 from crackfront.core.field.fields import Field, first_place
 from crackfront.core.field.samples import make_memory
 from crackfront.core.geometry.sphere import polar_field
+from crackfront.core.memory import peak_memory
 from crackfront.core.outcome import Status
 from crackfront.core.solver.relax import Newton
 from crackfront.core.spectrum import SelfAffineSpectrum
@@ -35,7 +36,7 @@ from crackfront.simulate.sizing import simulation_of
 from crackfront.simulate.sphere.cycle import FullCycle
 from crackfront.simulate.sphere.steady import SteadySchedule
 from studies.pages import markdown_table
-from studies.speed.machine import peak_memory, restart_peak
+from studies.speed.machine import restart_peak
 
 TOLERANCE = 1e-5
 RING_AMPLITUDE = 0.2
@@ -142,7 +143,7 @@ def measured(scene: Scene, need: Need) -> Row:
     else:
         result = run_simulation(simulation(scene, need))
         record = result.record
-    seconds, peak = time.process_time() - start, peak_memory() - before
+    seconds, peak = time.process_time() - start, 1e-6 * (peak_memory() - before)
     if need.rays:
         dataset = cycle_dataset(record)
     else:

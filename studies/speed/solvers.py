@@ -12,11 +12,11 @@ from crackfront.core.cycle.record import CycleRecord, Recorder
 from crackfront.core.cycle.run import run_cycle
 from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.field.fields import RayField, TileField
+from crackfront.core.memory import peak_memory
 from crackfront.core.solver import DEFAULT_TOLERANCE
 from crackfront.core.solver.relax import SOLVERS
 from crackfront.core.variables import ADHESION, variable
 from studies.pages import markdown_table
-from studies.speed.machine import peak_memory
 from studies.speed.problems import Problem
 
 
@@ -80,7 +80,7 @@ def measured(problem: Problem, seed: int, repeats: int) -> Row:
         reference_updates=int(reference.states.updates.sum()),
         newton_updates=int(newton.states.updates.sum()),
         error=float(np.max(np.abs(newton.fronts - reference.fronts))) / cutoff,
-        memory=peak_memory(),
+        memory=1e-6 * peak_memory(),
     )
 
 
