@@ -8,8 +8,9 @@ import pytest
 from crackfront.analysis.law import pinning_factor, shipped_law
 from crackfront.analysis.validity import front_excess, shipped_validity
 from crackfront.core.spectrum import SelfAffineSpectrum
-from crackfront.simulate.costs import featured_cost, measured_runs
+from crackfront.simulate.costs import featured_cost
 from crackfront.simulate.laws import chosen_settings, measured_energies
+from studies.speed.costs import measured_runs
 
 FLAT = SelfAffineSpectrum(0.02, 0.02, 1.0)
 
@@ -55,7 +56,7 @@ def range_of_validity():
 TABLES = {
     "laws.csv": errors_of_the_numerics,
     "law.json": law_of_k,
-    "costs.csv": costs_of_simulations,
+    "costs.json": costs_of_simulations,
     "validity.csv": range_of_validity,
 }
 

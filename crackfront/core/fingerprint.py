@@ -90,7 +90,7 @@ def module_digests(*modules: str, without: Collection[str] = ()) -> dict[str, st
         name = waiting.pop()
         if name in found or any(f"{name}.".startswith(f"{one}.") for one in without):
             continue
-        path = _path(name)
+        path = _path(name, ROOT)
         if path is None:
             raise ValueError(f"there is no module {name}; correct the name")
         meaning, imported = _read_source(path.read_bytes())
@@ -113,9 +113,10 @@ def _digest(content: bytes) -> str:
     return hashlib.sha256(content).hexdigest()
 
 
-def _path(name: str) -> Path | None:
-    """Source of a module or package of a full name; None where there is none."""
-    place = ROOT / name.replace(".", "/")
+@functools.cache
+def _path(name: str, root: Path) -> Path | None:
+    """Source of a module or package of a full name in a folder; None where there is none."""
+    place = root / name.replace(".", "/")
     candidates = place.with_suffix(".py"), place / "__init__.py"
     return next(filter(Path.is_file, candidates), None)
 
@@ -124,7 +125,7 @@ def _module_of(imported: str) -> str | None:
     """Module of what an import names: itself or what defines it; None outside the packages."""
     if imported.partition(".")[0] not in _PACKAGES:
         return None
-    return imported if _path(imported) else imported.rpartition(".")[0]
+    return imported if _path(imported, ROOT) else imported.rpartition(".")[0]
 
 
 @functools.lru_cache(maxsize=512)

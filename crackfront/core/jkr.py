@@ -11,7 +11,6 @@ from __future__ import annotations
 import math
 
 import numpy as np
-import scipy
 from numpy.typing import ArrayLike
 
 from crackfront.core.arrays import Array
@@ -109,18 +108,19 @@ def equilibrium_radius(penetration: float, work_of_adhesion: float = 1.0) -> flo
             f"penetration {penetration} is below pull-off ({lowest:.6g}) for a work of adhesion of "
             f"{work_of_adhesion} w_int; no contact is stable there"
         )
-    largest = smallest + 1.0
-    while equilibrium_penetration(largest, work_of_adhesion) < penetration:
-        largest *= 2.0
-    return float(
-        scipy.optimize.brentq(
-            lambda a: float(equilibrium_penetration(a, work_of_adhesion)) - penetration,
-            smallest,
-            largest,
-            xtol=1e-15,
-            rtol=8 * np.finfo(float).eps,
-        )
-    )
+    if penetration == lowest:
+        return smallest
+    # Newton steps from above the root of a convex function go down to it, and end at its rounding.
+    pull = math.sqrt(8 * work_of_adhesion / 3)
+    radius = smallest + 1.0
+    while radius**2 - pull * math.sqrt(radius) < penetration:
+        radius *= 2.0
+    while True:
+        root = math.sqrt(radius)
+        lower = radius - (radius**2 - pull * root - penetration) / (2 * radius - pull / (2 * root))
+        if not smallest < lower < radius:
+            return radius
+        radius = lower
 
 
 def radius_at_force(force: float, work_of_adhesion: float = 1.0) -> float:

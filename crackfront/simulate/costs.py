@@ -1,7 +1,7 @@
 r"""Expected time, memory and disk of simulations, from a law of measured runs.
 
-`python -m studies speed costs` measures the runs of `costs.csv`; the law is fitted to those that
-are not held out. The processor time is that of any simulation, of making the tile, and of the load
+`python -m studies speed costs` measures runs and fits the law, whose coefficients are in
+`costs.json`. The processor time is that of any simulation, of making the tile, and of the load
 steps,
 
 .. math:: t = t_0 + c_t n_p^2 \log_2 n_p + n_b (t_b + N\, e^{c_0 + c \cdot x}),
@@ -13,15 +13,14 @@ into and out of contact take longer than those of the steady branches.
 
 from __future__ import annotations
 
-import csv
 import functools
+import json
 import math
 from collections.abc import Sequence
 from dataclasses import astuple, dataclass, replace
 from importlib.resources import files
 
 import numpy as np
-import scipy
 
 from crackfront.core import jkr
 from crackfront.core.arrays import Array
@@ -71,17 +70,6 @@ class Features:
 
 
 @dataclass(frozen=True, slots=True)
-class MeasuredRun:
-    """A measured run with its states; one that is held out does not enter the fit."""
-
-    name: str
-    held_out: bool
-    features: Features
-    n_state: int
-    cpu_seconds: float
-
-
-@dataclass(frozen=True, slots=True)
 class Cost:
     """Expected processor time (s), memory of the rank and disk (bytes) of a simulation."""
 
@@ -105,7 +93,7 @@ def featured_cost(item: Features, *, fronts: bool) -> Cost:
     """Expected cost of a run of some features, with its fronts recorded or not."""
     recorded = 8 * item.n_state * item.n_angle if fronts else 0.0
     return Cost(
-        seconds=_STORE_SECONDS + float(_seconds(_coefficients(), _columns([item]))[0]),
+        seconds=_STORE_SECONDS + float(law_seconds(law_coefficients(), [item])[0]),
         memory=_PROCESS_BYTES
         + 8 * _TILES * item.n_point**2
         + _SITE_BYTES * item.n_angle
@@ -127,7 +115,7 @@ def affordable_seconds(*, n_angle: float, n_point: float, n_state: float, n_samp
     cost = featured_cost(usual, fronts=False)
     seconds = cost.seconds + _SAMPLE_SECONDS * n_angle * n_sample
     cycle = f"a cycle of {n_state:.3g} load steps with {n_angle:.3g} sites and"
-    what, remedy = f"{cycle} {n_sample:.3g} samples a ray", "take fewer, or larger steps"
+    what, remedy = f"{cycle} {n_sample:.3g} samples a ray", "take fewer of them"
     refuse_beyond_memory(what, cost.memory, remedy)
     refuse_beyond_time(what, seconds, remedy)
     return seconds
@@ -176,47 +164,16 @@ def features(simulation: Simulation) -> Features:
     )
 
 
-def measured_runs() -> list[MeasuredRun]:
-    """The runs of `costs.csv`, whose columns are the fields of `MeasuredRun` and `Features`."""
-    text = files("crackfront.simulate").joinpath("costs.csv").read_text(encoding="utf-8")
-    _, *rows = csv.reader(text.splitlines())
-    return [
-        MeasuredRun(
-            name, held_out == "1", Features(*map(float, known)), int(n_state), float(seconds)
-        )
-        for name, held_out, *known, n_state, seconds in rows
-    ]
-
-
-def predicted_seconds(runs: Sequence[MeasuredRun]) -> Array:
-    """Processor times that the law gives for measured runs, in seconds."""
-    return _seconds(_coefficients(), _columns([run.features for run in runs]))
-
-
 @functools.cache
-def _coefficients() -> tuple[float, ...]:
-    """Coefficients of the law, fitted to the runs that are not held out."""
-    runs = [run for run in measured_runs() if not run.held_out]
-    known = _columns([replace(run.features, n_state=run.n_state) for run in runs])
-    found = np.log([run.cpu_seconds for run in runs])
-
-    def residuals(coefficients: Array) -> Array:
-        return np.log(_seconds(coefficients, known)) - found
-
-    return tuple(scipy.optimize.least_squares(residuals, _START).x.tolist())
+def law_coefficients() -> tuple[float, ...]:
+    """Coefficients of the law, from `costs.json`: logarithms of t_0, t_b and c_t, c_0, and c."""
+    text = files("crackfront.simulate").joinpath("costs.json").read_text(encoding="utf-8")
+    return tuple(json.loads(text))
 
 
-_START = (-7.0, -9.0, -18.0, -12.0, 0.5, *(0.0,) * 9)
-"""Logarithms of t_0, t_b and c_t, c_0, and exponents to begin with."""
-
-
-def _columns(items: Sequence[Features]) -> Array:
-    """Features of runs, a column each."""
-    return np.array([astuple(item) for item in items], dtype=float).T
-
-
-def _seconds(coefficients: Sequence[float] | Array, columns: Array) -> Array:
-    """Processor times of runs by the law, in seconds."""
+def law_seconds(coefficients: Sequence[float] | Array, items: Sequence[Features]) -> Array:
+    """Processor times of runs of some features by the law, in seconds."""
+    columns = np.array([astuple(item) for item in items], dtype=float).T
     n_angle, n_point, energy, tolerance, breadth, travel, full_cycle, n_state = columns
     sites, disorder, steady = np.log(n_angle / 1e3), np.log(energy / 0.02), 1 - full_cycle
     terms = np.array(

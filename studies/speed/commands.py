@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, get_args
@@ -102,16 +103,21 @@ def needs(output: Path, keep: bool) -> None:
 @commands.command(epilog=examples("python -m studies speed costs"))
 @_output
 def costs(output: Path) -> None:
-    """Measure the runs for the fit and the tests of the cost model.
+    """Measure runs, and fit the cost model to those that are not held out.
 
-    `crackfront plan` takes its times from costs.csv, once it is copied to crackfront/simulate.
+    Writes costs.csv, the runs, and costs.json, the coefficients. `crackfront plan` uses those of
+    crackfront/simulate/costs.json, which are of the runs of studies/speed/costs.csv.
     """
     refuse_unwritable(output)
     compile_solver("newton")
     runs = cost_model.least_of_passes(cost_model.fitted_to(), held=False, progress=click.echo)
     runs += cost_model.least_of_passes(cost_model.held_out(), held=True, progress=click.echo)
-    write_text(output / "costs.csv", cost_model.table(runs))
-    click.echo(f"results: {output / 'costs.csv'}")
+    text = cost_model.table(runs)
+    # The fit is that of the rows as they are written.
+    found = cost_model.fitted_coefficients(cost_model.table_runs(text))
+    write_text(output / "costs.csv", text)
+    write_text(output / "costs.json", json.dumps(found, indent=1) + "\n")
+    click.echo(f"results: {output / 'costs.csv'}, {output / 'costs.json'}")
     fitted, held_out = (cost_model.worst_factor(held_out) for held_out in (False, True))
     click.echo(
         f"The law in use meets its fitted runs within a factor {fitted:.2f}, its held-out ones "

@@ -1,27 +1,24 @@
 """What simulations cost: the runs that the cost model is fitted to, and is held against.
 
-Every row of `costs.csv` is one simulation, run several times unless that takes long: the least
-counts, since the speed of a processor varies by a quarter over minutes.
+Every row of the `costs.csv` beside this is one simulation, run several times unless that takes
+long: the least counts, since the speed of a processor varies by a quarter over minutes.
 """
 
 from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Callable, Iterator
-from dataclasses import fields, replace
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, fields, replace
+from importlib.resources import files
 from itertools import product
 
 import numpy as np
+from scipy.optimize import least_squares
 
+from crackfront.core.arrays import Array
 from crackfront.core.spectrum import SelfAffineSpectrum
-from crackfront.simulate.costs import (
-    Features,
-    MeasuredRun,
-    features,
-    measured_runs,
-    predicted_seconds,
-)
+from crackfront.simulate.costs import Features, features, law_coefficients, law_seconds
 from crackfront.simulate.laws import Settings
 from crackfront.simulate.numerics import Numerics
 from crackfront.simulate.run import run_simulation
@@ -37,6 +34,17 @@ CYCLE = FullCycle(1.0, 0.1)
 
 _PASSES, _LONG = 4, 20.0
 """Times that a simulation is run, and seconds from which once is enough."""
+
+
+@dataclass(frozen=True, slots=True)
+class MeasuredRun:
+    """A measured run with its states; one that is held out does not enter the fit."""
+
+    name: str
+    held_out: bool
+    features: Features
+    n_state: int
+    cpu_seconds: float
 
 
 def _simulation(
@@ -123,6 +131,32 @@ def least_of_passes(
     return list(least.values())
 
 
+def measured_runs() -> list[MeasuredRun]:
+    """The runs of the kept `costs.csv`."""
+    return table_runs(files("studies.speed").joinpath("costs.csv").read_text(encoding="utf-8"))
+
+
+def predicted_seconds(runs: Sequence[MeasuredRun]) -> Array:
+    """Processor times that the law in use gives for measured runs, in seconds."""
+    return law_seconds(law_coefficients(), [run.features for run in runs])
+
+
+_START = (-7.0, -9.0, -18.0, -12.0, 0.5, *(0.0,) * 9)
+"""Coefficients to begin with."""
+
+
+def fitted_coefficients(runs: Sequence[MeasuredRun]) -> list[float]:
+    """Coefficients of the law, to seven digits, of the runs that are not held out."""
+    used = [run for run in runs if not run.held_out]
+    known = [replace(run.features, n_state=run.n_state) for run in used]
+    found = np.log([run.cpu_seconds for run in used])
+
+    def residuals(coefficients: Array) -> Array:
+        return np.log(law_seconds(coefficients, known)) - found
+
+    return [float(f"{value:.7g}") for value in least_squares(residuals, _START).x]
+
+
 def worst_factor(held_out: bool) -> float:
     """Largest factor between times of the law in use and of its table, held out of it or not."""
     runs = [run for run in measured_runs() if run.held_out == held_out]
@@ -142,3 +176,14 @@ def table(runs: list[MeasuredRun]) -> str:
         last = [run.n_state, f"{run.cpu_seconds:.4g}"]
         writer.writerow([run.name, int(run.held_out), *values, *last])
     return text.getvalue()
+
+
+def table_runs(text: str) -> list[MeasuredRun]:
+    """Runs of comma-separated values."""
+    _, *rows = csv.reader(text.splitlines())
+    return [
+        MeasuredRun(
+            name, held_out == "1", Features(*map(float, known)), int(n_state), float(seconds)
+        )
+        for name, held_out, *known, n_state, seconds in rows
+    ]

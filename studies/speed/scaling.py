@@ -23,9 +23,10 @@ import numpy as np
 from crackfront.analysis.table import SweepRow
 from crackfront.cli import main
 from crackfront.core.arrays import Array
+from crackfront.core.memory import peak_memory
 from crackfront.data.files import dataset_content, write_text
 from crackfront.data.provenance import provenance
-from crackfront.simulate.costs import Cost, expected_cost, measured_runs, predicted_seconds
+from crackfront.simulate.costs import Cost, expected_cost
 from crackfront.simulate.files import simulation_dataset
 from crackfront.simulate.run import run_simulation
 from crackfront.simulate.simulation import stems
@@ -38,7 +39,8 @@ from crackfront.sweep.rows import sweep_row
 from crackfront.sweep.shards import write_shard
 from crackfront.sweep.store import Store
 from studies.pages import markdown_table
-from studies.speed.machine import in_fresh_process, peak_memory
+from studies.speed.costs import measured_runs, predicted_seconds
+from studies.speed.machine import in_fresh_process
 
 ROOT = Path(__file__).parents[2]
 RANKS = tuple(2**power for power in range(13))
@@ -150,14 +152,14 @@ def disk_of_simulation() -> float:
 
 
 def hand_out_seconds(n_worker: int = 4, n_task: int = 5000) -> float:
-    """Time of the rank that hands out for a task whose curve of 25 kB it stores."""
+    """Time of the rank that hands out, for a task whose curve of 30 kB it stores."""
     script = f"""
 import sys, time
 from pathlib import Path
 from crackfront.data.packs import Pack
 from crackfront.sweep import parallel
 pack, files = Pack(Path(sys.argv[1]) / "curves.tar"), {{"row.json": bytes(2000)}}
-for tasks in ([0] * {n_worker}, [25_000] * {n_task}):
+for tasks in ([0] * {n_worker}, [30_000] * {n_task}):
     started = time.perf_counter()
     if parallel.is_manager({n_worker}):
         keep = lambda task, curve: pack.append(files | {{"curve.nc": curve}})
@@ -232,7 +234,7 @@ def late(configuration: Path, command: str) -> tuple[float, float]:
     whole = command in ("status", "checksums", "verify")
     arguments = [folder] if whole else [str(configuration), "--output", folder]
     main([command, *arguments], standalone_mode=False)
-    return time.process_time(), 1e6 * peak_memory()
+    return time.process_time(), peak_memory()
 
 
 def late_table(sizes: Sequence[int]) -> str:

@@ -11,7 +11,7 @@ import pytest
 from crackfront.core.adhesion import correlation_length, rough_adhesion
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.synthesis import gaussian_field
-from crackfront.simulate.costs import expected_cost, features, measured_runs
+from crackfront.simulate.costs import expected_cost, features, law_coefficients
 from crackfront.simulate.sphere.cycle import FullCycle
 from crackfront.simulate.sphere.steady import integral_breadth
 from crackfront.sweep.configuration import load_configuration
@@ -20,13 +20,18 @@ from studies.speed import costs as benchmark
 ROOT = Path(__file__).parents[2]
 SWEEP = load_configuration(ROOT / "config/test.yaml")
 ONE = SWEEP.simulation(SWEEP.spectra[0], 0.1, 0)
-RUNS = measured_runs()
+RUNS = benchmark.measured_runs()
 
 
 @pytest.mark.parametrize("held_out", [True, False])
 def test_times_of_measured_runs_are_predicted_within_a_factor_one_and_a_half(held_out):
     assert sum(run.held_out == held_out for run in RUNS) >= 15
     assert benchmark.worst_factor(held_out) < 1.5
+
+
+def test_the_law_in_use_is_that_of_its_runs():
+    found = benchmark.fitted_coefficients(RUNS)
+    assert law_coefficients() == pytest.approx(found, rel=1e-4, abs=1e-4)
 
 
 def test_held_out_runs_are_of_other_simulations_than_those_of_the_fit():
@@ -83,13 +88,10 @@ def test_memory_is_predicted_within_a_factor_one_and_a_half():
         "from crackfront.sweep.configuration import load_configuration\n"
         "from crackfront.simulate.costs import expected_cost\n"
         "from crackfront.simulate.run import run_simulation\n"
-        "from studies.speed.machine import peak_memory\n"
         f"sweep = load_configuration(Path({str(ROOT / 'config/test.yaml')!r}))\n"
         "one = sweep.simulation(sweep.spectra[0], 0.1, 0)\n"
         "one = replace(one, resolution=replace(one.resolution, n_point=2500))\n"
-        "run_simulation(one)\n"
-        # The peak in its measures is that of the tests, if theirs is higher: a process inherits it.
-        "print(1e6 * peak_memory() / expected_cost(one).memory)\n"
+        "print(run_simulation(one).measures.peak_memory / expected_cost(one).memory)\n"
     )
     done = subprocess.run(
         [sys.executable, "-c", code], capture_output=True, text=True, timeout=600, check=True
