@@ -189,8 +189,10 @@ reproduce: env  ## The numbers and figures of the pages, but for timings and rep
 	  && cp sphx_glr_c_instabilities_001.png ../../figures/tutorial-jumps.png \
 	  && cp sphx_glr_d_si_units_001.png ../../figures/tutorial-si.png
 
+# Its shards have few simulations each: they run side by side, each on one core.
 law: env  ## The law of k, from its straight fronts, into results/law (an hour of one core)
-	set -e; for name in $(FRONTS_OF_LAW); do $(MAKE) --no-print-directory SWEEP=config/$$name.yaml; done
+	set -e; for name in $(FRONTS_OF_LAW); do \
+	  $(REPAIR) config/$$name.yaml; $(SNAKE) --config sweep=config/$$name.yaml ranks=1; done
 	$(IN_ENV) .venv/bin/python -m studies law fit $(FRONTS_OF_LAW:%=config/%.yaml)
 
 FRONTS_OF_LAW = line line-strong line-long line-long-strong line-chemical line-chemical-strong line-weak \
