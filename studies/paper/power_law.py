@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize import minimize, minimize_scalar
 
+from crackfront.analysis.estimate import REACH
 from crackfront.core.arrays import Array
 from studies.paper.figure import Integers
 
@@ -18,7 +19,7 @@ _FEWEST = 20
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(100)
 """Gauss rule of the integral that normalises the density."""
 
-_N_BOOTSTRAP, _N_JOINT_BOOTSTRAP = 200, 100
+_N_BOOTSTRAP, _N_JOINT_BOOTSTRAP = 400, 200
 
 Samples = Sequence[tuple[Array, Integers]]
 """Values and their counts, of each sample."""
@@ -61,8 +62,17 @@ def truncated_power_law(values: Array, smallest: float, rng: np.random.Generator
         )
     exponent, cutoff = found = _most_likely(used)
     again = [_most_likely(rng.choice(used, used.size), found)[0] for _ in range(_N_BOOTSTRAP)]
-    low, high = np.quantile(again, [0.025, 0.975])
-    return PowerLaw(exponent, float(low), float(high), cutoff * smallest, smallest, int(used.size))
+    low, high = _interval(exponent, again)
+    return PowerLaw(exponent, low, high, cutoff * smallest, smallest, int(used.size))
+
+
+def _interval(exponent: float, again: Sequence[float]) -> tuple[float, float]:
+    """95% interval of an exponent, from those of the samples of a bootstrap.
+
+    It is that of a normal distribution: quantiles of some hundred samples scatter twice as much.
+    """
+    reach = REACH * float(np.std(again, ddof=1))
+    return exponent - reach, exponent + reach
 
 
 def _most_likely(scaled: Array, start: tuple[float, float] | None = None) -> tuple[float, float]:
@@ -173,8 +183,8 @@ def joint_power_law(
     for _ in range(_N_JOINT_BOOTSTRAP):
         drawn = [(values, rng.multinomial(n.sum(), n / n.sum())) for values, n in binned]
         again.append(_most_likely_joint(drawn, smallest)[1][0])
-    low, high = (float(end) for end in np.quantile(again, [0.025, 0.975]))
     exponent, shoulder, quarter = (float(value) for value in natural)
+    low, high = _interval(exponent, again)
     shape = shoulder, 4 * quarter, steepness
     upper = [_binned(sample, 2 * smallest) for sample in samples]
     later = float(_most_likely_joint(upper, 2 * smallest)[1][0])
