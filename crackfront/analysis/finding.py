@@ -41,7 +41,7 @@ def finding(departure: str) -> str:
     Examples
     --------
     >>> finding("; no sphere was held against it").count(". ")
-    6
+    7
     """
     s, low, high = crossing()
     weak = pinning_factor(WEAKEST, math.inf).factor
@@ -55,8 +55,9 @@ def finding(departure: str) -> str:
         "contact holds its edge, divided by the Larkin length of the roughness. In the infinite "
         f"contact k is {with_interval(weak)} at vanishing disorder. At s = {STRONG:g}, that of the "
         f"paper's experiment, it is {strong}. In a finite contact k is smaller. So k is "
-        f"{PAPER_FACTOR:g}, as in the paper, only along a line from g = {least_size():.1f} at "
-        f"vanishing disorder to s = {s:.2f} ({low:.2f} to {high:.2f}) in the infinite contact. "
+        f"{PAPER_FACTOR:g}, as in the paper, only for certain pairs of s and g. They begin at "
+        f"g = {least_size():.1f} with vanishing disorder, and end at s = {s:.2f} ({low:.2f} to "
+        f"{high:.2f}) in the infinite contact. "
         f"The law was measured on straight fronts held by springs{departure}."
     )
 
@@ -66,8 +67,8 @@ def departure_of_spheres(
 ) -> str:
     """End of the finding where spheres, named in words, were held against the law."""
     return (
-        f". It was not fitted to spheres; k of {spheres} agrees with it within {rms:.1%} rms "
-        f"where g is above 1 ({n_large} of {n_cell} spectra and amplitudes)"
+        f". It was not fitted to spheres. At the {n_large} of {n_cell} spectra and amplitudes that "
+        f"have g above 1, k of {spheres} differs from it by {rms:.1%} rms"
     )
 
 

@@ -234,8 +234,8 @@ def _law_agreement(fit: SweepFit) -> str:
     if not fit.table.on_springs:
         return departure_of_spheres(float(fit.law_departure), *counts, "the spheres of this sweep")
     return (
-        f", and k of those of this sweep agrees with it within {fit.law_departure:.1%} rms where "
-        f"g is above 1 ({counts[0]} of {counts[1]} spectra and amplitudes)"
+        f". At the {counts[0]} of {counts[1]} spectra and amplitudes that have g above 1, k of "
+        f"those of this sweep differs from it by {fit.law_departure:.1%} rms"
     )
 
 

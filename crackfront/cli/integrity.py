@@ -138,6 +138,9 @@ def compare(one: Path, other: Path, tolerance: float, as_json: bool) -> None:
     echo_answer(content, lines, as_json=as_json)
     if not agree:
         difference = f"the largest difference is {found.largest:.1e}"
+        if found.largest == math.inf:
+            names = ", ".join(name for name, item in variables.items() if item.largest == math.inf)
+            difference = f"not in both, of another shape, or not a number in one: {names}"
         if found.alone:
             difference = f"{counted(len(found.alone), 'file')} without a counterpart"
         raise click.ClickException(f"{one} and {other} do not agree: {difference}")

@@ -15,6 +15,7 @@ from crackfront.cli.report import (
     examples,
     refuse_overwriting,
     refuse_unwritable,
+    refuse_without,
 )
 from crackfront.data.bounds import Range
 from crackfront.data.written_units import si_value
@@ -76,7 +77,9 @@ def _columns(command: Any) -> Any:
 @click.option("--work-of-adhesion", help="w_int of the prediction, as in 63mJ/m2.")
 @click.option("--figure", type=FILE, help="Figure of the loop; without suffix PDF and PNG.")
 @as_json
+@click.pass_context
 def loop(
+    context: click.Context,
     path: Path,
     sphere: str | None,
     modulus: str | None,
@@ -99,6 +102,7 @@ def loop(
 
     if scans and work_of_adhesion is None:
         raise ValueError("a prediction for --scans needs w_int; give --work-of-adhesion")
+    refuse_without(context, "modulus", "poisson")
     refuse_overwriting([path, *scans], {"--figure": figure})
     if figure is not None:
         refuse_unwritable(figure.parent)

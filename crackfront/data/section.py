@@ -178,8 +178,11 @@ def yaml_mapping(path: Path) -> dict[str, Any]:
     if content is None:
         raise ConfigurationError(f"{path} is empty; write a configuration like config/test.yaml")
     if not isinstance(content, dict):
-        kind = "list" if isinstance(content, tuple) else type(content).__name__
-        raise ConfigurationError(f"{path} holds a {kind}; the top level must be a mapping of keys")
+        kind = "a list" if isinstance(content, tuple) else "a single value"
+        raise ConfigurationError(
+            f"{path} holds {kind}, not keys with values; write a configuration like "
+            "config/test.yaml"
+        )
     return content
 
 

@@ -16,6 +16,9 @@ from crackfront.data.bounds import SI, refuse_outside
 _QUANTITY = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(\S.*?)?\s*")
 """A number and what stands behind it."""
 
+_COMMA = re.compile(r"(?<=\d),(?=\d)")
+"""A comma in a number, which stands for a point in one country and for nothing in another."""
+
 _NAMES = {
     "m": "length",
     "Pa": "pressure",
@@ -52,6 +55,11 @@ def si_value(text: str, unit: str, *, what: str) -> float:
     dimension = _NAMES[unit]
     example = f"write a number and a unit of {dimension}, as in {_EXAMPLES[unit]}"
     found = _QUANTITY.fullmatch(unicodedata.normalize("NFKC", text).translate(_SIGNS))
+    if _COMMA.search(text):
+        raise ValueError(
+            f"{what} is {text!r}, a number with a comma; write {_COMMA.sub('.', text)!r} if that "
+            "is meant"
+        )
     if found is None:
         raise ValueError(f"{what} is {text!r}, which is no number with a unit; {example}")
     if found[2] is None:

@@ -329,7 +329,8 @@ def test_the_notes_and_the_table_tell_how_near_the_law_is():
     fit = fit_all(apart)
     assert fit.law_departure == pytest.approx(0.1)
     text = fit_table(fit)
-    assert f"agrees with it within 10.0% rms where g is above 1 ({fit.n_large} of 15" in text
+    assert f"At the {fit.n_large} of 15 spectra and amplitudes that have g above 1, k of" in text
+    assert " differs from it by 10.0% rms" in text
     assert f"\n- k by the law: {np.mean(k.value):.2f}; spectra " in text
     rows = [line for line in text.splitlines() if line.startswith("| flat-0.02 | 0.1 |")]
     assert len(rows) == 1

@@ -50,6 +50,7 @@ def test_a_difference_is_told_and_ends_with_1_unless_it_is_tolerated(paths):
     result = compared(other, one)
     assert result.exit_code == 1
     assert "force                                1.0e-06" in result.output
+    assert "not in both, of another shape, or not a number in one: " in compared(short, one).output
     variables = json.loads(compared(short, one, "--json").stdout)["variables"]
     assert variables["radius"] is None
     assert variables["approach"] == 0.0

@@ -53,6 +53,7 @@ def test_a_quantity_is_converted_to_si(text, unit, value):
         ("nanMPa", "no number"),
         ("1e400MPa", "positive"),
         ("0.7%", "no pressure"),
+        ("0,7MPa", "write '0.7MPa' if"),
         ("0.7 N m-1", "no pressure"),
         ("0.7 N/m-2", "no pressure"),
     ],

@@ -377,8 +377,8 @@ def test_every_error_has_its_own_sentence(tmp_path):
     ("text", "sentence"),
     [
         ("", "is empty; write a configuration like config/test.yaml"),
-        ("- 1\n- 2\n", "holds a list; the top level must be a mapping of keys"),
-        ("just text", "holds a str; the top level must be a mapping of keys"),
+        ("- 1\n- 2\n", "holds a list, not keys with values; write"),
+        ("just text", "holds a single value, not keys with values; write"),
         ("!!python/object/apply:os.getcwd []", "is no valid YAML in line 1"),
     ],
 )

@@ -174,9 +174,10 @@ def refuse_unusable(values: Array, names: tuple[str, ...]) -> None:
     if not np.all(finite):
         bad = np.argwhere(~finite)
         place = ", ".join(f"{name} index {i}" for name, i in zip(names, bad[0], strict=True))
+        others = f" ({len(bad)} values are not finite)" if len(bad) > 1 else ""
         raise ValueError(
-            f"work of adhesion is {values[tuple(bad[0])]} at {place} ({len(bad)} such values); "
-            "replace them by finite values"
+            f"work of adhesion is {values[tuple(bad[0])]} at {place}{others}; "
+            "replace it by a finite value"
         )
     if not np.any(values):
         raise ValueError("work of adhesion is zero everywhere; nothing adheres, so check the field")

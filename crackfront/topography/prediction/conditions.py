@@ -27,7 +27,7 @@ ASSUMED_RANGE = 0.5e-9
 """Range of van der Waals attraction, where no other is named (Units: m)."""
 
 _CONTACT = (0.3, 0.7)
-"""Contact radius over that of the sphere, whose depth a paraboloid misses by 3% and by 24%."""
+"""Contact radius over that of the sphere, whose profile a paraboloid misses by 3% and by 24%."""
 
 _TABOR = (5.0, 1.0)
 """Tabor parameter down to which adhesion is that of cracks, and to which there are cracks."""

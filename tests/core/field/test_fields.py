@@ -81,7 +81,7 @@ def test_a_value_that_is_not_finite_is_refused_with_its_place(value):
     adhesion[7, 3] = value
     with pytest.raises(
         ValueError,
-        match=rf"work of adhesion is {value} at radius index 7, angle index 3 \(1 such values\)",
+        match=rf"work of adhesion is {value} at radius index 7, angle index 3; replace it",
     ):
         polar_field(radii, adhesion)
 
@@ -112,7 +112,7 @@ def test_a_cubic_field_on_rays_takes_hardly_more_memory_to_make_than_to_hold():
 
 
 def test_a_value_on_rings_that_is_not_finite_is_named_by_its_radius():
-    with pytest.raises(ValueError, match=r"is nan at radius index 2 \(1 such values\)"):
+    with pytest.raises(ValueError, match=r"is nan at radius index 2; replace it"):
         polar_field(np.array([0.1, 0.2, 0.3]), np.array([1.0, 1.0, np.nan]))
 
 
