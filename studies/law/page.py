@@ -148,4 +148,4 @@ def fronts_part(cells: Sequence[LawCell]) -> str:
 
 def _wrapped(text: str) -> str:
     """Lines of a paragraph."""
-    return textwrap.fill(text, 108)
+    return textwrap.fill(text, 120)
