@@ -8,23 +8,26 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import ArrayLike
-from xarray import Dataset
+from xarray import DataArray, Dataset
 
-from crackfront.data.arguments import refuse_other_type
+from crackfront.core.arrays import Array
+from crackfront.data.arguments import refuse_no_numbers, refuse_other_type
 from crackfront.data.files import read_dataset
+from crackfront.data.written_units import unit_value
 from crackfront.experiment.loop import MeasuredLoop, Rig, analyse_loop
 from crackfront.experiment.recording import UNITS, Recording, read_recording
 from crackfront.experiment.simulated import is_netcdf, simulated_loop
+from crackfront.simulate.si_units import in_si
 
 
 def measured_loop(
     loop: str | PathLike[str] | Mapping[str, ArrayLike] | Dataset,
     *,
-    radius: float | None = None,
-    contact_modulus: float | None = None,
+    radius: float | str | None = None,
+    contact_modulus: float | str | None = None,
     modulus_error: float = 0.0,
     radius_error: float = 0.0,
-    stiffness: float | None = None,
+    stiffness: float | str | None = None,
     window: tuple[float, float] | None = None,
 ) -> MeasuredLoop:
     """Works of adhesion of a loop that a rig measured, or of a simulated one, with intervals.
@@ -34,15 +37,16 @@ def measured_loop(
     loop : path, mapping or xarray.Dataset
         A table whose heads name force, contact radius and displacement with their units, or arrays
         by these names in SI units: `force`, `radius` (0 or NaN out of contact), `displacement`. Two
-        of them suffice. Or a simulated cycle, the result of :func:`run_loop` or the file of one; it
-        states its sphere, and all other arguments are left out.
-    radius : float, optional
-        Radius of the sphere. (Units: m)
-    contact_modulus : float, optional
+        of them suffice; rows that are masked or NaN are left out. Or a simulated cycle, the result
+        of :func:`run_loop` or the file of one; it states its sphere, and all other arguments are
+        left out.
+    radius : float or str, optional
+        Radius of the sphere; a number of metres, or a text with a unit, as '1.25mm'. (Units: m)
+    contact_modulus : float or str, optional
         E' = E / (1 - nu^2); fitted to force and contact radius if it is not given. (Units: Pa)
     modulus_error, radius_error : float, optional
         Relative standard errors of the two.
-    stiffness : float, optional
+    stiffness : float or str, optional
         Stiffness of the machine, for displacements without a contact radius. (Units: N/m)
     window : (float, float), optional
         Contact radii that both branches are averaged over. (Units: m)
@@ -81,6 +85,8 @@ def measured_loop(
     }
     if isinstance(loop, (str, PathLike)) and is_netcdf(Path(loop)):
         loop = read_dataset(Path(loop))
+    if isinstance(loop, Dataset) and set(map(str, loop.data_vars)) <= set(UNITS):
+        loop = {str(name): _in_si(part) for name, part in loop.data_vars.items()}
     if isinstance(loop, Dataset):
         if named := [name for name, value in given.items() if value is not None]:
             raise ValueError(
@@ -90,17 +96,48 @@ def measured_loop(
         return simulated_loop(loop)
     if radius is None:
         raise ValueError("a measured loop does not state its sphere; give its radius in metres")
-    rig = Rig(radius, contact_modulus, modulus_error, radius_error, stiffness, window)
+    refuse_no_numbers(modulus_error=modulus_error, radius_error=radius_error)
+    if window is not None:
+        refuse_other_type("window", window, (tuple, list), "two contact radii in metres")
+        if len(window) != 2:
+            raise ValueError(f"window has {len(window)} values; give two contact radii in metres")
+        refuse_no_numbers(**{"a contact radius of window": window[0]})
+        refuse_no_numbers(**{"a contact radius of window": window[1]})
+    rig = Rig(
+        in_si("radius", radius, "m"),
+        None if contact_modulus is None else in_si("contact_modulus", contact_modulus, "Pa"),
+        modulus_error,
+        radius_error,
+        None if stiffness is None else in_si("stiffness", stiffness, "N/m"),
+        window,
+    )
     if isinstance(loop, Mapping):
         if unknown := set(map(str, loop)) - set(UNITS):
             raise ValueError(
                 f"a loop has no {', '.join(sorted(unknown))}; give two of {', '.join(UNITS)}"
             )
         columns = {
-            name: None if loop.get(name) is None else np.array(loop[name], float) for name in UNITS
+            name: None if loop.get(name) is None else _column(name, loop[name]) for name in UNITS
         }
         return analyse_loop(Recording(**columns), rig)
     refuse_other_type(
         "loop", loop, (str, PathLike), "the path of a table, or arrays by their names"
     )
     return analyse_loop(read_recording(Path(loop), {}, {}), rig)
+
+
+def _in_si(part: DataArray) -> ArrayLike:
+    """Values of a column of a dataset, converted where it states its unit."""
+    given = part.attrs.get("units")
+    return part.values if given is None else part.values * unit_value(given, UNITS[str(part.name)])
+
+
+def _column(name: str, values: ArrayLike) -> Array:
+    """A column as numbers, NaN where it is masked; refused where no row has one."""
+    try:
+        found: Array = np.ma.array(values, dtype=float).filled(np.nan)
+    except (TypeError, ValueError) as error:
+        raise TypeError(f"the values of {name} are no array of numbers: {error}") from error
+    if not np.any(np.isfinite(found)):
+        raise ValueError(f"{name} has no finite value; leave the column out, or check the file")
+    return found

@@ -43,8 +43,12 @@ _FEWEST_BASELINE = 5
 _LEAST_FORCE, _NOISES = 0.02, 5.0
 """Part of the largest force, and standard deviations of the first rows, that make a contact."""
 
+_STEEP, _CERTAIN = 0.1, 0.9995
+"""Slope of the force over the displacement, relative to that of the whole loop, and the certainty
+that there is one, from which rows are of a contact: out of it the force hardly changes."""
+
 _RETURN = 0.2
-"""Part of the largest travel by which the mount may come back within a branch."""
+"""Part of the largest travel by which mount or edge may come back within a branch."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -139,11 +143,14 @@ def analyse_loop(recording: Recording, rig: Rig) -> MeasuredLoop:
     """
     recording, zero_errors, remarks = _with_zero_force(recording)
     branches = _branches(recording)
-    if rig.contact_modulus is None and (recording.force is None or recording.radius is None):
+    is_fitted = recording.force is not None and recording.radius is not None
+    if rig.contact_modulus is None and not is_fitted:
         raise ValueError(
             "without a contact radius and a force in each row no modulus is fitted; give --modulus"
         )
-    known = rig.contact_modulus or _fit(recording, rig, branches)
+    # A force of the wrong sign is refused here, where the modulus is given, too.
+    fit = _fit(recording, rig, branches) if is_fitted else math.nan
+    known, fitted = rig.contact_modulus or fit, _NO_ESTIMATE
     zero = _zero_displacement(recording, rig, known, branches)
     first = _contact(recording, rig, known, zero)
     if zero != 0.0:
@@ -152,6 +159,12 @@ def analyse_loop(recording: Recording, rig: Rig) -> MeasuredLoop:
         )
     appr, retr = (rows[np.isfinite(first.work[rows])] for rows in branches)
     branches = appr, retr
+    largest = max((float(np.max(first.radius[rows])) for rows in branches if rows.size), default=0)
+    if largest > rig.radius:
+        raise ValueError(
+            f"the contact radius reaches {prefixed('m', largest)} on a sphere of "
+            f"{prefixed('m', rig.radius)}; check the units of both"
+        )
     averaged, window = _averaged(first.radius, branches, rig.window)
 
     def found(rows: Branches, rig: Rig, recording: Recording = recording) -> Array:
@@ -170,8 +183,7 @@ def analyse_loop(recording: Recording, rig: Rig) -> MeasuredLoop:
             w_appr, w_retr = branch_means(_contact(recording, rig, known, place).work, averaged)
             alone.append(np.array([w_appr, w_retr, w_retr - w_appr, known]))
     estimates = _estimates(found, averaged, first.radius, rig, shifted, alone)
-    fitted = _NO_ESTIMATE
-    if recording.force is not None and recording.radius is not None:
+    if is_fitted:
         free = Rig(rig.radius, None, 0.0, rig.radius_error)
         fitted = _estimates(found, averaged, first.radius, free, shifted)[3]
     lost, lost_remark = _lost_energy(recording, first, branches)
@@ -181,6 +193,11 @@ def analyse_loop(recording: Recording, rig: Rig) -> MeasuredLoop:
     inside = np.zeros(first.radius.size, bool)
     inside[np.concatenate(averaged)] = True
     remarks += [lost_remark] if lost_remark else []
+    if estimates[2].high < 0:
+        remarks.append(
+            "The hysteresis is negative, as in a loop whose rows are not in the order of time: "
+            "check the order and the sign of the columns."
+        )
     if math.isfinite(fitted.low) and rig.contact_modulus is not None:
         remarks += _modulus_remark(rig, fitted)
     return MeasuredLoop(
@@ -323,7 +340,8 @@ def _touches(recording: Recording) -> NDArray[np.bool_]:
     """Whether each row is in contact: its radius is positive, or, without radii, a force acts.
 
     A force acts from the first to the last row whose deviation from the median of the first rows is
-    above their noise and above a part of the largest deviation.
+    above their noise and above a part of the largest deviation. Rows before and after it whose
+    force changes with the displacement as in a contact are in contact, too.
     """
     if recording.radius is not None:
         touches = recording.radius > 0
@@ -335,13 +353,38 @@ def _touches(recording: Recording) -> NDArray[np.bool_]:
         beyond = np.flatnonzero(apart > least)
         touches = np.zeros(force.size, bool)
         if beyond.size:
-            touches[beyond[0] : beyond[-1] + 1] = True
+            first, last = int(beyond[0]), int(beyond[-1]) + 1
+            first = 0 if first and _is_contact(recording, first) else first
+            after = last - force.size
+            last = force.size if after and _is_contact(recording, after) else last
+            touches[first:last] = True
     if not np.any(touches):
         raise ValueError(
             "no row is in contact: no contact radius is above zero, or no force beyond its noise; "
             "check the columns"
         )
     return touches
+
+
+def _is_contact(recording: Recording, count: int) -> bool:
+    """Whether the force of so many first rows changes with the displacement as in a contact.
+
+    A negative number counts the last rows. The slope must be steep, and go on beyond these rows.
+    """
+    force, moved = np.asarray(recording.force), np.asarray(recording.displacement)
+    stiffness = np.nanmax(force) - np.nanmin(force)
+    stiffness /= np.nanmax(moved) - np.nanmin(moved)
+    slopes = []
+    for end, certainty in ((count, 0.99), (2 * count, _CERTAIN)):
+        rows = slice(None, end) if count > 0 else slice(end, None)
+        known = np.isfinite(force[rows]) & np.isfinite(moved[rows])
+        x, y = moved[rows][known], force[rows][known]
+        if x.size < _FEWEST_BASELINE or np.ptp(x) == 0:
+            return False
+        (slope, _), covariance = np.polyfit(x - x[0], y, 1, cov=True)
+        errors = float(stdtrit(x.size - 2, certainty)) * math.sqrt(covariance[0, 0])
+        slopes.append(slope if abs(slope) > errors else 0.0)
+    return bool(abs(slopes[0]) > _STEEP * stiffness and slopes[0] * slopes[1] > 0)
 
 
 def _branches(recording: Recording) -> Branches:
@@ -352,15 +395,16 @@ def _branches(recording: Recording) -> Branches:
     rows = np.flatnonzero(_touches(recording) & np.isfinite(driven))
     turn = int(np.argmax(driven[rows]))
     branches = rows[: turn + 1], rows[turn:]
-    span = float(np.ptp(driven[rows]))
+    # Jumps are no return: the force changes at a constant displacement, the radius goes on.
+    moved = driven if recording.displacement is not None else np.asarray(recording.radius)
+    span = float(np.ptp(moved[rows]))
     for sign, one in zip((1, -1), branches, strict=True):
-        way = sign * driven[one]
+        way = sign * moved[one]
         if way.size and float(np.max(np.maximum.accumulate(way) - way)) > _RETURN * span:
-            # The jump into contact is no return: the force falls at a constant displacement.
-            if recording.displacement is None and sign > 0:
-                continue
             raise ValueError(
-                "the loop turns more than once; cut the table to one approach and one retraction"
+                "the loop turns more than once, or a column has the wrong sign; displacement and "
+                "force are positive where they press. Cut the table to one approach and one "
+                "retraction"
             )
     return branches
 

@@ -2,8 +2,11 @@
 
 import numpy as np
 import pytest
+import xarray as xr
 
 from crackfront import measured_loop
+from crackfront.core import jkr
+from crackfront.core.units import Scales
 from crackfront.experiment.contact import penetration_at, radius_at
 from crackfront.experiment.loop import Rig, analyse_loop
 from crackfront.experiment.recording import Recording
@@ -120,6 +123,7 @@ def test_a_loop_without_noise_is_that_of_its_works():
     [
         ({"force": np.zeros(50), "displacement": np.linspace(0, 1e-6, 50)}, "no row is in contact"),
         ({"force": np.zeros(50), "radius": np.zeros(50)}, "no row is in contact"),
+        ({"force": np.full(50, np.nan), "radius": np.ones(50)}, "force has no finite value"),
         ({"force": np.zeros(50)}, "needs two of"),
         ({"force": np.zeros(50), "radius": np.ones(49)}, "not of one length"),
     ],
@@ -131,5 +135,79 @@ def test_what_is_no_loop_is_refused(columns, sentence):
 
 def test_a_force_of_the_other_sign_is_refused_with_what_to_check():
     one = loop(0)
-    with pytest.raises(ValueError, match="check its sign"):
-        measured_loop({"force": -one.force, "radius": one.radius}, radius=RADIUS)
+    for modulus in (None, MODULUS):
+        with pytest.raises(ValueError, match="has the wrong sign; displacement and force are posi"):
+            measured_loop(
+                {"force": -one.force, "radius": one.radius}, radius=RADIUS, contact_modulus=modulus
+            )
+
+
+def in_contact(**given):
+    """Columns of a loop that begins and ends in contact, at radii of no jump."""
+    one, scales = loop(0, **given), Scales(RADIUS, 1.0, MODULUS)
+    held = np.flatnonzero(one.radius > scales.lateral * jkr.equilibrium_radius(0.0, W_APPR))
+    rows = slice(held[0], held[-1] + 1)
+    return {name: getattr(one, name)[rows] for name in ("force", "radius", "displacement")}
+
+
+@pytest.mark.parametrize("noise", [0.0, 0.003])
+def test_rows_in_contact_give_no_zero_of_the_force(noise):
+    columns = in_contact(force_noise=noise, radius_noise=0.0, stiffness=1e9)
+    del columns["radius"]
+    found = measured_loop(columns, radius=RADIUS, contact_modulus=MODULUS)
+    assert "The zero of the force is that of the file, as no rows are out of contact." in (
+        found.remarks
+    )
+    for name, truth in TRUTH.items():
+        estimate = getattr(found, name)
+        assert estimate.low - 1e-6 <= truth <= estimate.high + 1e-6
+        assert estimate.value == pytest.approx(truth, rel=1e-4 if noise == 0 else 0.2)
+
+
+def test_the_force_may_rise_after_its_least_value_in_retraction():
+    """At a fixed displacement a contact is lost beyond the largest pulling force."""
+    radius = np.concatenate([np.linspace(35e-6, 90e-6, 60), np.linspace(90e-6, 30e-6, 60)])
+    work = np.repeat([W_APPR, W_RETR], 60)
+    force = 4 / 3 * MODULUS * radius**3 / RADIUS
+    force -= np.sqrt(8 * np.pi * MODULUS * work * radius**3)
+    assert np.ptp(force[np.argmin(force) :]) > 0.2 * np.ptp(force)
+    known = {"radius": RADIUS, "contact_modulus": MODULUS}
+    found = measured_loop({"force": force, "radius": radius}, **known)
+    assert found.hysteresis.value == pytest.approx(W_RETR - W_APPR, rel=1e-6)
+
+
+def test_what_cannot_be_of_a_loop_is_said():
+    columns = in_contact(force_noise=0.0, radius_noise=0.0)
+    known = {"radius": RADIUS, "contact_modulus": MODULUS}
+    back = {name: column[::-1] for name, column in columns.items()}
+    assert any("negative" in one for one in measured_loop(back, **known).remarks)
+    with pytest.raises(ValueError, match=r"the contact radius reaches .* on a sphere of 1\.25 mm"):
+        measured_loop({**columns, "radius": 1e6 * columns["radius"]}, **known)
+
+
+def test_masked_rows_are_left_out_and_texts_have_units():
+    columns = in_contact(force_noise=0.0, radius_noise=0.0)
+    spiked = np.ma.masked_array(columns["force"].copy(), np.arange(columns["force"].size) == 40)
+    spiked.data[40] = 9999.0
+    given = {"force": spiked, "radius": columns["radius"]}
+    found = measured_loop(given, radius="1.25mm", contact_modulus=f"{MODULUS}Pa")
+    assert found.w_retr.value == pytest.approx(W_RETR, rel=1e-9)
+    labelled = xr.Dataset(
+        {"force": ("t", 1e3 * columns["force"], {"units": "mN"}), "radius": ("t", given["radius"])}
+    )
+    assert measured_loop(labelled, radius=RADIUS).w_retr.value == pytest.approx(W_RETR, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("given", "sentence"),
+    [
+        ({"window": "70um:120um"}, "window is '70um:120um'; give two contact radii"),
+        ({"window": (7e-5, 1e-4, 2e-4)}, "window has 3 values"),
+        ({"modulus_error": "1%"}, "modulus_error is '1%'; give a number"),
+        ({"stiffness": "3kg"}, "no stiffness"),
+    ],
+)
+def test_an_argument_that_cannot_be_used_is_refused(given, sentence):
+    columns = in_contact()
+    with pytest.raises((TypeError, ValueError), match=sentence):
+        measured_loop(columns, radius=RADIUS, **given)
