@@ -296,10 +296,12 @@ def test_instabilities_sweep_what_the_front_travels_and_lose_energy(surface, jum
     [
         ({"short_cutoff": -1.0}, "short_cutoff is -1.0; it must be positive"),
         ({"elastic_energy": 1.5}, "elastic_energy is 1.5; it must lie between 0 and 1"),
+        ({"elastic_energy": 0.5}, "elastic_energy is 0.5; the numerics are known from 0.001 to"),
+        ({"roll_off": 9.0}, "the longest waves of the spectrum, of 9, or its e_el is not"),
         ({"error": 0.0}, "error is 0.0; it must lie between 0 and 1"),
         ({"roll_off": 0.1}, "roll_off 0.1 is shorter than short_cutoff 0.4"),
         ({"hurst": 0.0}, "hurst is 0.0; it must lie in"),
-        ({"side": 0.1}, "side is 0.1; the tile must hold the short cutoff, 0.4"),
+        ({"side": 0.1}, "side is 0.1; the tile must hold the longest waves"),
         ({"kind": "rough"}, "kind is 'rough'; choose one of roughness, chemical"),
         ({"seed": -1}, "seed is -1; it must lie between 0 and"),
         ({"realisation": -2}, "realisation is -2; it must lie between 0 and"),
@@ -346,6 +348,12 @@ def test_a_surface_that_cannot_be_used_is_refused(surface, change, sentence):
         (lambda: cf.random_surface("1mm", 0.1), "short_cutoff is '1mm'; give a number"),
         (lambda: cf.random_surface(0.1, None), "elastic_energy is None; give a number"),
         (lambda: cf.random_surface(0.1, 0.1, seed=1.5), "seed is 1.5; give a whole number"),
+        (lambda: cf.random_surface(0.1, 0.1, seed=True), "seed is True; give a whole number"),
+        (lambda: cf.surface(np.zeros((4, 4)), 1.0, units=3), "units is 3; give the name of a unit"),
+        (lambda: cf.run_loop(tile(np.zeros((4, 4))), loads=0.5), "loads is 0.5; give the loads"),
+        (lambda: cf.run_loop(tile(np.zeros((4, 4))), loads="01"), "loads is '01'; give the loads"),
+        (lambda: cf.plot_surface(tile(np.zeros((4, 4))), axes=3), "axes is 3; give axes of matpl"),
+        (lambda: cf.read_scan(SCAN, SPHERE, mask=np.ones(3)), "mask is a numpy.ndarray; give a pa"),
         (lambda: cf.in_si_units(tile(np.zeros((4, 4))), 1e-3), "sphere is 0.001; give crackf"),
         (lambda: cf.in_si_units([1], SPHERE), "data is a list; give an xarray.DataArray or"),
         (lambda: cf.plot_loop(tile(np.zeros((4, 4)))), "loop is a xarray.DataArray; give an"),
@@ -380,6 +388,14 @@ def test_an_array_is_the_same_surface_in_all_units():
         1e9 * SPHERE.vertical * WAVE / 10, 4 * SPHERE.lateral, units="nm", sphere=SPHERE
     )
     xr.testing.assert_allclose(nanometres, cf.surface(WAVE / 10, 4.0), rtol=1e-13)
+    labelled = xr.DataArray((1 + WAVE).T, dims=("y", "x"), attrs={"units": "w_int"})
+    xr.testing.assert_identical(cf.surface(labelled, 4.0, kind="chemical"), expected)
+    in_metres = cf.in_si_units(nanometres, SPHERE)
+    again = cf.surface(in_metres, 4 * SPHERE.lateral, sphere=SPHERE)
+    xr.testing.assert_allclose(again, nanometres, rtol=1e-12)
+    for one in (4 * 1e6 * SPHERE.lateral, 0.0, -4.0):
+        with pytest.raises(ValueError, match=r"^side is .*; it must lie between 1e-09 and 1 m"):
+            cf.surface(WAVE, one, sphere=SPHERE)
     plain = nanometres.drop_attrs().assign_attrs(units="reduced")
     np.testing.assert_array_equal(
         cf.run_loop(plain, step=0.5).force, cf.run_loop(nanometres, step=0.5).force
@@ -400,6 +416,22 @@ def test_an_array_is_the_same_surface_in_all_units():
         (1 + WAVE, {"units": "mJ/m2"}, "units is 'mJ/m2'; choose one of reduced, w_int, or give"),
         ([1.0, 2.0], {}, r"the values have the shape \(2,\); a tile must be"),
         (WAVE, {"kind": "rough"}, "kind is 'rough'; choose one of"),
+        (
+            np.ma.masked_array(1 + WAVE, np.arange(1024).reshape(32, 32) == 40),
+            {"units": "w_int"},
+            "work_of_adhesion is nan at x index 1, y index 8",
+        ),
+        (xr.DataArray(1 + WAVE, attrs={"units": "nm"}), {}, "units is 'nm'; choose one of reduced"),
+        (
+            xr.DataArray(1 + WAVE, attrs={"units": "w_int"}),
+            {"units": "reduced"},
+            "units is 'reduced', but the array states 'w_int'; leave units out",
+        ),
+        (
+            xr.DataArray(1 + WAVE, {"x": np.arange(32)}, ("x", "y")),
+            {"units": "w_int"},
+            "side is 4.0, but the coordinate x of the array spans 32",
+        ),
     ],
 )
 def test_an_array_that_is_no_surface_is_refused_with_the_likely_cause(values, given, sentence):
@@ -569,6 +601,9 @@ def test_simulations_without_a_value_are_warned_of(tmp_path):
         (cf.run_loop, {"error": 1e-6}, "error is 1e-06, but the finest numerics"),
         (cf.run_loop, {"error": 2}, "error is 2; it must lie between 0 and 1"),
         (cf.find_instabilities, {"direction": 0}, "direction is 0; give 1 for approach or -1"),
+        (cf.find_instabilities, {"precision": 0.01}, "precision is 0.01; .* at most a tenth of"),
+        (cf.find_instabilities, {"precision": 0.0}, "precision is 0; it must be positive"),
+        (cf.find_instabilities, {"travel": -1.0}, "travel is -1; it must be positive and finite"),
     ],
 )
 def test_a_loop_that_cannot_be_run_is_refused(surface, run, given, sentence):
@@ -590,7 +625,40 @@ def test_units_of_another_quantity_are_refused(surface, units, sentence):
         cf.in_reduced_units(given, SPHERE)
 
 
+def test_what_was_converted_for_one_sphere_comes_back_for_no_other(surface):
+    other = cf.Scales("2mm", "100mJ/m2", "1MPa")
+    with pytest.raises(ValueError, match="converted for another sphere, radius"):
+        cf.in_reduced_units(cf.in_si_units(surface, SPHERE), other)
+    with pytest.raises(ValueError, match="in reduced units already; nothing is to be converted"):
+        cf.in_reduced_units(surface, SPHERE)
+
+
+def test_the_loop_of_a_surface_without_an_error_has_the_one_that_is_left():
+    coarse = cf.random_surface(1.6, 0.005, side=16, seed=1)
+    with pytest.raises(ValueError, match=r"error is 0\.03, but the finest numerics on 8 pixels"):
+        cf.run_loop(coarse, error=0.03)
+    assert cf.run_loop(coarse, step=0.5).attrs["status"] == "lost_contact"
+
+
+def test_a_home_folder_is_that_of_the_user(surface, tmp_path, monkeypatch):
+    monkeypatch.setenv("HOME", str(tmp_path))
+    monkeypatch.chdir(tmp_path)
+    cf.save_result(surface, "~/surface.nc")
+    assert [path.name for path in tmp_path.iterdir()] == ["surface.nc"]
+    xr.testing.assert_equal(cf.load_result("~/surface.nc"), surface)
+
+
+def test_the_pixels_of_a_map_lie_around_their_places(surface):
+    [image] = cf.plot_surface(surface).images
+    pixel = float(surface.x[1] - surface.x[0])
+    ends = surface.x[0] - pixel / 2, surface.x[-1] + pixel / 2
+    assert image.get_extent() == pytest.approx(2 * [float(end) for end in ends])
+    pyplot.close("all")
+
+
 def test_unknown_variables_have_no_units_to_convert(loop):
+    with pytest.raises(ValueError, match="spring_position is of a straight front, which touches"):
+        cf.in_si_units(loop.force.rename("spring_position"), SPHERE)
     with pytest.raises(ValueError, match="extra is no variable of a surface or of a cycle; drop"):
         cf.in_si_units(loop.assign(extra=loop.force), SPHERE)
     with pytest.raises(ValueError, match="the array has no name"):
@@ -682,6 +750,7 @@ def test_the_rms_values_of_a_spectrum_are_those_of_the_surface():
         (lambda surface, loop, jumps: cf.plot_fronts(loop, most=0), "most is 0"),
         (lambda surface, loop, jumps: cf.plot_spectrum(0 * surface), "the surface is flat"),
         (lambda surface, loop, jumps: cf.plot_instabilities(jumps[{"instability": []}]), "none"),
+        (lambda surface, loop, jumps: cf.plot_instabilities(loop), "holds no instabilities"),
         (
             lambda surface, loop, jumps: cf.plot_spectrum(
                 (1 + surface).rename("work_of_adhesion").assign_attrs(units=ADHESION)

@@ -57,8 +57,11 @@ def draw_heights(axes: Axes, x: Array, y: Array, heights: Array, units: AxisUnit
 
 def _draw_image(axes: Axes, x: Array, y: Array, values: Array, units: AxisUnits) -> AxesImage:
     """Draw values, or their colours, at their places in the plane, and name the axes."""
+    # Pixels reach half of their width beyond the places of their values.
     left, right, bottom, top = (
-        float(units.scale(LATERAL) * end) for end in (x[0], x[-1], y[0], y[-1])
+        float(units.scale(LATERAL) * (places[end] + side * (places[1] - places[0]) / 2))
+        for places in (x, y)
+        for end, side in ((0, -1), (-1, 1))
     )
     look: dict[str, Any] = {"origin": "lower", "interpolation": "nearest", "cmap": "cividis"}
     label_plane(axes, units)

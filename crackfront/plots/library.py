@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from contextlib import AbstractContextManager, nullcontext
+from numbers import Integral
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -34,6 +35,7 @@ _BINS_A_DECADE = 20
 
 def _drawing(axes: Axes | None) -> AbstractContextManager[Axes]:
     """Given axes in the style that they have, or new ones in that of the package."""
+    refuse_other_type("axes", axes, (Axes, type(None)), "axes of matplotlib")
     return shown_axes() if axes is None else nullcontext(axes)
 
 
@@ -161,6 +163,7 @@ def plot_fronts(
             "the loop holds no fronts; run it with fronts=True, or crackfront cycle with "
             "--record fronts"
         )
+    refuse_other_type("most", most, Integral, "a whole number")
     if most < 1:
         raise ValueError(f"most is {most}; draw 1 front or more")
     if "position" in loop:
@@ -173,6 +176,7 @@ def plot_fronts(
     loop, units = _reduced(loop)
     with _drawing(axes) as drawn:
         if surface is not None:
+            surface_kind(surface)
             adhesion = surface_adhesion(_reduced(surface)[0])
             values = adhesion.work_of_adhesion / WORK_OF_ADHESION
             # The apex is the centre of the tile, whatever the coordinates of a given surface.
@@ -195,6 +199,8 @@ def plot_instabilities(jumps: Dataset, axes: Axes | None = None) -> Axes:
         If there is no instability.
     """
     refuse_other_type("jumps", jumps, Dataset, "what find_instabilities returns")
+    if "before" not in jumps or "travel" not in jumps.attrs:
+        raise ValueError("the dataset holds no instabilities; give what find_instabilities returns")
     jumps, units = _reduced(jumps)
     fronts = jumps.before.values, jumps.after.values
     energy, travel = jumps.dissipated_energy.values, float(jumps.attrs["travel"])

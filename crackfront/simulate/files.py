@@ -127,7 +127,8 @@ def save_result(result: xr.DataArray | xr.Dataset, path: str | Path) -> None:
         If the file cannot be written.
     """
     dataset = as_dataset(result, "result", "a surface or a loop")
-    write_dataset(Path(path), dataset, provenance())
+    # The library of netCDF would take ~ for the home folder, and nothing else here.
+    write_dataset(Path(path).expanduser(), dataset, provenance())
 
 
 def load_result(path: str | Path) -> xr.DataArray | xr.Dataset:
@@ -143,7 +144,7 @@ def load_result(path: str | Path) -> xr.DataArray | xr.Dataset:
     ValueError
         If the file is missing, damaged, or no netCDF.
     """
-    dataset = read_dataset(Path(path))
+    dataset = read_dataset(Path(path).expanduser())
     single = [one.name for one in SURFACES.values() if [*dataset] == [one.name]]
     return dataset[single[0]] if single else dataset
 

@@ -107,6 +107,8 @@ class LoopContact(ABC):
 
 def load_values(loads: Iterable[float | str]) -> tuple[float, ...]:
     """Loads of a protocol as numbers; a ValueError where there is none, or one is no number."""
+    if isinstance(loads, str) or not isinstance(loads, Iterable):
+        raise TypeError(f"loads is {loads!r}; give the loads to visit, as in [0, 1, 0.5]")
     found = []
     for given in loads:
         try:

@@ -63,7 +63,8 @@ def run_loop(
     ----------
     surface : xarray.DataArray or StraightFront
         Surface of :func:`crackfront.surface`, `random_surface` or `read_scan`, the apex of the
-        sphere at the centre of the tile; or what :func:`crackfront.straight_front` makes of one.
+        sphere at the centre of the tile, wherever the zero of its coordinates is; or what
+        :func:`crackfront.straight_front` makes of one.
     loads : iterable of float, optional
         Loads to visit in their order, down and up as often as they say; one that stands twice is
         a hold. The loop ends where contact is lost. By default, for a sphere, from first contact
@@ -79,7 +80,8 @@ def run_loop(
         Standard error of the factor k of either branch that the numerics may leave; measured
         laws choose sites, samples and tolerance. They need a sphere and the attributes
         `short_cutoff`, `roll_off` and `hurst`, as :func:`crackfront.random_surface` sets them;
-        with these it is 0.03 by default, without them an error is refused.
+        with these it is 0.03 by default, or what the finest numerics on the pixels leave, and the
+        result states it; without them an error is refused.
     sites : int, optional
         Sites of the front, in place of an error; by default one a pixel or more.
     samples : float, optional
@@ -106,7 +108,7 @@ def run_loop(
     ------
     ValueError
         If the surface, a length or the solver cannot be used, or the pixels are too coarse for
-        the error.
+        an error that is asked for.
     TypeError
         If an argument is of another type.
 
@@ -230,7 +232,8 @@ def find_instabilities(
     travel : float, optional
         Largest motion of a site in a smooth step, in correlation lengths of w_loc.
     precision : float, optional
-        Penetration to which an instability is located. (Units: reduced vertical length)
+        Penetration to which an instability is located, at most a tenth of the step: a smooth step
+        that is not divided further would count as one. (Units: reduced vertical length)
     error : float, optional
         As in :func:`run_loop`, by default 0.05 where the surface states its spectrum.
     sites, samples : optional
@@ -259,6 +262,13 @@ def find_instabilities(
     refuse_no_numbers(
         max_penetration=max_penetration, step=step, travel=travel, precision=precision
     )
+    if not 0 < precision <= step / 10:
+        raise ValueError(
+            f"precision is {precision:g}; it must be positive, and at most a tenth of the step, "
+            f"{step / 10:g}"
+        )
+    if not 0 < travel < math.inf:
+        raise ValueError(f"travel is {travel:g}; it must be positive and finite")
     schedule = LoadSchedule(max_penetration, step)
     numerics = LoopNumerics(error, sites, samples, usual_error=0.05)
     contact = PressedSphere(surface).setup(None, max_penetration, step, numerics)

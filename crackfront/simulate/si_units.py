@@ -182,7 +182,8 @@ def in_reduced_units(data: Labelled, scales: units.Scales) -> Labelled:
     Raises
     ------
     ValueError
-        If a variable is unknown, or its units are not those of its quantity.
+        If a variable is unknown, its units are not those of its quantity, or the data state
+        another sphere.
 
     Examples
     --------
@@ -194,6 +195,11 @@ def in_reduced_units(data: Labelled, scales: units.Scales) -> Labelled:
     True
     """
     refuse_no_scales(scales)
+    stated = _attributes_scales(data, _SPHERE)
+    if stated is not None and asdict(stated) != asdict(scales):
+        raise ValueError(
+            f"the data were converted for another sphere, {_words(stated)}; give that one"
+        )
 
     def reduced(unit: str, part: xr.DataArray | None) -> tuple[float, str]:
         scale, needed = _si(unit, scales)
@@ -259,9 +265,23 @@ def _converted(
     return found
 
 
+_OF_FRONTS = "spring_", "pinning_", "position", "mean_position"
+"""How names begin that only loops of straight fronts have."""
+
+
+def _words(scales: units.Scales) -> str:
+    """A sphere in words."""
+    return ", ".join(f"{name} {value:g}" for name, value in asdict(scales).items())
+
+
 def _reduced_unit(name: str) -> str:
     """Reduced units of a variable."""
     if name not in _REDUCED:
+        if name.startswith(_OF_FRONTS):
+            raise ValueError(
+                f"{name} is of a straight front, which touches no sphere; its loops stay in the "
+                "units of their tile"
+            )
         raise ValueError(
             f"{name} is no variable of a surface or of a cycle; drop or rename it (the names of "
             f"surfaces are {' and '.join(item.name for item in SURFACES.values())})"
@@ -278,6 +298,8 @@ def _unit_value(part: xr.DataArray, needed: str) -> float:
     """Value of the units of a variable in those that are needed."""
     if (given := stated_unit(part.attrs)) == needed:
         return 1.0
+    if given == _reduced_unit(str(part.name)):
+        raise ValueError(f"{part.name} is in reduced units already; nothing is to be converted")
     try:
         return unit_value(str(given), needed)
     except ValueError as error:

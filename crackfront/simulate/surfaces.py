@@ -17,6 +17,7 @@ from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.data.arguments import refuse_no_numbers, refuse_other_type
 from crackfront.data.bounds import SEED, refuse_beyond_memory
 from crackfront.simulate.costs import expected_cost, refuse_oversized
+from crackfront.simulate.laws import measured_energies
 from crackfront.simulate.numerics import Numerics
 from crackfront.simulate.simulation import Simulation, simulation_adhesion
 from crackfront.simulate.sizing import simulation_of
@@ -45,8 +46,9 @@ def random_surface(
         Shortest wavelength (Units: reduced lateral length), or the whole spectrum, whose amplitude
         has no effect, in place of it, of `roll_off` and of `hurst`.
     elastic_energy : float
-        Energy of full conformity e_el, between 0 and 1; for a chemical surface the equivalent
-        (w_rms / w_int)^2 / 4. (Units: w_int)
+        Energy of full conformity e_el, from 0.001 to 0.4, where the errors of numerics are known;
+        for a chemical surface the equivalent (w_rms / w_int)^2 / 4. It is the mean over
+        realisations, from which a tile of few roll-offs departs. (Units: w_int)
     kind : {"roughness", "chemical"}, optional
         Whether the spectrum is that of the heights, or of the work of adhesion around w_int.
     roll_off : float, optional
@@ -55,8 +57,8 @@ def random_surface(
     hurst : float, optional
         Hurst exponent between the two, by default 1.
     side : float, optional
-        Side of the tile, by default 4 roll-offs and at least 200 short cutoffs.
-        (Units: reduced lateral length)
+        Side of the tile, by default 4 roll-offs and at least 200 short cutoffs; at least the
+        roll-off. (Units: reduced lateral length)
     error : float, optional
         Standard error of the factor k that the numerics may leave; here it sets the pixel.
     seed, realisation : int, optional
@@ -80,6 +82,13 @@ def random_surface(
     ('height', ('x', 'y'), -2.0)
     """
     spectrum = _shape(short_cutoff, roll_off, hurst)
+    refuse_no_fraction("elastic_energy", elastic_energy)
+    least, most = measured_energies()
+    if not least <= elastic_energy <= most:
+        raise ValueError(
+            f"elastic_energy is {elastic_energy:g}; the numerics are known from {least:g} to "
+            f"{most:g}, so choose one there, or make the heights and take crackfront.surface"
+        )
     simulation = chosen_simulation(
         kind,
         spectrum,
@@ -130,13 +139,19 @@ def chosen_simulation(
     refuse_no_fraction("elastic_energy", elastic_energy)
     for name, number in (("seed", seed), ("realisation", realisation)):
         refuse_other_type(name, number, Integral, "a whole number")
+        if isinstance(number, bool):
+            raise TypeError(f"{name} is {number}; give a whole number")
         if not SEED.least <= number <= SEED.most:
             raise ValueError(f"{name} is {number}; it must lie between 0 and {SEED.most}")
     numerics, cutoff = Numerics(error), spectrum.short_cutoff
     if side is not None:
         refuse_no_numbers(side=side)
-        if not cutoff <= side < math.inf:
-            raise ValueError(f"side is {side}; the tile must hold the short cutoff, {cutoff:g}")
+        longest = spectrum.longest_feature
+        if not longest <= side < math.inf:
+            raise ValueError(
+                f"side is {side}; the tile must hold the longest waves of the spectrum, of "
+                f"{longest:g}, or its e_el is not the one that is asked for"
+            )
         numerics = Numerics(error, tile_roll_offs=0.0, tile_cutoffs=side / cutoff)
     settings = numerics.settings_of(kind, spectrum, elastic_energy)
     refuse_oversized(spectrum, numerics, settings, schedule.max_penetration)

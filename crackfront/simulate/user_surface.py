@@ -13,10 +13,10 @@ from numpy.typing import ArrayLike
 from crackfront.core.adhesion import AdhesionMap, FieldKind, rough_adhesion
 from crackfront.core.arrays import Array
 from crackfront.core.units import WORK_OF_ADHESION
-from crackfront.core.variables import ADHESION, LATERAL, Variable
+from crackfront.core.variables import ADHESION, LATERAL, VERTICAL, Variable
 from crackfront.data.arguments import refuse_no_numbers, refuse_other_type
 from crackfront.data.bounds import ADHESION as VALUES
-from crackfront.data.bounds import NUMBER, counted, refuse_outside
+from crackfront.data.bounds import NUMBER, Range, counted, refuse_outside
 from crackfront.data.files import UnreadableFileError, read_dataset
 from crackfront.data.labels import label, labelled, stated_unit
 from crackfront.data.written_units import unit_value
@@ -42,7 +42,8 @@ def surface(
     Parameters
     ----------
     values : (n_x, n_y) array
-        Heights, positive at peaks, or works of adhesion on a periodic tile of square pixels.
+        Heights, positive at peaks, or works of adhesion on a periodic tile of square pixels. Of a
+        DataArray the dimensions x and y, and the units that it states, count.
     side : float or str
         Side of the tile along x: a number (Units: reduced lateral length; with a sphere m), or with
         a sphere a text with a unit, as '120um'.
@@ -64,8 +65,9 @@ def surface(
     Raises
     ------
     ValueError
-        If a unit or side cannot be used, the tile is not periodic, or its mean work of adhesion is
-        below half of w_int or above twice that.
+        If a unit or side cannot be used, the array states other ones, values are missing or
+        masked, the tile is not periodic, or its mean work of adhesion is below half of w_int or
+        above twice that.
     TypeError
         If an argument is of another type.
 
@@ -79,8 +81,12 @@ def surface(
     >>> patches = surface(1 + 0.2 * wave, side=4.0, kind="chemical", units="w_int")
     """
     refuse_unknown_kind(kind)
+    refuse_other_type("units", units, (str, type(None)), "the name of a unit")
+    if isinstance(values, xr.DataArray):
+        values, units = _stated(values, side, units)
     try:
-        samples = np.array(values, dtype=float)
+        # What is masked is refused as NaN is.
+        samples: Array = np.ma.array(values, dtype=float).filled(np.nan)
     except (TypeError, ValueError) as error:
         raise TypeError(f"the values are no array of numbers: {error}") from error
     if samples.ndim != 2 or min(samples.shape) < 2:
@@ -88,9 +94,12 @@ def surface(
     scale = 1.0
     if sphere is None:
         refuse_no_numbers(side=side)
+        refuse_outside("side", float(side), NUMBER)
     else:
         refuse_no_scales(sphere)
-        side, scale = in_si("side", side, "m") / sphere.lateral, sphere.vertical
+        metres = in_si("side", side, "m")
+        refuse_outside("side", metres, _SIDES, "m")
+        side, scale = metres / sphere.lateral, sphere.vertical
     unit, known = "m", {"reduced": 1.0}
     if kind == "chemical":
         unit, known = "J/m^2", {"reduced": 1 / WORK_OF_ADHESION, "w_int": 1.0}
@@ -106,6 +115,39 @@ def surface(
         _refuse_strange_mean(found.values, given)
     surface_adhesion(found)
     return found
+
+
+_SIDES = Range(1e-9, 1.0)
+"""Sides of tiles that a sphere is pressed on. (Units: m)"""
+
+
+def _stated(
+    values: xr.DataArray, side: float | str, units: str | None
+) -> tuple[xr.DataArray, str | None]:
+    """Values over (x, y) and their units, by what an array says of itself.
+
+    ValueError if it states other units than are given, or places that span another side.
+    """
+    if {*values.dims} == {"x", "y"}:
+        values = values.transpose("x", "y")
+    stated = stated_unit(values.attrs)
+    # Surfaces in reduced units say so by the names of their units.
+    stated = "reduced" if stated == VERTICAL else stated
+    if stated not in (None, "", "1"):
+        if units not in (None, stated):
+            raise ValueError(
+                f"units is {units!r}, but the array states {stated!r}; leave units out, or drop "
+                "the attribute"
+            )
+        units = str(stated)
+    if "x" in values.coords and not isinstance(side, str) and values.sizes.get("x", 0) > 1:
+        spans = values.sizes["x"] * float(values.x[1] - values.x[0])
+        if abs(spans / side - 1) > _UNEQUAL:
+            raise ValueError(
+                f"side is {side}, but the coordinate x of the array spans {spans:.6g}; give this "
+                "side, or the values alone"
+            )
+    return values, units
 
 
 def _refuse_strange_mean(values: Array, units: str) -> None:

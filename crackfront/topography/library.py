@@ -95,8 +95,9 @@ def read_psd(path: File, **options: Any) -> StatedSurface:
         Text of two columns: exports of contact.engineering, Gwyddion, MountainsMap, or any other
         whose heads say what the columns are.
     **options
-        Fields of :class:`~crackfront.topography.options.PsdOptions`, where the file does not say
-        it, as ``psd_units="1/um,um^3"`` or ``psd_sides="one"``.
+        Fields of :class:`~crackfront.topography.options.PsdOptions`, as ``psd_units="1/um,um^3"``
+        or ``psd_sides="one"``: what the file does not say, or says wrongly, as they count in place
+        of its heads.
 
     Returns
     -------

@@ -81,7 +81,9 @@ def reading_options(
     A list or tuple gives every scan its own value, where a field allows this.
     """
     for name, field in ReadingOptions.model_fields.items():
-        if REPEATED in field.metadata and given.get(name) and n_scan > 1:
+        value = given.get(name)
+        is_named = value is not None and not (isinstance(value, (list, tuple)) and not value)
+        if REPEATED in field.metadata and is_named and n_scan > 1:
             raise ValueError(
                 f"{_shown_name(name, prefix)} is for one scan, and {n_scan} are named; read them "
                 "one by one"
@@ -109,10 +111,17 @@ def _values_per_scan(given: Mapping[str, Any]) -> list[tuple[str, Any]]:
 
 
 def _is_per_scan(name: str, value: Any) -> bool:
-    """Whether a value has an entry for each scan, and is no pair of sides for all."""
+    """Whether a value has an entry for each scan, and is no pair of sides or region for all."""
     if not isinstance(value, (list, tuple)):
         return False
-    return not (name == "size" and value and all(isinstance(one, Real) for one in value))
+    if name == "crop":
+        return not (value and all(map(_are_numbers, value)))
+    return not (name == "size" and value and _are_numbers(value))
+
+
+def _are_numbers(value: Any) -> bool:
+    """Whether a value is a list or tuple of numbers alone."""
+    return isinstance(value, (list, tuple)) and all(isinstance(one, Real) for one in value)
 
 
 def for_files(given: Mapping[str, Any], files: Sequence[Path]) -> dict[str, Any]:
@@ -206,8 +215,8 @@ def _text(value: Any, info: ValidationInfo) -> str:
 
 def _region(value: Any, info: ValidationInfo) -> Region:
     """A part of a scan, from a text as in 2um:8um,0um:5um or from pairs of ends in metres."""
-    if isinstance(value, tuple):
-        return value
+    if isinstance(value, (list, tuple)) and all(map(_are_numbers, value)):
+        return tuple((low, high) for low, high in value)
     refuse_other_type(_named(info), value, str, "a text, as in '2um:8um,0um:5um'")
     return _region_of(value, _named(info))
 
@@ -252,7 +261,8 @@ def _detrend(value: Any, info: ValidationInfo) -> Detrend:
     """Name of a trend, or the order of a polynomial."""
     names = get_args(DetrendName)
     found: Any = int(value) if str(value).isdecimal() else value
-    if found in names or (isinstance(found, int) and 0 <= found <= HIGHEST_ORDER):
+    is_order = isinstance(found, int) and not isinstance(found, bool)
+    if found in names or (is_order and 0 <= found <= HIGHEST_ORDER):
         return found
     raise ValueError(
         f"{_named(info)} is {value!r}; choose one of {', '.join(names)}, or an order from 0 to "

@@ -145,3 +145,19 @@ def test_a_unit_may_be_given_for_each_file():
     for unit in (("d.txt=um",), ("a.txt=um", "a.txt=nm"), ("a.txt=um", "nm")):
         with pytest.raises(ValueError, match=r"--unit is .*write FILE=VALUE once"):
             for_files({"unit": unit}, files)
+
+
+@pytest.mark.parametrize("as_list", [tuple, list])
+def test_a_crop_in_metres_is_one_value_for_all_scans(as_list):
+    region = as_list([as_list([0, 3e-4]), as_list([0, 3e-4])])
+    for n_scan in (1, 2):
+        for one in reading_options({"crop": region}, n_scan):
+            assert one.crop == ((0, 3e-4), (0, 3e-4))
+    each = reading_options({"crop": [((0, 1e-4),), ((0, 2e-4),)]}, 2)
+    assert [one.crop for one in each] == [((0, 1e-4),), ((0, 2e-4),)]
+
+
+@pytest.mark.parametrize("detrend", [True, False])
+def test_a_truth_value_is_no_trend(detrend):
+    with pytest.raises(ValueError, match=f"detrend is {detrend}; choose one of"):
+        checked_options(ReadingOptions, {"detrend": detrend})
