@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from dataclasses import asdict
 from pathlib import Path
 
@@ -43,8 +44,8 @@ def verify(place: Path, as_json: bool) -> None:
     if not is_whole:
         if found.mixture and not (found.damaged or found.missing):
             raise click.ClickException(
-                f"{place} holds files of different sweeps; run crackfront simulate and crackfront "
-                "aggregate with one configuration, or make"
+                f"{place} holds files that do not belong together; run crackfront simulate, "
+                "aggregate and fit with one configuration, or make"
             )
         raise click.ClickException(
             f"{place}: {counted(len(found.damaged), 'damaged file')}, {len(found.missing)} "
@@ -57,11 +58,17 @@ def verify(place: Path, as_json: bool) -> None:
 def checksums(folders: tuple[Path, ...]) -> None:
     """Write SHA256SUMS, the checksums of a folder of results that is finished.
 
-    Commands that change the folder later remove the list. The workflow writes it at its end.
+    Commands that change the folder later remove the list. The workflow writes it at its end. A
+    folder whose files are not those of a list that is there is refused.
     """
-    from crackfront.data.files import write_sums
+    from crackfront.data.files import damaged_files, write_sums
 
     for folder in folders:
+        if damaged := damaged_files(folder):
+            raise ValueError(
+                f"{damaged[0]} is not as it was written; run crackfront repair {folder} and make "
+                "it again, or remove SHA256SUMS if the file is right"
+            )
         click.echo(f"checksums: {write_sums(folder)}")
 
 
@@ -75,22 +82,33 @@ def checksums(folders: tuple[Path, ...]) -> None:
 def repair(places: tuple[Path, ...], output: Path | None) -> None:
     """Set damaged files aside, so that the workflow makes them and dependent files again.
 
-    A PLACE is a configuration of a sweep, or a folder of results. Shards whose curves are missing
-    are removed, and files that are dated in the future get the present date. `make` begins with
-    this command; no other part of the workflow changes results before its jobs run.
+    A PLACE is a configuration of a sweep, or a folder of results. Shards of a sweep whose curves
+    are missing are removed, and files that are dated in the future get the present date. `make`
+    begins with this command; no other part of the workflow changes results before its jobs run.
     """
-    from crackfront.data.files import reset_future_dates, set_aside_damaged
-    from crackfront.sweep.library import opened
+    from crackfront.data.files import reset_future_dates
 
     for place in places:
-        if place.is_dir():
-            folder, sentences = place, set_aside_damaged(place)
-        else:
-            _, store, _ = opened(place, output)
-            folder, sentences = store.folder, store.repair(place)
+        folder, sentences = _repaired(place, output)
         reset_future_dates(folder)
         for sentence in sentences:
             click.echo(sentence)
+
+
+def _repaired(place: Path, output: Path | None) -> tuple[Path, Iterable[str]]:
+    """Folder of a place, and the sentences of its repair, which runs as they are read."""
+    from crackfront.data.files import set_aside_damaged
+    from crackfront.sweep.library import opened
+
+    if not place.is_dir():
+        _, store, _ = opened(place, output)
+        return store.folder, store.repair(place)
+    kept = place / "configuration.yaml"
+    try:
+        _, store, _ = opened(kept, place)
+    except ValueError:  # the folder is of no sweep, or its configuration is damaged
+        return place, set_aside_damaged(place)
+    return place, store.repair(kept)
 
 
 @click.command(

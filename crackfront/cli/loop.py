@@ -80,6 +80,7 @@ def _columns(command: Any) -> Any:
 @click.pass_context
 def loop(
     context: click.Context,
+    /,
     path: Path,
     sphere: str | None,
     modulus: str | None,

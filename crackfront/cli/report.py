@@ -18,7 +18,18 @@ from crackfront.data.jsonable import to_jsonable
 
 T = TypeVar("T")
 
-FILE = click.Path(path_type=Path)
+
+class _File(click.Path):
+    """A name of a file or folder; an empty one, as of a variable that is not set, is none."""
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """The path of a name."""
+        if value == "":
+            self.fail("the name is empty; name a file or folder", param, ctx)
+        return super().convert(value, param, ctx)
+
+
+FILE = _File(path_type=Path)
 """Type of a parameter that names a file or folder."""
 
 

@@ -108,12 +108,19 @@ def summary(configuration: Path, output: Path | None) -> None:
     from crackfront.analysis.report import fit_table
     from crackfront.data.digests import forget_sums
     from crackfront.data.files import write_text
+    from crackfront.sweep.fit_files import fit_range
     from crackfront.sweep.library import opened
     from crackfront.sweep.summary import summary_page
     from crackfront.sweep.table import read_statuses
 
     sweep, store, origin = opened(configuration, output)
     about = {name: text for name, text in store.about(sweep).items() if name != "configuration"}
+    kept = store.folder / "fit.nc"
+    if kept.is_file() and fit_range(kept) != sweep.fit:
+        raise ValueError(
+            f"{kept}, and the figures beside it, are of another range of the fit than the one "
+            "given; run crackfront fit and crackfront figures with this configuration, or make"
+        )
     page = summary_page(
         f"Adhesion hysteresis: {configuration.stem}",
         fit_table(_fitted(sweep, store)),
@@ -147,9 +154,10 @@ def archive(folder: Path, output: Path | None, no_curves: bool) -> None:
             f"{sentence}; run crackfront simulate and crackfront aggregate with one configuration, "
             "or make, before it is archived"
         )
-    path = folder.with_name(f"{folder.name}.zip") if output is None else output
+    named = folder if folder.name not in ("", "..") else folder.resolve()
+    path = named.with_name(f"{named.name}.zip") if output is None else output
     if path.suffix.lower() != ".zip":
-        raise ValueError(f"--output is {path}; name a ZIP file, as in {folder.name}.zip")
+        raise ValueError(f"--output is {path}; name a ZIP file, as in {named.name}.zip")
     if folder.resolve() in path.resolve().parents:
         raise ValueError(f"--output is {path}, among the results; name a file outside of {folder}")
     click.echo(f"archive: {path}, {Store(folder).archive(path, curves=not no_curves)} files")

@@ -79,7 +79,10 @@ def comparison(one: Path, other: Path) -> Comparison:
     names without the key, which changes with the sources. UnreadableFileError if a file is missing
     or damaged, two files are not of one kind, or the folders hold none.
     """
-    if not one.is_dir() or not other.is_dir():
+    if one.is_dir() != other.is_dir():
+        folder, else_ = (one, other) if one.is_dir() else (other, one)
+        raise UnreadableFileError(f"{folder} is a folder, and {else_} is none; name two of a kind")
+    if not one.is_dir():
         return Comparison(1, tuple(_differences("", one, other)), ())
     pairs, alone = _pairs(_results(one), _results(other))
     if not pairs and not alone:

@@ -82,6 +82,7 @@ class Configuration(Section):
         scales = None if self.scales is None else Scales(**dict(self.scales))
         lateral, vertical = (scales.lateral, scales.vertical) if scales else (1.0, 1.0)
         spectra, measured = tuple(self._spectra(lateral)), math.nan
+        refuse_repeated("the name of a spectrum and its spring,", [one.name for one in spectra])
         surface = self.spectra[0].surface
         if self.amplitudes.measured and surface and scales:
             energy = surface.measured.conformity_energy(scales.contact_modulus).value
@@ -166,6 +167,10 @@ def _refuse_infeasible(sweep: Sweep) -> None:
     refuse_beyond_time("the simulations", seconds, coarser)
 
 
+_FEWEST_SITES = 0.7
+"""Sites per short cutoff below which k is several times too large, and its bias not known."""
+
+
 def _refuse_too_coarse(simulation: Simulation, requested: Settings | float) -> None:
     """Raise if sites, tolerance or the error that the numerics leave are not as they must be."""
     sizes, tolerance = simulation.resolution, simulation.solver.tolerance
@@ -173,6 +178,13 @@ def _refuse_too_coarse(simulation: Simulation, requested: Settings | float) -> N
     larkin = larkin_length(simulation.kind, simulation.spectrum, 2 * math.sqrt(energy))
     site = sizes.tile_side / sizes.n_angle
     simulation.schedule.refuse_few_sites(f"{name} at e_el {energy:g}", larkin, site)
+    length, cutoff = simulation.schedule.front_length, simulation.spectrum.short_cutoff
+    if (density := sizes.n_angle * cutoff / length) < _FEWEST_SITES:
+        raise ValueError(
+            f"numerics: {sizes.n_angle} sites of a front are {density:.2g} per short cutoff of "
+            f"{name}, with which k comes out too large; use {math.ceil(2 * length / cutoff)} or "
+            "more, or angles_per_cutoff in place of angles"
+        )
     round_off = sys.float_info.epsilon * sizes.n_angle
     if tolerance < round_off:
         raise ValueError(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from dataclasses import asdict
+from dataclasses import asdict, fields
 from pathlib import Path
 
 import xarray as xr
@@ -14,10 +14,17 @@ from crackfront.analysis.result import SweepFit, fit_columns
 from crackfront.analysis.steady import STEADY_DEFINITION
 from crackfront.analysis.sweep import FIT_DEFINITION
 from crackfront.data.digests import forget_sums
-from crackfront.data.files import write_dataset, write_text
+from crackfront.data.files import read_attributes, write_dataset, write_text
 from crackfront.data.jsonable import to_jsonable
 from crackfront.data.labels import labelled
 from crackfront.data.provenance import Provenance, utc_now
+from crackfront.sweep.sweep import FitRange
+
+
+def fit_range(path: Path) -> FitRange:
+    """Range and bootstrap samples of the fit in a `fit.nc`; refused as by `read_attributes`."""
+    about = read_attributes(path)
+    return FitRange(*(about.get(item.name) for item in fields(FitRange)))  # type: ignore[arg-type]
 
 
 def write_fit(folder: Path, fit: SweepFit, origin: Provenance) -> tuple[Path, Path, Path]:

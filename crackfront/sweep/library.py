@@ -30,6 +30,8 @@ from crackfront.sweep.tasks import run_and_store
 def opened(configuration: Path, output: Path | None) -> tuple[Sweep, Store, Provenance]:
     """Sweep of a configuration file, its store, and the origin of what is computed for it."""
     sweep = load_configuration(configuration)
+    if output is not None and output.exists() and not output.is_dir():
+        raise ValueError(f"the output is {output}, a file; name a folder for the results")
     store = Store(results_folder(configuration) if output is None else output)
     return sweep, store, provenance(movable_text(configuration))
 

@@ -190,7 +190,8 @@ class AmplitudesSection(Section):
                 "amplitudes need exactly one of elastic_energy, work_of_adhesion_rms and measured; "
                 + ("remove one" if given else "give one")
             )
-        refuse_repeated("amplitude", given[0])
+        # Texts have six digits.
+        refuse_repeated("amplitude", [float(f"{value:g}") for value in given[0]])
         return self
 
     def elastic_energies(self, measured: float) -> tuple[float, ...]:

@@ -318,7 +318,7 @@ class Store:
 
         Yields a sentence for every such file.
         """
-        if not self.folder.is_dir():
+        if not any((self.folder / name).exists() for name in _OF_SWEEP):
             return
         for path in sorted((self.folder / "shards").glob("*.nc")):
             if stated_digest(path) is None:
@@ -442,6 +442,10 @@ def mixture_sentence(arithmetic: Collection[str]) -> str:
         return ""
     listed = "; ".join(sorted(arithmetic))
     return f"stored simulations differ in their origin, and may in their last digits: {listed}"
+
+
+_OF_SWEEP = "curves", "shards", "configuration.yaml", "hysteresis.nc"
+"""Files and folders, one of which every folder has that a sweep has written to."""
 
 
 def lost_curves(folder: Path) -> Iterator[str]:

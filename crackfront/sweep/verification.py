@@ -18,6 +18,7 @@ from crackfront.data.files import (
 )
 from crackfront.data.packs import members
 from crackfront.sweep.configuration import load_configuration
+from crackfront.sweep.fit_files import fit_range
 from crackfront.sweep.result_packs import pack_paths
 from crackfront.sweep.shards import curve_names, finished_shard
 from crackfront.sweep.store import Store, lost_curves
@@ -86,14 +87,26 @@ def mixture_sentences(store: Store) -> Iterator[str]:
         with contextlib.suppress(ValueError, OSError):
             if load_configuration(path).table_fingerprint != about.get(SWEEP_FINGERPRINT):
                 yield f"{store.hysteresis} is the table of another sweep than {path}"
-    if shards and (others := listed - rows):
+    if others := listed - rows:
+        cause = "of another sweep" if shards and not listed & rows else "to be simulated again"
         yield (
             f"{len(others)} of {len(listed)} rows of {store.hysteresis} are in no file of "
-            f"{shards[0].parent}, which are of another sweep"
+            f"{store.folder / 'shards'}, which are {cause}"
         )
+    yield from _fit_sentences(store)
     known = {one.name for pack in pack_paths(store.curves) for one in members(pack)[0]}
     if known and listed and not listed & known:
         yield f"{store.curves} holds no curve of {store.hysteresis}, but those of another sweep"
+
+
+def _fit_sentences(store: Store) -> Iterator[str]:
+    """A sentence where the fit of a folder is not that of its configuration."""
+    path = store.folder / "fit.nc"
+    with contextlib.suppress(ValueError, OSError):
+        if path.is_file() and store.configuration.is_file():
+            wanted = load_configuration(store.configuration).fit
+            if fit_range(path) != wanted:
+                yield f"{path} is the fit of another range than that of {store.configuration}"
 
 
 @contextlib.contextmanager

@@ -2,6 +2,7 @@
 
 import json
 from dataclasses import dataclass, replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -51,6 +52,8 @@ def test_a_difference_is_told_and_ends_with_1_unless_it_is_tolerated(paths):
     assert result.exit_code == 1
     assert "force                                1.0e-06" in result.output
     assert "not in both, of another shape, or not a number in one: " in compared(short, one).output
+    folder = compared(str(Path(one).parent), one)
+    assert (folder.exit_code, "is a folder, and" in folder.output) == (2, True)
     variables = json.loads(compared(short, one, "--json").stdout)["variables"]
     assert variables["radius"] is None
     assert variables["approach"] == 0.0

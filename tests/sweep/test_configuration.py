@@ -265,6 +265,10 @@ BAD = {
         "amplitudes.elastic_energy is []; it must have at least one entry",
     ),
     "amplitude twice": (("[0.02, 0.1]", "[0.1, 0.1]"), "amplitude 0.1 stands twice"),
+    "amplitudes of equal names": (
+        ("[0.02, 0.1]", "[0.1, 0.1000001]"),
+        "amplitude 0.1 stands twice",
+    ),
     "no measure of amplitude": (
         ("amplitudes: {elastic_energy: [0.02, 0.1]}", "amplitudes: {}"),
         "amplitudes need exactly one of elastic_energy, work_of_adhesion_rms and measured; give",
@@ -334,6 +338,10 @@ BAD = {
     "angles twice": (
         ("angles_per_cutoff: 2", "angles_per_cutoff: 2\n  angles: 128"),
         "numerics need exactly one of angles and angles_per_cutoff; remove one",
+    ),
+    "too few angles": (
+        ("angles_per_cutoff: 2", "angles: 20"),
+        "per short cutoff of flat, with which k comes out too large; use ",
     ),
     "three angles": (
         ("angles_per_cutoff: 2", "angles: 3"),

@@ -214,7 +214,7 @@ spectra:
 amplitudes: {elastic_energy: [0.02]}
 realisations: 2
 numerics:
-  {angles: 64, samples_per_cutoff: 4, interpolation: cubic, pixels_per_cutoff: 4,
+  {angles: 240, samples_per_cutoff: 4, interpolation: cubic, pixels_per_cutoff: 4,
    tile: {roll_offs: 4, cutoffs: 8}, tolerance: 1.0e-6, max_sweeps: 100000, solver: newton}
 load: {max_penetration: 4.0e-6, step: 4.0e-7}
 fit: {lowest_elastic_energy: 1.0e-3, highest_elastic_energy: 0.1, bootstrap: 200}

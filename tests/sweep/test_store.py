@@ -634,6 +634,68 @@ def test_a_damaged_entry_costs_no_other_one(whole, tmp_path):
     assert {*found.damaged, *found.missing} == {"hysteresis.nc"}
 
 
+def command(*arguments):
+    """Exit code and output of a command."""
+    result = CliRunner().invoke(main, [*map(str, arguments)])
+    return result.exit_code, result.output
+
+
+def test_rows_whose_shards_are_gone_are_told(whole):
+    whole.configuration.write_text(TEST.read_text(encoding="utf-8"))
+    for path in (whole.folder / "curves").iterdir():
+        path.unlink()
+    code, output = command("repair", whole.folder)
+    assert code == 0
+    assert output.count("is made anew, as it lacks 4 curves") == 2
+    code, output = command("verify", whole.folder)
+    assert code == 1
+    assert "8 of 8 rows of hysteresis.nc are in no file of shards, which are to be sim" in output
+    assert command("archive", whole.folder)[0] == 2
+
+
+def test_a_list_of_checksums_is_written_anew_only_of_files_that_are_those_of_the_old_one(whole):
+    path = whole.folder / "notes.txt"
+    path.write_text("whole")
+    assert command("checksums", whole.folder)[0] == 0
+    path.write_text("cut")
+    code, output = command("checksums", whole.folder)
+    assert (code, "is not as it was written; run crackfront repair" in output) == (2, True)
+    assert command("verify", whole.folder)[0] == 1
+
+
+def test_fit_and_summary_of_different_ranges_do_not_stand_side_by_side(whole, tmp_path):
+    shorter = tmp_path / "shorter.yaml"
+    text = TEST.read_text(encoding="utf-8")
+    shorter.write_text(text.replace("lowest_elastic_energy: 0.02", "lowest_elastic_energy: 0.05"))
+    for one in (TEST, shorter):
+        assert command("fit", one, "--output", whole.folder)[0] == 0
+    code, output = command("summary", TEST, "--output", whole.folder)
+    assert code == 2
+    assert "fit.nc, and the figures beside it, are of another range of the fit" in output
+    whole.configuration.write_text(text)
+    [told] = mixture_sentences(whole)
+    assert told.startswith(f"{whole.folder / 'fit.nc'} is the fit of another range than that of")
+
+
+def test_repair_touches_no_folder_of_another_kind(tmp_path):
+    foreign = tmp_path / "measurements.nc"
+    foreign.write_text("data")
+    assert command("repair", TEST, "--output", tmp_path) == (0, "")
+    assert foreign.read_text() == "data"
+    for name in ("plan", "simulate", "repair"):
+        code, output = command(name, TEST, "--output", "")
+        assert (code, "the name is empty; name a file or folder" in output) == (2, True)
+        code, output = command(name, TEST, "--output", foreign)
+        assert (code, "a file; name a folder for the results" in output) == (2, True)
+
+
+def test_the_archive_of_a_folder_is_named_after_it_wherever_it_is_called_from(whole, monkeypatch):
+    monkeypatch.chdir(whole.folder)
+    code, output = command("archive", ".")
+    assert code == 0, output
+    assert whole.folder.with_name(f"{whole.folder.name}.zip").is_file()
+
+
 def test_a_folder_with_files_of_different_sweeps_is_told_and_not_archived(whole, tmp_path):
     other = tmp_path / "other"
     changed = replace(SWEEP, seed=SWEEP.seed + 1)
