@@ -180,8 +180,8 @@ REFUSED = {
     "sphere too": ("load:", "load:\n  max_penetration: 1", "line already decides max_penetration"),
     "few sites": (
         "angles_per_cutoff: 2",
-        "angles_per_cutoff: 0.5",
-        "is 2.21, below two sites (3.33)",
+        "angles_per_cutoff: 0.75",
+        "is 2.21, below two sites (2.67)",
     ),
 }
 
