@@ -176,6 +176,7 @@ REFUSED = {
     "no spring": ("springs: [2, 8]", "springs: [0]", "load.line.springs[0] is 0; it must be gre"),
     "negative": ("springs: [2, 8]", "springs: [-1]", "load.line.springs[0] is -1; it must be"),
     "twice": ("springs: [2, 8]", "springs: [2, 2]", "spring 2.0 stands twice"),
+    "equal names": ("springs: [2, 8]", "springs: [2.0000001, 2]", "spring, 'flat-L2' stands twice"),
     "unit": ("step: 0.5", "step: 0.5, spring_unit: metre", "load.line.spring_unit is 'metre'"),
     "sphere too": ("load:", "load:\n  max_penetration: 1", "line already decides max_penetration"),
     "few sites": (
