@@ -225,13 +225,14 @@ def cycle(
 def _content(recorder: Recorder, found: Dataset, output: Path) -> dict[str, object]:
     """How a cycle ended and what it found, for JSON."""
     forces = found["force"].values.tolist() if "force" in found else []
+    from_contact = bool(forces) and found["penetration"].values[0] == 0
     return {
         "output": output,
         "states": len(recorder.states),
         "status": recorder.status.name.lower(),
         f"end_{recorder.load_name}": recorder.load,
         "lowest_force": min(forces, default=None),
-        "jump_in_force": next(iter(forces), None),
+        "jump_in_force": forces[0] if from_contact else None,
         **{name: float(found.get(name, "nan")) for name in ("w_appr", "w_retr", "hysteresis")},
     }
 

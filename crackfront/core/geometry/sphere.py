@@ -71,8 +71,12 @@ class ContactState(Generic[Value]):
         )
 
     def forces_summary(self, status: Status) -> str:
-        """Forces of jump-in and, where contact was lost, of pull-off, in words."""
-        forces = f"jump-in force {np.ravel(self.force)[0]:.4g}"
+        """First force, which at penetration 0 is that of jump-in, and that of pull-off, in words.
+
+        That of pull-off is known where contact was lost.
+        """
+        began = "jump-in" if np.ravel(self.penetration)[0] == 0 else "first"
+        forces = f"{began} force {np.ravel(self.force)[0]:.4g}"
         if status is Status.LOST_CONTACT:
             forces += f", pull-off force {np.min(self.force):.4g}"
         return f"{forces} (pi w_int R)"
