@@ -629,6 +629,8 @@ def test_what_was_converted_for_one_sphere_comes_back_for_no_other(surface):
     other = cf.Scales("2mm", "100mJ/m2", "1MPa")
     with pytest.raises(ValueError, match="converted for another sphere, radius"):
         cf.in_reduced_units(cf.in_si_units(surface, SPHERE), other)
+    same = cf.Scales(*(np.nextafter(one, 1) for one in asdict(SPHERE).values()))
+    xr.testing.assert_allclose(cf.in_reduced_units(cf.in_si_units(surface, SPHERE), same), surface)
     with pytest.raises(ValueError, match="in reduced units already; nothing is to be converted"):
         cf.in_reduced_units(surface, SPHERE)
 

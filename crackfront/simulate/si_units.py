@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import asdict, fields
 from numbers import Real
@@ -196,7 +197,7 @@ def in_reduced_units(data: Labelled, scales: units.Scales) -> Labelled:
     """
     refuse_no_scales(scales)
     stated = _attributes_scales(data, _SPHERE)
-    if stated is not None and asdict(stated) != asdict(scales):
+    if stated is not None and not _are_equal(stated, scales):
         raise ValueError(
             f"the data were converted for another sphere, {_words(stated)}; give that one"
         )
@@ -208,6 +209,12 @@ def in_reduced_units(data: Labelled, scales: units.Scales) -> Labelled:
     found = _converted(data, reduced)
     kept = {name: part for name, part in found.attrs.items() if not name.startswith(_SPHERE)}
     return found.drop_attrs(deep=False).assign_attrs(kept)
+
+
+def _are_equal(one: units.Scales, other: units.Scales) -> bool:
+    """Whether two spheres are the same but for round-off."""
+    pairs = zip(asdict(one).values(), asdict(other).values(), strict=True)
+    return all(math.isclose(*pair, rel_tol=1e-9) for pair in pairs)
 
 
 def refuse_other_units(data: xr.DataArray | xr.Dataset) -> None:

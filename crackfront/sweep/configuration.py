@@ -183,7 +183,7 @@ def _refuse_too_coarse(simulation: Simulation, requested: Settings | float) -> N
         raise ValueError(
             f"numerics: {sizes.n_angle} sites of a front are {density:.2g} per short cutoff of "
             f"{name}, with which k comes out too large; use {math.ceil(2 * length / cutoff)} or "
-            "more, or angles_per_cutoff in place of angles"
+            "more, as angles_per_cutoff: 2 does"
         )
     round_off = sys.float_info.epsilon * sizes.n_angle
     if tolerance < round_off:

@@ -152,13 +152,13 @@ class RowIndex:
     def __init__(self, folder: Path, spectrum: str, block: range, *, checked: bool = True) -> None:
         self._checked = checked
         self._members: dict[str, list[Member]] = defaultdict(list)
-        self._latest: dict[str, Member] = {}
+        self._alike: dict[str, list[Member]] = defaultdict(list)
         for path in pack_paths(folder, spectrum, block):
             for member in members(path)[0]:
                 self._members[member.name].append(member)
                 stem, dot, suffix = member.name.rpartition(".")
                 if dot + suffix == _ROW:
-                    self._latest[_without_key(stem)] = member
+                    self._alike[_without_key(stem)].append(member)
 
     def entry(self, stem: str) -> Entry | None:
         """Entry of a simulation with a row, if there is one and its curve is as that says."""
@@ -181,10 +181,10 @@ class RowIndex:
         """Curves that are stored of a simulation."""
         return self._members.get(stem + _CURVE, [])
 
-    def latest(self, stem: str) -> Entry | None:
-        """Entry with which a simulation was stored last, with whatever key."""
-        member = self._latest.get(_without_key(stem))
-        return None if member is None else _entry(member)
+    def alike(self, stem: str) -> Iterator[Entry]:
+        """Entries of the simulations of this name, with whatever keys."""
+        entries = map(_entry, self._alike.get(_without_key(stem), []))
+        return (entry for entry in entries if entry is not None)
 
 
 def _without_key(stem: str) -> str:

@@ -460,17 +460,19 @@ def _stored_result(simulation: Simulation, stem: str, index: RowIndex) -> Stored
     """What an index has of a simulation."""
     if (entry := index.entry(stem)) is not None:
         return StoredResult(simulation, entry.row, "", arithmetic=entry.arithmetic)
-    unreadable, latest = "", index.latest(stem)
+    unreadable, alike = "", list(index.alike(stem))
     for member in index.curves(stem):
         try:
             row = sweep_row(read_simulation(member, simulation))
         except UnreadableFileError as error:
             unreadable = str(error)
         else:
-            return StoredResult(simulation, row, "", arithmetic=latest.arithmetic if latest else "")
-    known, now = (latest.parts, simulation.parts) if latest else ({}, {})
-    changed = tuple(name for name, part in now.items() if part != known.get(name))
-    return StoredResult(simulation, None, unreadable, changed)
+            arithmetic = alike[-1].arithmetic if alike else ""
+            return StoredResult(simulation, row, "", arithmetic=arithmetic)
+    now = simulation.parts
+    changes = [[name for name, part in now.items() if part != one.parts.get(name)] for one in alike]
+    nearest = min(changes, key=len) if changes else []
+    return StoredResult(simulation, None, unreadable, tuple(nearest))
 
 
 def expected_seconds(simulations: Iterable[Simulation]) -> float:

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from zipfile import BadZipFile, ZipFile
 
-from crackfront.data.digests import read_sums, result_files
+from crackfront.data.digests import SUMS, read_sums, result_files
 from crackfront.data.files import (
     NO_ROOM,
     UnreadableFileError,
@@ -53,7 +53,9 @@ def verification(place: Path) -> Verification:
         listed = read_sums(folder)
         names = [str(path.relative_to(folder)) for path in result_files(folder)]
         damaged = [str(path.relative_to(folder)) for path in damaged_files(folder)]
-        missing = sorted({*listed} - {*names})
+        missing = sorted({*listed} - {*names, ""})
+        if "" in listed:  # of a line that is none of a list of checksums
+            damaged.append(SUMS)
         # An archive may have been packed without curves.
         if place.is_dir() or (folder / "curves").is_dir():
             missing += lost_curves(folder)

@@ -21,6 +21,7 @@ from crackfront.cli import main
 from crackfront.core.outcome import DefectError
 from crackfront.data.bounds import TooLargeError
 from crackfront.data.comparison import comparison
+from crackfront.data.digests import SUMS
 from crackfront.data.files import read_dataset, write_sums
 from crackfront.data.packs import members, record
 from crackfront.data.provenance import provenance
@@ -120,6 +121,15 @@ def test_what_is_stale_is_told_with_what_has_changed(store, change, part):
     assert inventory.missing[0].label == FLAT[0].label
     assert inventory.stale_sentence() == f"1 stored simulations are stale: 1 as {part} changed"
     assert store.inventory(FLAT).stale_sentence() == ""
+
+
+def test_the_reason_is_by_the_stored_key_that_is_nearest(store):
+    other = replace(FLAT[0], sweep_seed=2, solver=replace(FLAT[0].solver, tolerance=1e-7))
+    for stored in (FLAT[0], other):
+        run_and_store(store, [stored])
+    for near in (FLAT[0], other):
+        sentence = store.inventory([replace(near, sweep_seed=3)]).stale_sentence()
+        assert sentence == "1 stored simulations are stale: 1 as seed changed"
 
 
 def test_a_new_solver_makes_all_stale_by_its_sources(store, monkeypatch):
@@ -567,6 +577,14 @@ def test_a_folder_and_its_archive_are_verified(whole, tmp_path):
     result = CliRunner().invoke(main, ["verify", str(archive)])
     assert result.exit_code in (1, 2)
     assert "Traceback" not in result.output
+
+
+def test_a_list_of_checksums_that_is_none_is_damaged(whole):
+    (whole.folder / SUMS).write_text("no list\n")
+    found = verification(whole.folder)
+    assert (found.damaged, found.missing) == ((SUMS,), ())
+    list(whole.repair(TEST))
+    assert verification(whole.folder).damaged == ()
 
 
 def test_an_archive_without_curves_is_whole(whole, tmp_path):
