@@ -27,7 +27,7 @@ from numpy.typing import ArrayLike
 from scipy.special import ndtr
 
 from crackfront.analysis.estimate import Estimate, normal_estimate
-from crackfront.core.adhesion import FieldKind
+from crackfront.core.adhesion import FieldKind, refuse_unknown_kind
 from crackfront.core.arrays import Array
 from crackfront.data.arguments import refuse_no_numbers
 
@@ -254,8 +254,8 @@ def pinning_factor(
     TypeError
         If one of them is no number.
     ValueError
-        If w_rms does not lie between 0 and 2, where e_el is w_int, or the size or the breadth is
-        not positive.
+        If w_rms does not lie between 0 and 2, where e_el is w_int, the size or the breadth is not
+        positive, or there is no such kind.
 
     Examples
     --------
@@ -265,6 +265,7 @@ def pinning_factor(
     True
     """
     refuse_no_numbers(w_rms=w_rms, size=size)
+    refuse_unknown_kind(kind)
     if not 0 < w_rms < 2:
         raise ValueError(
             f"w_rms is {w_rms:g} w_int; it must lie between 0 and 2, where e_el reaches w_int"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Literal, get_args
 
 import numpy as np
 from scipy.fft import fft2, fftfreq, irfft2, rfft2, rfftfreq
@@ -15,6 +15,12 @@ if TYPE_CHECKING:
     from crackfront.core.spectrum import Spectrum
 
 FieldKind = Literal["roughness", "chemical"]
+
+
+def refuse_unknown_kind(kind: str) -> None:
+    """Raise if there is no such kind of fields."""
+    if kind not in get_args(FieldKind):
+        raise ValueError(f"kind is {kind!r}; choose one of {', '.join(get_args(FieldKind))}")
 
 
 def front_stress_intensity(heights: Array, pixel: float, modulus: float = CONTACT_MODULUS) -> Array:

@@ -7,6 +7,7 @@ import zlib
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from numbers import Real
 from typing import Any, ClassVar, Self, cast
 
 import numpy as np
@@ -176,6 +177,8 @@ class SelfAffineSpectrum(Spectrum):
 
     Raises
     ------
+    TypeError
+        If one of them is no number.
     ValueError
         If a length is not positive, the roll-off is shorter than the cutoff, or H is outside
         (0, 1].
@@ -200,6 +203,9 @@ class SelfAffineSpectrum(Spectrum):
     plateau: float = 1.0
 
     def __post_init__(self) -> None:
+        for name in ("short_cutoff", "roll_off", "hurst", "plateau"):
+            if not isinstance(getattr(self, name), Real):
+                raise TypeError(f"{name} is {getattr(self, name)!r}; give a number")
         for name in ("short_cutoff", "roll_off", "plateau"):
             value = getattr(self, name)
             if not (math.isfinite(value) and value > 0):

@@ -80,8 +80,8 @@ def comparison(one: Path, other: Path) -> Comparison:
     or damaged, two files are not of one kind, or the folders hold none.
     """
     if one.is_dir() != other.is_dir():
-        folder, else_ = (one, other) if one.is_dir() else (other, one)
-        raise UnreadableFileError(f"{folder} is a folder, and {else_} is none; name two of a kind")
+        folder, file = (one, other) if one.is_dir() else (other, one)
+        raise UnreadableFileError(f"{folder} is a folder, and {file} is none; name two of a kind")
     if not one.is_dir():
         return Comparison(1, tuple(_differences("", one, other)), ())
     pairs, alone = _pairs(_results(one), _results(other))

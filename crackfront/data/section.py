@@ -107,7 +107,7 @@ def validated(path: Path, content: object, schema: type[Kind]) -> Kind:
             folder = Path(os.fsdecode(unquote_to_bytes(first.removeprefix(_HOME))))
         return schema.model_validate(content, context=folder)
     except ValidationError as error:
-        found = error.errors(include_url=False, include_context=False)
+        found = error.errors(include_url=False)
         around = {item["loc"][:depth] for item in found for depth in range(len(item["loc"]))}
         # A list whose entries are refused is also called too short.
         found = [item for item in found if item["type"] != "too_short" or item["loc"] not in around]
@@ -209,6 +209,9 @@ def _sentence(error: ErrorDetails, schema: type[Section]) -> str:
         return f"key {place} is missing; add it"
     must = re.sub(r"^(Input|String|Tuple|Value) should", "it must", error["msg"])
     must = _SHORT.get(error["type"], must)
+    if error["type"] == "too_short":
+        least = error["ctx"]["min_length"]
+        must = f"it must have at least {'one entry' if least == 1 else f'{least} entries'}"
     value = list(error["input"]) if isinstance(error["input"], tuple) else error["input"]
     key = next((part for part in reversed(error["loc"]) if isinstance(part, str)), "")
     meaning = "" if error["type"] == "too_short" else _MEANING.get(key, "")
@@ -223,7 +226,6 @@ _SHORT = {
     "model_type": "it must be a mapping of keys",
     "model_attributes_type": "it must be a mapping of keys",
     "tuple_type": "it must be a list",
-    "too_short": "it must have at least one entry",
     "string_pattern_mismatch": "it must consist of letters, digits, _ and -",
     "finite_number": "it must be finite",
     "path_type": "it must be the name of a file",

@@ -10,7 +10,7 @@ import numpy as np
 from scipy.fft import fftfreq, rfft2, rfftfreq
 from xarray import DataArray
 
-from crackfront.core.adhesion import AdhesionMap, FieldKind
+from crackfront.core.adhesion import AdhesionMap, FieldKind, refuse_unknown_kind
 from crackfront.core.arrays import Array
 from crackfront.core.spectrum import SelfAffineSpectrum, Spectrum
 from crackfront.core.units import WORK_OF_ADHESION
@@ -23,7 +23,7 @@ from crackfront.simulate.simulation import Simulation, simulation_adhesion
 from crackfront.simulate.sizing import simulation_of
 from crackfront.simulate.sphere.cycle import FullCycle
 from crackfront.simulate.tiles import gaussian_values
-from crackfront.simulate.user_surface import refuse_unknown_kind, surface_array
+from crackfront.simulate.user_surface import surface_array
 
 
 def random_surface(

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
-from typing import get_args
 
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from crackfront.core.adhesion import AdhesionMap, FieldKind, rough_adhesion
+from crackfront.core.adhesion import AdhesionMap, FieldKind, refuse_unknown_kind, rough_adhesion
 from crackfront.core.arrays import Array
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.core.variables import ADHESION, LATERAL, VERTICAL, Variable
@@ -245,12 +244,6 @@ def surface_array(
         for axis, count in zip(_AXES, values.shape, strict=True)
     }
     return xr.DataArray(values, axes, item.dims, name=item.name, attrs=label(item) | attributes)
-
-
-def refuse_unknown_kind(kind: str) -> None:
-    """Raise if there is no such kind of fields."""
-    if kind not in get_args(FieldKind):
-        raise ValueError(f"kind is {kind!r}; choose one of {', '.join(get_args(FieldKind))}")
 
 
 _SEAM = 2.0

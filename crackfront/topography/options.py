@@ -215,23 +215,27 @@ def _text(value: Any, info: ValidationInfo) -> str:
 
 def _region(value: Any, info: ValidationInfo) -> Region:
     """A part of a scan, from a text as in 2um:8um,0um:5um or from pairs of ends in metres."""
-    if isinstance(value, (list, tuple)) and all(map(_are_numbers, value)):
-        return tuple((low, high) for low, high in value)
+    if isinstance(value, (list, tuple)) and value and all(map(_are_numbers, value)):
+        return _checked_region(value, str(value), _named(info))
     refuse_other_type(_named(info), value, str, "a text, as in '2um:8um,0um:5um'")
     return _region_of(value, _named(info))
 
 
 def _region_of(text: str, what: str) -> Region:
     """The part of a scan that a text names."""
-    ends = [part.split(":") for part in text.split(",")]
+    ends = [[_place(end, what) for end in part.split(":")] for part in text.split(",")]
+    return _checked_region(ends, repr(text), what)
+
+
+def _checked_region(ends: Sequence[Sequence[float]], shown: str, what: str) -> Region:
+    """A part of a scan, whose ends along every direction are two in their order."""
     if not all(len(part) == 2 for part in ends) or len(ends) > 2:
         raise ValueError(
-            f"{what} is {text!r}; write both ends along every direction, as in 2um:8um,0um:5um"
+            f"{what} is {shown}; write both ends along every direction, as in 2um:8um,0um:5um"
         )
-    found = tuple((_place(low, what), _place(high, what)) for low, high in ends)
-    if any(low >= high for low, high in found):
-        raise ValueError(f"{what} is {text!r}, which ends where it begins or before; swap them")
-    return found
+    if not all(low < high for low, high in ends):
+        raise ValueError(f"{what} is {shown}, which ends where it begins or before; swap them")
+    return tuple((low, high) for low, high in ends)
 
 
 def _place(end: str, what: str) -> float:
@@ -250,8 +254,8 @@ def _masks(value: Any, info: ValidationInfo) -> tuple[Region | Path, ...]:
 
 def _region_or_file(value: Any, what: str) -> Region | Path:
     """A part of a scan, from a text with colons, or the path of a file."""
-    if isinstance(value, tuple):
-        return value
+    if isinstance(value, tuple) and value and all(map(_are_numbers, value)):
+        return _checked_region(value, str(value), what)
     refuse_other_type(what, value, (str, PathLike), "a part, or the path of a file")
     is_region = isinstance(value, str) and ":" in value
     return _region_of(value, what) if is_region else Path(value)

@@ -164,6 +164,7 @@ def test_what_is_no_number_has_no_k():
         (lambda: pinning_factor(2.0, 1.0), "w_rms is 2 w_int"),
         (lambda: pinning_factor(0.3, 0.0), "size g is 0"),
         (lambda: pinning_factor(0.3, np.nan), "size g is nan"),
+        (lambda: pinning_factor(0.3, 5.0, "rough"), "kind is 'rough'; choose one of roughness"),
         (lambda: sphere_factors("roughness", FLAT, 1.0, 1.9), "energy of full conformity is 1"),
         (lambda: sphere_factors("roughness", FLAT, 0.05, 0.0), "contact radius is 0"),
         (lambda: sphere_factors("roughness", FLAT, 0.05, 0.5), "nothing holds the edge"),

@@ -102,6 +102,13 @@ def test_scaling_to_an_elastic_energy_changes_nothing_but_the_height(spectrum, e
     )
 
 
+@pytest.mark.parametrize("name", ["short_cutoff", "roll_off", "hurst"])
+def test_a_spectrum_has_numbers(name):
+    given = {"short_cutoff": 0.01, "roll_off": 0.1, "hurst": 0.8} | {name: "0.2um"}
+    with pytest.raises(TypeError, match=f"{name} is '0.2um'; give a number"):
+        SelfAffineSpectrum(**given)
+
+
 @pytest.mark.parametrize("energy", [0.0, -0.1, float("nan")])
 def test_scaling_to_no_elastic_energy_is_refused(energy):
     with pytest.raises(ValueError, match="must be positive and finite"):

@@ -341,7 +341,8 @@ BAD = {
     ),
     "too few angles": (
         ("angles_per_cutoff: 2", "angles: 20"),
-        "per short cutoff of flat, with which k comes out too large; use ",
+        "per short cutoff of flat, with which k comes out too large; use 225 or more, as "
+        "angles_per_cutoff: 2 does",
     ),
     "three angles": (
         ("angles_per_cutoff: 2", "angles: 3"),
@@ -616,6 +617,13 @@ def test_shards_of_a_measured_spectrum_change_with_the_file(tmp_path):
                 "{name: table, table: {wavelengths: [1, 2], densities: [1, 1]}}",
             ),
             "spectra[0].table: the wavelengths of a table must fall",
+        ),
+        (
+            changed(
+                "{name: flat, short_cutoff: 0.1, hurst: 1.0}",
+                "{name: table, table: {wavelengths: [1], densities: [1]}}",
+            ),
+            "spectra[0].table.wavelengths is [1]; it must have at least 2 entries",
         ),
         (
             changed("{name: flat, short_cutoff: 0.1, hurst: 1.0}", "{name: flat, hurst: 1.0}"),

@@ -93,6 +93,9 @@ def test_an_option_is_given_once_for_all_scans_or_once_for_each():
     [
         ({"channel": "Phase"}, "has no channel 'Phase'"),
         ({"crop": "1um"}, "^crop is '1um'; write both ends"),
+        ({"crop": ((0, 1e-6, 0),)}, r"^crop is \(\(0, 1e-06, 0\),\); write both ends"),
+        ({"crop": ((1e-6, 0), (0, 1e-6))}, r"^crop is .*, which ends where it begins or before"),
+        ({"mask": (((1e-6, 0), (0, 1e-6)),)}, "^mask is .*, which ends where it begins or before"),
         ({"mask": "1um:2um"}, "has 2 dimension"),
         ({"detrend": "spline"}, "^detrend is 'spline'; choose one"),
         ({"detrend": 10}, "^detrend is 10; choose one"),
