@@ -19,7 +19,7 @@ UNITS = {"force": "N", "radius": "m", "displacement": "m"}
 
 _HEADS = {
     "force": r"(normal |measured )?(force|load)|f|fn|p",
-    "radius": r"(contact )?radius|a",
+    "radius": r"(contact )?(radius|diameter|area)|a",
     "displacement": r"(stage |measured )?(displacement|penetration|indentation|depth)|delta|δ|d",
 }
 """What the head of a column is called, in lower case and without its unit."""
@@ -91,24 +91,39 @@ def read_recording(path: Path, named: Mapping[str, str], units: Mapping[str, str
         raise ValueError(f"{path} is no text; export the loop as a table, as CSV")
     lines = text.split("\n")
     separator, first = _layout(path, lines)
-    heads = _cells(lines[first - 1].lstrip("#% "), separator) if first > 0 else []
+    width = len(_cells(lines[first], separator))
+    heads = _heads(lines[first - 1], separator, width) if first > 0 else []
     below: Sequence[str] = ()
     if first > 1 and heads and all(_is_unit(head) for head in heads):
         # A line of units stands below that of the names.
-        below, heads = heads, _cells(lines[first - 2].lstrip("#% "), separator)
+        below, heads = heads, _heads(lines[first - 2], separator, width)
     chosen = dict(_chosen(path, heads, named))
-    table = _numbers(path, lines, first, separator, len(heads))
+    table = _numbers(path, lines[first:], separator, len(heads), list(chosen.values()))
     columns: dict[str, Array | None] = dict.fromkeys(UNITS)
     for name, place in chosen.items():
-        written = _unit(heads[place]) or (below[place].strip("[]() ") if below else "")
+        head = heads[place]
+        written = _unit(head) or (below[place].strip("[]() ") if below else "")
         unit = units.get(name) or written
         if not unit:
             raise ValueError(
-                f"{path}: the column {heads[place]!r} has no unit; give one, as in "
+                f"{path}: the column {head!r} has no unit; give one, as in "
                 f"--{name}-unit {'mN' if name == 'force' else 'um'}"
             )
-        columns[name] = table[:, place] * unit_value(unit, UNITS[name])
+        if written and unit != written:
+            raise ValueError(
+                f"{path}: the column {head!r} has the unit {written}, and --{name}-unit is {unit}; "
+                "leave that out, or correct the heading"
+            )
+        columns[name] = _in_si(table[place], name, head, unit)
     return Recording(**columns)
+
+
+def _in_si(values: Array, name: str, head: str, unit: str) -> Array:
+    """A column in SI units; radii also from contact areas or diameters, by their head."""
+    if name == "radius" and "area" in _name(head):
+        return np.sqrt(values * unit_value(unit, "m^2") / np.pi)
+    found = values * unit_value(unit, UNITS[name])
+    return found / 2 if name == "radius" and "diameter" in _name(head) else found
 
 
 def _layout(path: Path, lines: Sequence[str]) -> tuple[str | None, int]:
@@ -116,14 +131,31 @@ def _layout(path: Path, lines: Sequence[str]) -> tuple[str | None, int]:
     for separator in (*_SEPARATORS, None):
         for number, line in enumerate(lines):
             cells = _cells(line, separator)
-            filled = [cell for cell in cells if cell]
+            heads = _heads(lines[number - 1], separator, len(cells)) if number else []
+            if not _is_row(cells, heads):
+                continue
             # A decimal comma is no separator: both cells of 1,5 would be numbers.
-            if len(filled) > 1 and all(map(_is_number, filled)):
-                heads = _cells(lines[number - 1], separator) if number else []
-                if len(heads) == len(cells) or separator != ",":
-                    return separator, number
-                break
+            if len(heads) == len(cells) or separator != ",":
+                return separator, number
+            break
     raise ValueError(f"{path} has no line with two numbers or more; a loop is a table of columns")
+
+
+def _is_row(cells: Sequence[str], heads: Sequence[str]) -> bool:
+    """Whether cells are a row of a table: two numbers, or below heads one beside empty cells."""
+    count = sum(map(_is_number, cells))
+    has_heads = len(heads) == len(cells) and not any(map(_is_number, heads))
+    is_all = count == sum(map(bool, cells))
+    fewest = 1 if is_all and has_heads and len(cells) > 1 else 2
+    return count >= fewest and (is_all or has_heads)
+
+
+def _heads(line: str, separator: str | None, width: int) -> list[str]:
+    """Heads of so many columns; those of columns of spaces may have single spaces in them."""
+    line = line.lstrip("#% ")
+    found = _cells(line, separator)
+    apart = re.split(r"\s{2,}", line.strip())
+    return apart if separator is None and len(found) != width == len(apart) else found
 
 
 def _cells(line: str, separator: str | None) -> list[str]:
@@ -132,8 +164,10 @@ def _cells(line: str, separator: str | None) -> list[str]:
 
 
 def _is_number(cell: str) -> bool:
-    """Whether a cell is a number, with a decimal point or comma."""
-    return re.fullmatch(r"[-+]?(\d+[.,]?\d*|[.,]\d+)([eE][-+]?\d+)?|nan|NaN", cell) is not None
+    """Whether a cell is a number, with a decimal point or comma, or says that there is none."""
+    return (
+        re.fullmatch(r"[-+]?(\d+[.,]?\d*|[.,]\d+)([eE][-+]?\d+)?|nan|NaN|NA|N/A", cell) is not None
+    )
 
 
 def _is_unit(head: str) -> bool:
@@ -177,36 +211,38 @@ def _chosen(
 
 
 def _numbers(
-    path: Path, lines: Sequence[str], first: int, separator: str | None, width: int
-) -> Array:
-    """Numbers of a table, NaN in empty cells."""
+    path: Path, lines: Sequence[str], separator: str | None, width: int, places: Sequence[int]
+) -> dict[int, Array]:
+    """Numbers of some columns of a table by their places, NaN in empty cells."""
     import pandas
 
-    text = "\n".join(lines[first:])
-    # Where a comma separates no cells it is a decimal one.
-    decimal = "," if separator != "," and re.search(r"\d,\d", text) else "."
-    if decimal == "," and re.search(r"\d\.\d", text):
-        raise ValueError(
-            f"{path} has numbers with decimal points and with decimal commas; write one of them"
-        )
     try:
         table = pandas.read_csv(
-            io.StringIO(text),
+            io.StringIO("\n".join(lines)),
             sep=separator or r"\s+",
-            decimal=decimal,
+            dtype=str,
             header=None,
-            names=range(width) if width else None,
+            names=range(width),
+            usecols=places,
             skip_blank_lines=True,
             index_col=False,
         )
     except pandas.errors.ParserError as error:
         raise ValueError(f"{path} is no table: {str(error).strip()}") from error
-    numbers = table.apply(pandas.to_numeric, errors="coerce").to_numpy(float)
-    bad = np.argwhere(np.isnan(numbers) & table.notna().to_numpy())
-    if bad.size:
-        row, column = bad[0]
+    texts = table.to_numpy(str)
+    if all(np.any(np.char.find(texts, sign) >= 0) for sign in ".,"):
         raise ValueError(
-            f"{path}: {table.iat[row, column]!r} in row {row + 1} of the numbers, column "
-            f"{column + 1}, is no number; mend or remove the row"
+            f"{path} has numbers with decimal points and with decimal commas; write one of them"
         )
-    return np.asarray(numbers)
+    found = {}
+    for place in places:
+        column = table[place].str.strip().replace("", None)
+        numbers = pandas.to_numeric(column.str.replace(",", "."), errors="coerce")
+        bad = np.flatnonzero(numbers.isna() & column.notna())
+        if bad.size:
+            raise ValueError(
+                f"{path}: {column[bad[0]]!r} in row {bad[0] + 1} of the numbers, column "
+                f"{place + 1}, is no number; mend or remove the row"
+            )
+        found[place] = numbers.to_numpy(float)
+    return found

@@ -37,6 +37,9 @@ def table(separator=",", decimal=".", head=("Force (mN)", "Radius (um)"), before
         table().replace("\n", "\r\n").encode(),
         table(head=('"Force (mN)"', '"Radius (um)"')).encode(),
         table(head=("# Force (mN)", "Radius (um)")).encode(),
+        table("  ", head=("Force (mN)", "Contact radius (um)")).encode(),
+        b"Speed (um/s);2\nTime;Force (mN);Radius (um);Phase\n"
+        b"12:00:01.1;-1,5;50;approach\n12:00:01.2;2,25;60,5;approach\n12:00:01.3;0,5;70;retract\n",
     ],
 )
 def test_tables_of_common_programs_are_read(content, tmp_path):
@@ -46,6 +49,40 @@ def test_tables_of_common_programs_are_read(content, tmp_path):
     assert found.force == pytest.approx(FORCE)
     assert found.radius == pytest.approx(RADIUS)
     assert found.displacement is None
+
+
+@pytest.mark.parametrize("separator", [",", ";", "\t"])
+@pytest.mark.parametrize("absent", ["", "NaN", "NA", " "])
+def test_a_radius_may_be_absent_out_of_contact(separator, absent, tmp_path):
+    path = tmp_path / "rig.csv"
+    rows = [("0.1", absent), *ROWS]
+    path.write_text("\n".join(map(separator.join, [("Force (mN)", "Radius (um)"), *rows])) + "\n")
+    found = read_recording(path, {}, {})
+    np.testing.assert_allclose(found.radius, [np.nan, *RADIUS])
+    np.testing.assert_allclose(found.force, [1e-4, *FORCE])
+
+
+@pytest.mark.parametrize(
+    ("head", "values"),
+    [
+        ("Contact area (um^2)", np.pi * (1e6 * RADIUS) ** 2),
+        ("area / mm2", np.pi * (1e3 * RADIUS) ** 2),
+        ("Contact diameter [um]", 2e6 * RADIUS),
+    ],
+)
+def test_a_camera_may_give_areas_or_diameters(head, values, tmp_path):
+    path = tmp_path / "rig.csv"
+    rows = zip(1e3 * FORCE, values, strict=True)
+    path.write_text(f"Force (mN),{head}\n" + "".join(f"{f},{a:.9g}\n" for f, a in rows))
+    assert read_recording(path, {}, {}).radius == pytest.approx(RADIUS)
+
+
+def test_a_unit_stands_in_the_heading_or_in_an_option(tmp_path):
+    path = tmp_path / "rig.csv"
+    path.write_text(table())
+    with pytest.raises(ValueError, match="has the unit mN, and --force-unit is uN; leave that out"):
+        read_recording(path, {}, {"force": "uN"})
+    assert read_recording(path, {}, {"force": "mN"}).force == pytest.approx(FORCE)
 
 
 def test_columns_are_named_and_units_given_by_options(tmp_path):
