@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from crackfront.core import jkr
 from crackfront.core.arrays import Array
 
 
@@ -33,3 +34,16 @@ def radius_at(force: Array, penetration: Array) -> Array:
     found = np.where(root > 0, found, np.cbrt(-2 * force))
     possible = np.where(penetration > 0, part >= -1, force < 0)
     return np.where(possible & (found > 0), found, np.nan)
+
+
+def force_at(penetration: Array, work_of_adhesion: float) -> Array:
+    r"""Force of the stable JKR contact at a penetration, of pull-off at any that is lower.
+
+    The root of the radius is the largest root of :math:`s^4 - p s - b = 0`,
+    :math:`p^2 = 8 w / 3`, with y of its resolvent, :math:`y^3 + b y - p^2 / 8 = 0`.
+    """
+    b = np.maximum(penetration, jkr.pull_off_penetration(work_of_adhesion))
+    p = np.sqrt(8 * work_of_adhesion / 3)
+    m = np.sqrt(2 * radius_at(np.full(b.shape, -(p**2) / 16), -b / 3))
+    root = (m + np.sqrt(np.maximum(2 * p / m - m**2, 0.0))) / 2
+    return jkr.force(root**2, b)

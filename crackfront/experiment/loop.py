@@ -19,7 +19,7 @@ from crackfront.core.arrays import Array
 from crackfront.core.units import Scales
 from crackfront.core.variables import variable
 from crackfront.data.written_units import prefixed
-from crackfront.experiment.contact import penetration_at, radius_at
+from crackfront.experiment.contact import force_at, penetration_at, radius_at
 from crackfront.experiment.recording import Recording
 
 Rows = NDArray[np.int64]
@@ -34,18 +34,31 @@ A jump into contact leaves nothing behind. After the turn the edge has to leave 
 approach; `python -m studies accuracy loops` holds the intervals against simulated spheres.
 """
 
-_ZEROS = 151
-"""Displacements among which the zero is looked for first."""
+_ZEROS, _NO_FIT = 151, 1e6
+"""Displacements among which the zero is looked for first, and what stands for no curve at one."""
 
 _FEWEST_BASELINE = 5
 """Rows out of contact from which the zero of the force is found."""
 
-_LEAST_FORCE, _NOISES = 0.02, 5.0
-"""Part of the largest force, and standard deviations of the first rows, that make a contact."""
+_UNLIKELY, _LEAST_FORCE = 1e-5, 0.002
+"""Probability with which noise alone makes a row depart from those out of contact, and the part of
+the range of the force that makes a contact."""
 
 _STEEP, _CERTAIN = 0.1, 0.9995
 """Slope of the force over the displacement, relative to that of the whole loop, and the certainty
 that there is one, from which rows are of a contact: out of it the force hardly changes."""
+
+_NOISES = 4.0
+"""Pull-off force over the noise of the force, below which no contact is found without radii."""
+
+_NO_MEANS = math.nan, math.nan
+"""Works of adhesion where no row has one."""
+
+_TINY = np.finfo(float).tiny
+"""Smallest force that divides another."""
+
+_APART = 1.5
+"""Ratio of a pull-off force to that of the work of adhesion, beyond which the loop says so."""
 
 _RETURN = 0.2
 """Part of the largest travel by which mount or edge may come back within a branch."""
@@ -76,8 +89,14 @@ class Rig:
         for name in ("modulus_error", "radius_error"):
             if not 0 <= getattr(self, name) < 1:
                 raise ValueError(f"{name} is {getattr(self, name)}; it is relative, 0 to 1")
+        if self.modulus_error > 0 and self.contact_modulus is None:
+            raise ValueError(
+                f"the error of the modulus is {self.modulus_error:g}, and no modulus is given; a "
+                "fitted one has the error of its fit, so give a modulus or leave the error out"
+            )
         if self.window is not None and not 0 <= self.window[0] < self.window[1] < math.inf:
-            raise ValueError(f"window is {self.window}; give a smaller and a larger contact radius")
+            ends = " to ".join(prefixed("m", end) for end in self.window)
+            raise ValueError(f"window is {ends}; give a smaller and a larger contact radius")
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,7 +119,7 @@ class MeasuredLoop:
     fitted_modulus: Estimate[float] = variable("contact modulus E' that fits the loop", "Pa")
     stiffness: Estimate[float] = variable("stiffness of the machine", "N m-1")
     lost_energy: float = variable("energy lost in the loop per largest contact area", "J m-2")
-    pull_off_force: float = variable("largest pulling force", "N")
+    pull_off_force: Estimate[float] = variable("largest pulling force of the retraction", "N")
     sphere_radius: float = variable("radius of the sphere", "m")
     window: tuple[float, float] = (math.nan, math.nan)
     """Contact radii that both works are averaged over (Units: m)."""
@@ -152,26 +171,20 @@ def analyse_loop(recording: Recording, rig: Rig) -> MeasuredLoop:
     fit = _fit(recording, rig, branches) if is_fitted else math.nan
     known, fitted = rig.contact_modulus or fit, _NO_ESTIMATE
     zero = _zero_displacement(recording, rig, known, branches)
-    first = _contact(recording, rig, known, zero)
+    first, branches, averaged, window = _placed(recording, rig, known, zero, branches)
     if zero != 0.0:
+        # What precedes the steady parts has no part in the zero.
+        zero = _zero_displacement(recording, rig, known, averaged, near=zero)
+        first, branches, averaged, window = _placed(recording, rig, known, zero, branches)
         remarks.append(
-            "The zero of the displacement was fitted, for the least varying works of adhesion."
+            "The zero of the displacement was fitted, with one work of adhesion for each branch."
         )
-    appr, retr = (rows[np.isfinite(first.work[rows])] for rows in branches)
-    branches = appr, retr
-    largest = max((float(np.max(first.radius[rows])) for rows in branches if rows.size), default=0)
-    if largest > rig.radius:
-        raise ValueError(
-            f"the contact radius reaches {prefixed('m', largest)} on a sphere of "
-            f"{prefixed('m', rig.radius)}; check the units of both"
-        )
-    averaged, window = _averaged(first.radius, branches, rig.window)
 
     def found(rows: Branches, rig: Rig, recording: Recording = recording) -> Array:
         """Both works, the hysteresis and the modulus from some rows of each branch."""
         modulus = rig.contact_modulus or _fit(recording, rig, rows)
         place = _zero_displacement(recording, rig, modulus, rows, near=zero)
-        appr, retr = branch_means(_contact(recording, rig, modulus, place).work, rows)
+        appr, retr = _means(_contact(recording, rig, modulus, place), rows)
         return np.array([appr, retr, retr - appr, modulus])
 
     shifted = [replace(recording, force=np.asarray(recording.force) + one) for one in zero_errors]
@@ -179,10 +192,16 @@ def analyse_loop(recording: Recording, rig: Rig) -> MeasuredLoop:
     if zero != 0.0:
         # A true trend of either branch moves the zero; one branch alone says by how much.
         for rows in averaged:
-            place = _zero_displacement(recording, rig, known, [rows])
-            w_appr, w_retr = branch_means(_contact(recording, rig, known, place).work, averaged)
-            alone.append(np.array([w_appr, w_retr, w_retr - w_appr, known]))
+            place = _zero_displacement(recording, rig, known, [rows], near=zero)
+            appr, retr = _means(_contact(recording, rig, known, place), averaged)
+            alone.append(np.array([appr, retr, retr - appr, known]))
     estimates = _estimates(found, averaged, first.radius, rig, shifted, alone)
+    if not all(math.isfinite(one.high) for one in estimates[:3]):
+        raise ValueError(
+            "the works of adhesion have no interval: the noise of the force, or the error of its "
+            "zero, is as large as the adhesion in some rows; check the units and the modulus, "
+            "press less, or record the contact radius"
+        )
     if is_fitted:
         free = Rig(rig.radius, None, 0.0, rig.radius_error)
         fitted = _estimates(found, averaged, first.radius, free, shifted)[3]
@@ -200,6 +219,23 @@ def analyse_loop(recording: Recording, rig: Rig) -> MeasuredLoop:
         )
     if math.isfinite(fitted.low) and rig.contact_modulus is not None:
         remarks += _modulus_remark(rig, fitted)
+    if rig.stiffness is not None and (is_fitted or recording.displacement is None):
+        remarks.append(
+            "The given stiffness of the machine has no part in the works of adhesion, which "
+            "from force and contact radius."
+        )
+    errors = zero_errors
+    if recording.force is None:
+        # Forces that follow from radii err as their work of adhesion does.
+        errors = [first.force * (estimates[1].standard_error / max(estimates[1].value, _TINY))]
+    pull_off, noise = _pull_off(first.force, branches[1], errors)
+    if recording.radius is None and 0 < pull_off.value < _NOISES * noise:
+        raise ValueError(
+            f"the pull-off force, {prefixed('N', pull_off.value)}, is hardly beyond the noise of "
+            f"the force, {prefixed('N', noise)}; press less, average rows, or record the contact "
+            "radius"
+        )
+    remarks += _pull_off_remark(rig, pull_off, estimates[1])
     return MeasuredLoop(
         force=first.force,
         contact_radius=first.radius,
@@ -213,7 +249,7 @@ def analyse_loop(recording: Recording, rig: Rig) -> MeasuredLoop:
         fitted_modulus=fitted,
         stiffness=_stiffness(recording, rig, estimates[3], averaged),
         lost_energy=lost,
-        pull_off_force=-float(np.nanmin(first.force)),
+        pull_off_force=pull_off,
         sphere_radius=rig.radius,
         window=window,
         remarks=tuple(remarks),
@@ -245,14 +281,17 @@ def _contact(recording: Recording, rig: Rig, modulus: float, zero: float = 0.0) 
         displacement = recording.displacement
         if displacement is None:
             raise ValueError("a loop needs two of force, radius and displacement")
-        bent = 0.0 if force is None or rig.stiffness is None else force / rig.stiffness
-        penetration = (displacement - bent - zero) / scales.vertical
+        moved = (displacement - zero) / scales.vertical
+        soft = 0.0 if rig.stiffness is None else scales.force / (rig.stiffness * scales.vertical)
         if force is not None:
             force_ = force / scales.force
+            penetration = moved - soft * force_
             radius_ = radius_at(force_, penetration)
         else:
             radius_ = _touching(np.asarray(radius)) / scales.lateral
-            force_ = jkr.force(radius_, penetration)
+            # The force of the penetration b is a^3 + 3/2 a (b - a^2), and bends the machine.
+            force_ = jkr.force(radius_, moved) / (1 + 1.5 * soft * radius_)
+            penetration = moved - soft * force_
     with np.errstate(divide="ignore", invalid="ignore"):
         work = jkr.apparent_work_of_adhesion(radius_, penetration)
     return _Contact(
@@ -267,37 +306,63 @@ def _zero_displacement(
     branches: Sequence[Rows],
     near: float | None = None,
 ) -> float:
-    """Displacement of no penetration, at which each branch is nearest to one work of adhesion.
+    """Displacement of no penetration, at which JKR curves of one work a branch fit best.
 
     It is looked for near a known one, or anywhere. 0 where force and radius are recorded, which
     need none.
     """
-    displacement = recording.displacement
-    if displacement is None or (recording.force is not None and recording.radius is not None):
+    displacement, force, radius = recording.displacement, recording.force, recording.radius
+    if displacement is None or (force is not None and radius is not None):
         return 0.0
+    if radius is not None:
+        return _zero_by_radius(displacement, radius, rig, modulus, branches)
+    scales = Scales(rig.radius, 1.0, modulus)
+    spread = [float(np.nanvar(np.asarray(force)[rows])) for rows in branches]
 
-    def unevenness(zero: float) -> float:
-        work = _contact(recording, rig, modulus, zero).work
-        total = 0.0
-        for rows in branches:
-            values = work[rows]
-            known = values[np.isfinite(values)]
-            if known.size < FEWEST_STATES or not np.any(known):
-                return math.inf
-            total += float(np.var(known) / np.mean(known) ** 2) + 1 - known.size / values.size
+    def misfit(zero: float) -> float:
+        """Variance of the force that the curves leave, over that of the force."""
+        contact, total = _contact(recording, rig, modulus, zero), 0.0
+        for rows, variance in zip(branches, spread, strict=True):
+            known = contact.work[rows][np.isfinite(contact.work[rows])]
+            if known.size < FEWEST_STATES:
+                return _NO_FIT
+            curve = force_at(contact.penetration[rows] / scales.vertical, float(np.mean(known)))
+            apart = contact.force[rows] - scales.force * curve
+            total += float(np.nanmean(apart**2)) / variance
         return total
 
     moved = displacement[np.concatenate(branches)]
-    low, high = float(np.min(moved)), float(np.max(moved))
+    low, high = float(np.nanmin(moved)), float(np.nanmax(moved))
     if near is None:
         grid = np.linspace(low - (high - low), high + (high - low), _ZEROS)
-        near = float(grid[np.argmin([unevenness(zero) for zero in grid])])
+        near = float(grid[np.argmin([misfit(zero) for zero in grid])])
     step = 3 * (high - low) / (_ZEROS - 1)
     around = near - step, near + step
     tight = {"xatol": 1e-7 * (high - low)}
     return float(
-        scipy.optimize.minimize_scalar(unevenness, bounds=around, method="bounded", options=tight).x
+        scipy.optimize.minimize_scalar(misfit, bounds=around, method="bounded", options=tight).x
     )
+
+
+def _zero_by_radius(
+    displacement: Array, radius: Array, rig: Rig, modulus: float, branches: Sequence[Rows]
+) -> float:
+    """Displacement of no penetration from contact radii.
+
+    The displacement is linear in it and in the root of the work of adhesion of each branch, also
+    with what bends in the machine: b = a^2 - sqrt(8 w a / 3) and F = a^3 - sqrt(6 w a^3).
+    """
+    scales = Scales(rig.radius, 1.0, modulus)
+    soft = 0.0 if rig.stiffness is None else scales.force / (rig.stiffness * scales.vertical)
+    rows = np.concatenate(branches)
+    a, moved = radius[rows] / scales.lateral, displacement[rows] / scales.vertical
+    number = np.repeat(np.arange(len(branches)), [one.size for one in branches])
+    pulled = np.sqrt(8 * a / 3) + soft * np.sqrt(6 * a**3)
+    columns = [np.ones(a.size), *(-pulled * (number == one) for one in range(len(branches)))]
+    known = np.isfinite(moved) & (a > 0)
+    matrix = np.stack(columns, axis=1)[known]
+    found, *_ = np.linalg.lstsq(matrix, (moved - a**2 - soft * a**3)[known], rcond=None)
+    return float(found[0]) * scales.vertical
 
 
 def _touching(radius: Array) -> Array:
@@ -339,25 +404,18 @@ def _with_zero_force(recording: Recording) -> tuple[Recording, list[Array], list
 def _touches(recording: Recording) -> NDArray[np.bool_]:
     """Whether each row is in contact: its radius is positive, or, without radii, a force acts.
 
-    A force acts from the first to the last row whose deviation from the median of the first rows is
-    above their noise and above a part of the largest deviation. Rows before and after it whose
-    force changes with the displacement as in a contact are in contact, too.
+    A force acts from the first to the last row that departs from the line of the rows before or
+    after it.
     """
     if recording.radius is not None:
         touches = recording.radius > 0
     else:
         force = np.asarray(recording.force)
-        start = force[:_FEWEST_BASELINE]
-        apart = np.abs(force - np.median(start))
-        least = max(_LEAST_FORCE * float(np.max(apart)), _NOISES * float(np.std(start)))
-        beyond = np.flatnonzero(apart > least)
+        known = np.flatnonzero(np.isfinite(force))
+        before, after = _rows_apart(recording, known), _rows_apart(recording, known[::-1])
         touches = np.zeros(force.size, bool)
-        if beyond.size:
-            first, last = int(beyond[0]), int(beyond[-1]) + 1
-            first = 0 if first and _is_contact(recording, first) else first
-            after = last - force.size
-            last = force.size if after and _is_contact(recording, after) else last
-            touches[first:last] = True
+        if before + after < known.size:
+            touches[known[before] : known[known.size - 1 - after] + 1] = True
     if not np.any(touches):
         raise ValueError(
             "no row is in contact: no contact radius is above zero, or no force beyond its noise; "
@@ -366,19 +424,64 @@ def _touches(recording: Recording) -> NDArray[np.bool_]:
     return touches
 
 
-def _is_contact(recording: Recording, count: int) -> bool:
-    """Whether the force of so many first rows changes with the displacement as in a contact.
+def _rows_apart(recording: Recording, rows: Rows) -> int:
+    """Number of the first of some rows, in time or against it, that are out of contact.
 
-    A negative number counts the last rows. The slope must be steep, and go on beyond these rows.
+    They end where a row departs from the line of the rows before it. Contact begins and ends with a
+    force that pulls. Where the departure pushes, rows at the end were in contact, and so were those
+    at the begin whose force changes with the displacement as in a contact; else noise hides the
+    jump into contact.
+    """
+    force = np.asarray(recording.force)[rows]
+    if force.size < 2 * _FEWEST_BASELINE:
+        return 0
+    departure = _departures(force - force[0])
+    found = np.flatnonzero(np.abs(departure) > 1)
+    if found.size == 0:
+        return int(rows.size)
+    first = int(found[0])
+    if departure[first] < 0:
+        return first
+    if rows[0] > rows[-1] or _is_contact(recording, rows, first):
+        return 0
+    # The force rises slowly from where it became positive.
+    others = np.flatnonzero(departure[:first] < 0)
+    return int(others[-1]) + 1 if others.size else first
+
+
+def _departures(force: Array) -> Array:
+    """Distance of each row from the line of the first two thirds of those before it.
+
+    It is over what noise explains and over the least force of a contact. 0 for the first rows, from
+    which no line is found.
+    """
+    sums = np.zeros((5, force.size + 1))
+    place = np.arange(force.size, dtype=float)
+    sums[:, 1:] = np.cumsum([place, place**2, force, place * force, force**2], axis=1)
+    x, y = place[_FEWEST_BASELINE:], force[_FEWEST_BASELINE:]
+    number = np.maximum(2 * x // 3, _FEWEST_BASELINE)
+    mean_x, square_x, mean_y, product, square_y = sums[:, number.astype(int)] / number
+    spread = square_x - mean_x**2
+    slope = (product - mean_x * mean_y) / spread
+    left = np.maximum(square_y - mean_y**2 - slope**2 * spread, 0.0) * number / (number - 2)
+    error = np.sqrt(left * (1 + (1 + (x - mean_x) ** 2 / spread) / number))
+    least = np.maximum(stdtrit(number - 2, 1 - _UNLIKELY) * error, _LEAST_FORCE * np.ptp(force))
+    apart = y - mean_y - slope * (x - mean_x)
+    return np.concatenate([np.zeros(_FEWEST_BASELINE), apart / np.maximum(least, _TINY)])
+
+
+def _is_contact(recording: Recording, rows: Rows, count: int) -> bool:
+    """Whether the force of the first of some rows changes with the displacement as in a contact.
+
+    The slope must be steep, and go on in as many rows beyond these.
     """
     force, moved = np.asarray(recording.force), np.asarray(recording.displacement)
     stiffness = np.nanmax(force) - np.nanmin(force)
     stiffness /= np.nanmax(moved) - np.nanmin(moved)
     slopes = []
-    for end, certainty in ((count, 0.99), (2 * count, _CERTAIN)):
-        rows = slice(None, end) if count > 0 else slice(end, None)
-        known = np.isfinite(force[rows]) & np.isfinite(moved[rows])
-        x, y = moved[rows][known], force[rows][known]
+    for chosen, certainty in ((rows[:count], 0.99), (rows[: 2 * count], _CERTAIN)):
+        x, y = moved[chosen], force[chosen]
+        x, y = x[np.isfinite(x)], y[np.isfinite(x)]
         if x.size < _FEWEST_BASELINE or np.ptp(x) == 0:
             return False
         (slope, _), covariance = np.polyfit(x - x[0], y, 1, cov=True)
@@ -409,6 +512,27 @@ def _branches(recording: Recording) -> Branches:
     return branches
 
 
+def _means(contact: _Contact, branches: Branches) -> tuple[float, float]:
+    """Works of adhesion of both branches, of the rows whose noise leaves them one."""
+    appr, retr = (rows[np.isfinite(contact.work[rows])] for rows in branches)
+    return branch_means(contact.work, (appr, retr)) if min(appr.size, retr.size) else _NO_MEANS
+
+
+def _placed(
+    recording: Recording, rig: Rig, modulus: float, zero: float, branches: Branches
+) -> tuple[_Contact, Branches, Branches, tuple[float, float]]:
+    """Contact of each row at a zero of the displacement, both branches, and what is averaged."""
+    contact = _contact(recording, rig, modulus, zero)
+    appr, retr = (rows[np.isfinite(contact.work[rows])] for rows in branches)
+    largest = max((np.max(contact.radius[rows]) for rows in (appr, retr) if rows.size), default=0)
+    if largest > rig.radius:
+        raise ValueError(
+            f"the contact radius reaches {prefixed('m', float(largest))} on a sphere of "
+            f"{prefixed('m', rig.radius)}; check the units of both"
+        )
+    return contact, (appr, retr), *_averaged(contact.radius, (appr, retr), rig.window)
+
+
 def _averaged(
     radius: Array, branches: Branches, window: tuple[float, float] | None
 ) -> tuple[Branches, tuple[float, float]]:
@@ -430,14 +554,19 @@ def _averaged(
             averaged, window = steady, (math.nan, math.nan)
         else:
             averaged, window = shared_window(radius, steady)
+        where = "that both pass after the edge has travelled"
+        advice = "retract further, record more rows, check the modulus, or name a --window"
     else:
         averaged = within(radius, branches, window)
+        where = "within the window"
+        known = radius[np.concatenate(branches)]
+        low, high = (prefixed("m", float(end)) for end in (np.min(known), np.max(known)))
+        advice = f"choose another one; the radii are {low} to {high}"
     if min(rows.size for rows in averaged) < 2 * FEWEST_STATES:
         counts = " and ".join(str(rows.size) for rows in averaged)
         raise ValueError(
-            f"approach and retraction have {counts} rows at contact radii that both pass after the "
-            f"edge has travelled; {2 * FEWEST_STATES} each are needed, so retract further, record "
-            "more rows, or name a --window"
+            f"approach and retraction have {counts} rows at contact radii {where}; "
+            f"{2 * FEWEST_STATES} each are needed, so {advice}"
         )
     return averaged, window
 
@@ -537,6 +666,47 @@ def _modulus_remark(rig: Rig, fitted: Estimate[float]) -> list[str]:
     ]
 
 
+def _pull_off(
+    force: Array, retraction: Rows, errors: Iterable[Array]
+) -> tuple[Estimate[float], float]:
+    """Largest pulling force of the retraction, by parabolas through some rows, and their noise.
+
+    The interval holds the noise, and some errors of the forces of all rows.
+    """
+    pulled = retraction[np.isfinite(force[retraction])]
+    width = max(5, pulled.size // 20 * 2 + 1)
+    smooth = scipy.signal.savgol_filter(force[pulled], width, 2)
+    place = int(np.argmin(smooth))
+    near = slice(max(place - width, 0), place + width)
+    # A parabola knows its middle to 9/4, and its ends to 9 times the variance of the mean.
+    at_end = min(place, pulled.size - 1 - place) < width // 2
+    squares = float(np.mean((force[pulled] - smooth)[near] ** 2)) * width / (width - 3)
+    variance = squares / width * (9.0 if at_end else 2.25)
+    variance += sum(float(one[pulled[place]]) ** 2 for one in errors)
+    value, reach = -float(smooth[place]), REACH * math.sqrt(variance)
+    return Estimate(value, math.sqrt(variance), value - reach, value + reach), math.sqrt(squares)
+
+
+def _pull_off_remark(rig: Rig, pull_off: Estimate[float], work: Estimate[float]) -> list[str]:
+    """A sentence where the pull-off force is not that of the work of adhesion of the retraction."""
+    least, value, most = (
+        1.5 * math.pi * rig.radius * one for one in (work.low, work.value, work.high)
+    )
+    if pull_off.high <= 0:
+        return [
+            "No force pulls in the retraction: check the zero of the force, the modulus and the "
+            "stiffness of the machine."
+        ]
+    if least <= _APART * pull_off.high and pull_off.low <= _APART * most:
+        return []
+    return [
+        f"A work of adhesion of {prefixed('J/m2', work.value)} pulls with up to "
+        f"{prefixed('N', value)}, and the loop with {prefixed('N', pull_off.value)}: check the "
+        "units, the modulus, the radius of the sphere and the stiffness of the machine, and "
+        "whether the retraction goes on to pull-off."
+    ]
+
+
 def _stiffness(
     recording: Recording, rig: Rig, modulus: Estimate[float], averaged: Branches
 ) -> Estimate[float]:
@@ -609,7 +779,8 @@ def _page(loop: MeasuredLoop) -> Iterator[str]:
         ("w_retr", loop.w_retr),
     ):
         yield f"{name:18}{text('J/m2', found.value, found.low, found.high)}"
-    yield f"{'pull-off force':18}{text('N', loop.pull_off_force)}"
+    pull = loop.pull_off_force
+    yield f"{'pull-off force':18}{text('N', pull.value, pull.low, pull.high)}"
     if math.isfinite(loop.lost_energy):
         yield f"{'energy lost':18}{text('J/m2', loop.lost_energy)} of the largest contact area"
     yield f"{'contact modulus':18}{text('Pa', loop.contact_modulus.value)}"

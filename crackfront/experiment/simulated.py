@@ -101,7 +101,7 @@ def simulated_loop(cycle: Dataset, name: str = "the cycle") -> MeasuredLoop:
         _estimate(steady, work, adhesion) for work in ("w_appr", "w_retr", "hysteresis")
     )
     nothing, modulus = Estimate(*[math.nan] * 4), sphere.contact_modulus
-    lost = _lost_energy(record)
+    lost, pull = _lost_energy(record), -float(np.min(states.force)) * sphere.force
     remarks = _ERRORS, *([_UNITS] if scales is None else []), *([_OPEN] if lost is None else [])
     return MeasuredLoop(
         force=states.force * sphere.force,
@@ -116,7 +116,7 @@ def simulated_loop(cycle: Dataset, name: str = "the cycle") -> MeasuredLoop:
         fitted_modulus=nothing,
         stiffness=nothing,
         lost_energy=math.nan if lost is None else lost * adhesion,
-        pull_off_force=-float(np.min(states.force)) * sphere.force,
+        pull_off_force=Estimate(pull, 0.0, pull, pull),
         sphere_radius=sphere.radius,
         window=(steady.lowest_radius * sphere.lateral, steady.highest_radius * sphere.lateral),
         remarks=remarks,

@@ -19,15 +19,17 @@ def loop(
     drift=0.0,
     stiffness=1e3,
     retraction=1.0,
+    preload=1.5,
     without=None,
 ):
     """A loop with a pinned edge at its turn, irregular steps and rows out of contact.
 
-    Noise and drift are relative to the largest force, that of the radius to itself. The retraction
+    The largest radius is `preload` times that of the retraction without a force. Noise and drift
+    are relative to the largest force, that of the radius to itself. The retraction
     ends at a part of its way.
     """
     random, scales = np.random.default_rng(seed), Scales(RADIUS, 1.0, MODULUS)
-    turn = 1.5 * (6 * W_RETR) ** (1 / 3)
+    turn = preload * (6 * W_RETR) ** (1 / 3)
     first, last = (1.6 * jkr.pull_off_radius(work) for work in (W_APPR, W_RETR))
     last = turn - retraction * (turn - last)
     approach = np.sort(random.uniform(first, turn, n_row))

@@ -58,6 +58,76 @@ def test_two_columns_suffice_with_a_displacement_of_unknown_zero(without, stiffn
         assert found.hysteresis.value == pytest.approx(W_RETR - W_APPR, rel=0.05)
 
 
+@pytest.mark.parametrize(
+    ("made", "given"),
+    [
+        ({"without": "radius", "drift": 0.1}, 1e3),
+        ({"without": "radius", "preload": 2.0, "drift": 0.3}, 1e3),
+        ({"without": "radius", "preload": 3.0, "force_noise": 2e-4, "stiffness": 300.0}, 300.0),
+        ({"without": "radius", "preload": 1.2, "force_noise": 0.02}, 1e3),
+        ({"without": "force", "stiffness": 300.0}, 300.0),
+        ({"without": "force", "stiffness": 300.0, "preload": 3.0}, 300.0),
+    ],
+)
+def test_two_columns_hold_the_truth_at_any_preload_and_drift(made, given):
+    held, pulled = [], []
+    for seed in range(10):
+        found = analyse_loop(loop(seed, **made), Rig(RADIUS, MODULUS, stiffness=given))
+        for name, truth in TRUTH.items():
+            estimate = getattr(found, name)
+            held.append(estimate.low <= truth <= estimate.high)
+        pulled.append(found.pull_off_force.value)
+    assert np.mean(held) >= 0.85
+    # The table ends at 1.6 times the radius of pull-off, after the largest pull.
+    pull = -jkr.pull_off_force(W_RETR) * Scales(RADIUS, 1.0, MODULUS).force
+    assert np.mean(pulled) == pytest.approx(pull, rel=0.05)
+
+
+@pytest.mark.parametrize("n_row", [100, 3000])
+def test_the_pull_off_force_is_not_that_of_the_lowest_noise(n_row):
+    one = loop(0, n_row=n_row, force_noise=0.02)
+    pull = analyse_loop(one, Rig(RADIUS, MODULUS)).pull_off_force
+    clean = -np.min(loop(0, n_row=n_row, force_noise=0.0).force)
+    assert pull.low < clean < pull.high
+    assert clean * 1.05 < -np.min(one.force)
+
+
+@pytest.mark.parametrize(
+    ("made", "rig", "remark"),
+    [
+        ({}, {"stiffness": 200.0}, "stiffness of the machine has no part"),
+        ({"without": "radius"}, {"contact_modulus": 3 * MODULUS}, "pulls with up to"),
+        ({"without": "force", "stiffness": 100.0}, {}, "No force pulls in the retraction"),
+    ],
+)
+def test_what_contradicts_itself_is_said(made, rig, remark):
+    known = {"radius": RADIUS, "contact_modulus": MODULUS} | rig
+    assert any(remark in one for one in analyse_loop(loop(0, **made), Rig(**known)).remarks)
+
+
+@pytest.mark.parametrize(
+    ("made", "rig", "sentence"),
+    [
+        ({}, {"modulus_error": 0.1, "contact_modulus": None}, "no modulus is given"),
+        ({}, {"window": (9e-5, 5e-5)}, "window is 90 um to 50 um; give a smaller and a larger"),
+        (
+            {},
+            {"window": (3e-4, 4e-4)},
+            "have 0 and 0 rows at contact radii within the window; .*um",
+        ),
+        (
+            {"preload": 5.0, "force_noise": 0.01, "without": "radius"},
+            {},
+            "press less, average rows",
+        ),
+    ],
+)
+def test_what_gives_no_works_is_refused(made, rig, sentence):
+    known = {"radius": RADIUS, "contact_modulus": MODULUS} | rig
+    with pytest.raises(ValueError, match=sentence):
+        analyse_loop(loop(0, **made), Rig(**known))
+
+
 def test_the_energy_lost_is_the_hysteresis_times_the_area_that_was_swept():
     found = analyse_loop(loop(0), Rig(RADIUS, MODULUS))
     assert found.lost_energy == pytest.approx(W_RETR - W_APPR, rel=0.1)

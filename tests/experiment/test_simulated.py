@@ -69,7 +69,7 @@ def test_a_file_in_si_units_has_them_times_w_int(cycle, tmp_path):
         work = SPHERE.work_of_adhesion * getattr(reduced, name).value
         assert getattr(found, name).value == pytest.approx(work, rel=1e-12)
     assert found.lost_energy == pytest.approx(SPHERE.work_of_adhesion * reduced.lost_energy)
-    assert found.pull_off_force == pytest.approx(-SPHERE.force * float(cycle.force.min()))
+    assert found.pull_off_force.value == pytest.approx(-SPHERE.force * float(cycle.force.min()))
     assert (found.sphere_radius, found.contact_modulus.value) == (1.25e-3, 0.93e6)
     assert found.window == pytest.approx(np.array(reduced.window) * SPHERE.lateral)
 
