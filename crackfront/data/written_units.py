@@ -7,7 +7,6 @@ import math
 import re
 import shutil
 import unicodedata
-from tokenize import TokenError
 from typing import Any
 
 from crackfront.core.private_cache import private_folder
@@ -18,6 +17,9 @@ _QUANTITY = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(\S.*?
 
 _COMMA = re.compile(r"(?<=\d),(?=\d)")
 """A comma in a number, which stands for a point in one country and for nothing in another."""
+
+_PIXELS = re.compile(r"[a-z_]*(px|pixels?|dots?)(?![a-z])", re.IGNORECASE)
+"""Pixels of a picture, of which pint has a length, that of a style sheet."""
 
 _NAMES = {
     "m": "length",
@@ -67,8 +69,11 @@ def si_value(text: str, unit: str, *, what: str) -> float:
     try:
         value = _converted(float(found[1]), _plain(found[2]), unit)
     except ValueError as error:
-        is_other = isinstance(error, DimensionError)
-        wrong = f"which is no {dimension}" if is_other else f"whose unit {found[2]} is unknown"
+        wrong = f"whose unit {found[2]} is unknown"
+        if isinstance(error, PixelError):
+            wrong = "in pixels, which have no length"
+        elif isinstance(error, DimensionError):
+            wrong = f"which is no {dimension}"
         raise ValueError(f"{what} is {text!r}, {wrong}; {example}") from error
     if not (math.isfinite(value) and value > 0):
         raise ValueError(f"{what} is {text!r}; it must be positive and finite")
@@ -97,6 +102,10 @@ def unit_value(given: str, unit: str) -> float:
     """
     try:
         return _converted(1.0, _plain(given), unit)
+    except PixelError as error:
+        raise ValueError(
+            f"the unit {given} is one of pixels, which have no length; give a unit of length"
+        ) from error
     except ValueError as error:
         raise ValueError(f"the unit {given} cannot be converted to {unit}") from error
 
@@ -114,16 +123,23 @@ class DimensionError(ValueError):
     """A unit that is of another dimension than the wanted one."""
 
 
+class PixelError(DimensionError):
+    """A unit of pixels, which say nothing of lengths."""
+
+
 def _converted(value: float, given: str, unit: str) -> float:
     """Value in a unit of a number in another one; a ValueError where it has none."""
     import pint
 
+    if _PIXELS.search(given):
+        raise PixelError(given)
+    registry = _registry()
     try:
-        return float(_registry().Quantity(value, given).to(unit).magnitude)
+        return float(registry.Quantity(value, given).to(unit).magnitude)
     except pint.DimensionalityError as error:
         raise DimensionError(str(error)) from error
-    # A unit that is no expression fails in the tokenizer of Python, which pint does not catch.
-    except (pint.PintError, TokenError, SyntaxError, TypeError) as error:
+    # A unit that is no expression fails anywhere in pint, whose parser asserts and divides.
+    except Exception as error:
         raise ValueError(str(error)) from error
 
 

@@ -1,9 +1,10 @@
 """Quantities with units: what is read, and one sentence for what is not."""
 
+import numpy as np
 import pytest
 
 from crackfront.data import written_units
-from crackfront.data.written_units import si_value
+from crackfront.data.written_units import is_unit, si_value, unit_value
 
 
 @pytest.mark.parametrize(
@@ -56,6 +57,13 @@ def test_a_quantity_is_converted_to_si(text, unit, value):
         ("0,7MPa", "write '0.7MPa' if"),
         ("0.7 N m-1", "no pressure"),
         ("0.7 N/m-2", "no pressure"),
+        ('0.7"', "unknown"),
+        ("0.7'", "unknown"),
+        ("0.7 1/0", "unknown"),
+        ("0.7//Pa", "unknown"),
+        ("0.7 MPa(", "unknown"),
+        ("0.7 px", "in pixels, which have no length"),
+        ("0.7 N/pixel2", "in pixels, which have no length"),
     ],
 )
 def test_a_missing_or_absurd_unit_is_refused_with_the_value_and_an_example(text, sentence):
@@ -63,6 +71,26 @@ def test_a_missing_or_absurd_unit_is_refused_with_the_value_and_an_example(text,
         si_value(text, "Pa", what="modulus")
     assert sentence in str(caught.value)
     assert repr(text) in str(caught.value)
+
+
+@pytest.mark.parametrize("unit", ["px", "1/px", "pixels", "dot", "dots", "css_pixel", "Mpx"])
+def test_pixels_are_no_unit_of_length(unit):
+    with pytest.raises(ValueError, match="one of pixels, which have no length; give a unit"):
+        unit_value(unit, "m")
+    assert not is_unit(unit, "m")
+
+
+def test_any_text_is_a_unit_or_refused_in_a_sentence(rng):
+    signs = np.array([*map(chr, range(32, 127)), "um", "m", "/", "^", "("])
+    refused = []
+    for _ in range(300):
+        text = "2" + "".join(rng.choice(signs, rng.integers(1, 6)))
+        try:
+            assert si_value(text, "m", what="it") > 0
+        except ValueError as error:
+            refused.append(str(error))
+    assert refused
+    assert all(sentence.startswith(("it is '2", 'it is "2')) for sentence in refused)
 
 
 @pytest.mark.parametrize("harm", [lambda content: b"", lambda content: content[:100]])
