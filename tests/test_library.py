@@ -439,6 +439,19 @@ def test_an_array_that_is_no_surface_is_refused_with_the_likely_cause(values, gi
         cf.surface(values, 4.0, **({"kind": "chemical"} | given))
 
 
+@pytest.mark.parametrize("unit", ["um", "m", "reduced"])
+def test_a_side_and_the_coordinate_of_an_array_are_compared_in_one_unit(unit):
+    places = {"um": 1e-6, "m": 1.0, "reduced": SPHERE.lateral}[unit]
+    x = 100e-6 / places * np.arange(32) / 32
+    axes = {name: (name, x, {"units": unit}) for name in "xy"}
+    values = xr.DataArray(WAVE, axes, ("x", "y"), attrs={"units": "nm"})
+    one, other = (cf.surface(values, side, sphere=SPHERE) for side in ("100um", 100e-6))
+    xr.testing.assert_allclose(one, other, rtol=1e-12)
+    for side in ("50um", 50e-6):
+        with pytest.raises(ValueError, match=rf"^side is {side}, but .* {unit}; give this side"):
+            cf.surface(values, side, sphere=SPHERE)
+
+
 @pytest.mark.parametrize("straight", [False, True])
 def test_loads_are_visited_up_and_down_by_library_and_command_alike(straight, tmp_path):
     patches = cf.surface(1 + WAVE, 4.0, kind="chemical", units="w_int")

@@ -18,7 +18,7 @@ from crackfront.data.bounds import ADHESION as VALUES
 from crackfront.data.bounds import NUMBER, Range, counted, refuse_outside
 from crackfront.data.files import UnreadableFileError, read_dataset
 from crackfront.data.labels import label, labelled, stated_unit
-from crackfront.data.written_units import unit_value
+from crackfront.data.written_units import is_unit, unit_value
 from crackfront.simulate.si_units import (
     SURFACES,
     Scales,
@@ -82,7 +82,7 @@ def surface(
     refuse_unknown_kind(kind)
     refuse_other_type("units", units, (str, type(None)), "the name of a unit")
     if isinstance(values, xr.DataArray):
-        values, units = _stated(values, side, units)
+        values, units = _stated(values, units)
     try:
         # What is masked is refused as NaN is.
         samples: Array = np.ma.array(values, dtype=float).filled(np.nan)
@@ -94,10 +94,14 @@ def surface(
     if sphere is None:
         refuse_no_numbers(side=side)
         refuse_outside("side", float(side), NUMBER)
+        if isinstance(values, xr.DataArray):
+            _refuse_other_side(values, side, None)
     else:
         refuse_no_scales(sphere)
         metres = in_si("side", side, "m")
         refuse_outside("side", metres, _SIDES, "m")
+        if isinstance(values, xr.DataArray):
+            _refuse_other_side(values, side, sphere)
         side, scale = metres / sphere.lateral, sphere.vertical
     unit, known = "m", {"reduced": 1.0}
     if kind == "chemical":
@@ -120,12 +124,10 @@ _SIDES = Range(1e-9, 1.0)
 """Sides of tiles that a sphere is pressed on. (Units: m)"""
 
 
-def _stated(
-    values: xr.DataArray, side: float | str, units: str | None
-) -> tuple[xr.DataArray, str | None]:
+def _stated(values: xr.DataArray, units: str | None) -> tuple[xr.DataArray, str | None]:
     """Values over (x, y) and their units, by what an array says of itself.
 
-    ValueError if it states other units than are given, or places that span another side.
+    ValueError if it states other units than are given.
     """
     if {*values.dims} == {"x", "y"}:
         values = values.transpose("x", "y")
@@ -139,14 +141,29 @@ def _stated(
                 "the attribute"
             )
         units = str(stated)
-    if "x" in values.coords and not isinstance(side, str) and values.sizes.get("x", 0) > 1:
-        spans = values.sizes["x"] * float(values.x[1] - values.x[0])
-        if abs(spans / side - 1) > _UNEQUAL:
-            raise ValueError(
-                f"side is {side}, but the coordinate x of the array spans {spans:.6g}; give this "
-                "side, or the values alone"
-            )
     return values, units
+
+
+def _refuse_other_side(values: xr.DataArray, side: float | str, sphere: Scales | None) -> None:
+    """Raise if the coordinate x of an array spans another side than is given."""
+    if "x" not in values.coords or values.sizes.get("x", 0) < 2:
+        return
+    unit = str(stated_unit(values.x.attrs) or "1")
+    if sphere is None or (unit == "1" and not isinstance(side, str)):
+        factor = 1.0
+    elif unit in ("reduced", LATERAL):
+        factor = sphere.lateral
+    elif is_unit(unit, "m"):
+        factor = unit_value(unit, "m")
+    else:
+        return
+    spans = values.sizes["x"] * float(values.x[1] - values.x[0])
+    wanted = float(side) if sphere is None else in_si("side", side, "m")
+    if abs(factor * spans / wanted - 1) > _UNEQUAL:
+        raise ValueError(
+            f"side is {side}, but the coordinate x of the array spans "
+            f"{spans:.6g}{'' if unit == '1' else f' {unit}'}; give this side, or the values alone"
+        )
 
 
 def _refuse_strange_mean(values: Array, units: str) -> None:
