@@ -29,11 +29,20 @@ _FEWEST_BINS, _LEAST_RANGE = 3, 2.0
 """Values, and longest over shortest wavelength, that a density needs."""
 
 _ABSCISSAS: dict[PsdAbscissa, str] = {
-    "frequency": r"frequenc|\bf(x|_x|r)?\b|\bν\b|cycles|\blines\b",
+    "frequency": r"^(?!.*angular).*(?:frequenc|\bf(x|_x|r)?\b|\bν\b|cycles|\blines\b)",
     "wavelength": r"wave ?length|\blambda\b|λ",
     "wavevector": r"wave ?(vector|number)|\b[qk](x|_x|r)?\b|angular",
 }
 """What heads call the first column."""
+
+_PER_LENGTH: dict[PsdAbscissa, str] = {
+    "frequency": r"\b(cycles?|turns?|revolutions?)\b",
+    "wavevector": r"\b(rad|radians?)\b",
+}
+"""What units count per length, by what they are units of."""
+
+_DEGREES = re.compile(r"deg|°|º|arc|grad|[a-z]rad", re.IGNORECASE)
+"""Angles of which nobody has waves per length."""
 
 _GWYDDION = r"\bpsdf\b|\bw[_ ]?[12rxy₁₂]|\bw\("
 """Heads of Gwyddion, whose densities are per wavevector."""
@@ -310,7 +319,16 @@ def _abscissa(path: Path, one: _Series, options: PsdOptions) -> tuple[PsdAbsciss
     named = _units(path, options)
     unit = named[0] if named else _written_unit(one, 0)
     head = one.heads[0].lower() if one.heads else ""
-    found = options.psd_abscissa or next(
+    counted = next(
+        (name for name, words in _PER_LENGTH.items() if re.search(words, unit, re.IGNORECASE)), None
+    )
+    if counted and options.psd_abscissa not in (None, counted):
+        raise ValueError(
+            f"{path}: the unit of the first column is {unit!r}, which is one of a {counted}; leave "
+            f"--psd-abscissa {options.psd_abscissa} out"
+        )
+    found = counted or options.psd_abscissa
+    found = found or next(
         (name for name, pattern in _ABSCISSAS.items() if re.search(pattern, head)), None
     )
     if found is None:
@@ -322,23 +340,29 @@ def _abscissa(path: Path, one: _Series, options: PsdOptions) -> tuple[PsdAbsciss
         raise ValueError(
             f"{path} states no unit of its first column; name both, as in --psd-units 1/um,um^3"
         )
-    if not is_unit(unit.replace("rad", "1"), "m" if found == "wavelength" else "1/m"):
+    plain = _uncounted(unit)
+    if _DEGREES.search(plain) or not is_unit(plain, "m" if found == "wavelength" else "1/m"):
         raise ValueError(
             f"{path}: the unit of the first column is {unit!r}, none of a {found}; name both, as "
             "in --psd-units 1/um,um^3"
         )
-    return found, unit.replace("rad", "1")
+    return found, plain
+
+
+def _uncounted(unit: str) -> str:
+    """A unit without cycles and radians, which pint takes for numbers."""
+    return re.sub("|".join(_PER_LENGTH.values()), "1", unit, flags=re.IGNORECASE)
 
 
 def _density_unit(path: Path, one: _Series, options: PsdOptions) -> str:
     """Unit of the second column."""
     named = _units(path, options)
-    unit = named[1] if named else _written_unit(one, 1)
+    unit = _uncounted(named[1] if named else _written_unit(one, 1))
     if not unit:
         raise ValueError(
             f"{path} states no unit of its density; name both, as in --psd-units 1/um,um^3"
         )
-    if not _dimension(unit, (3, 4)):
+    if _DEGREES.search(unit) or not _dimension(unit, (3, 4)):
         raise ValueError(
             f"{path}: the unit of the density is {unit!r}, neither a length^3 (of profiles) nor a "
             "length^4 (isotropic); name both, as in --psd-units 1/um,um^3"

@@ -90,6 +90,33 @@ def test_the_exports_of_programs_give_the_same_density(tmp_path, name):
     assert found.assumptions == ()
 
 
+FREQUENCIES = (
+    *("f (cycles/um)", "f (cycle/um)", "f [turns/um]", "k (cycles/um)", "q (revolutions/um)"),
+    *("f (1/um)", "spatial frequency (1/um)", "angular frequency (cycles/um)"),
+)
+WAVEVECTORS = (
+    *("q (rad/um)", "f (rad/um)", "spatial frequency (radians/um)", "k (rad µm⁻¹)"),
+    *("Angular spatial frequency (1/um)", "angular frequency (rad/um)"),
+)
+
+
+@pytest.mark.parametrize("head", FREQUENCIES + WAVEVECTORS)
+def test_cycles_and_radians_decide_and_count_2_pi_once(tmp_path, head):
+    path = tmp_path / "psd.csv"
+    first = Q * 1e-6 / (2 * np.pi if head in FREQUENCIES else 1)
+    path.write_text(f"{head},C (um^4)\n" + columns(first, 1e24 * isotropic()), encoding="utf-8")
+    found = read_psd_file(path, PsdOptions())
+    np.testing.assert_allclose(found.wavevector, Q, rtol=1e-6)
+    np.testing.assert_allclose(found.value, isotropic(), rtol=1e-6)
+
+
+def test_a_density_per_cycle_is_one_over_frequencies(tmp_path):
+    path = tmp_path / "psd.csv"
+    head = "f (cycles/um),two-sided PSD (um^2/(cycles/um))\n"
+    path.write_text(head + columns(Q * 1e-6 / (2 * np.pi), 1e18 * profile()))
+    np.testing.assert_allclose(read_psd_file(path, PsdOptions()).value, profile(), rtol=1e-6)
+
+
 def test_a_density_that_does_not_say_its_sides_is_taken_as_two_sided_with_a_sentence(tmp_path):
     path = tmp_path / "psd.csv"
     path.write_text("q (1/m),PSD (m^3)\n" + columns(Q, profile()))
@@ -106,6 +133,14 @@ def test_a_density_that_does_not_say_its_sides_is_taken_as_two_sided_with_a_sent
         ("x,y\n" + columns(Q, profile()), {}, "whether its first column is a wavevector"),
         ("q,PSD\n" + columns(Q, profile()), {}, "no unit of its first column; name both"),
         ("q (m),PSD (m^3)\n" + columns(Q, profile()), {}, "'m', none of a wavevector"),
+        ("q (deg/m),PSD (m^3)\n" + columns(Q, profile()), {}, "'deg/m', none of a wavevector"),
+        ("f (°/m),PSD (m^3)\n" + columns(Q, profile()), {}, "'°/m', none of a frequency"),
+        ("q (mrad/m),PSD (m^3)\n" + columns(Q, profile()), {}, "'mrad/m', none of a wavevector"),
+        (
+            "q (cycles/m),PSD (m^3)\n" + columns(Q, profile()),
+            {"psd_abscissa": "wavevector"},
+            "one of a frequency; leave --psd-abscissa wavevector out",
+        ),
         ("q (1/m),PSD (dB)\n" + columns(Q, profile()), {}, "'dB', neither a length"),
         ("q (1/m),PSD (m^3)\n" + columns(Q, profile()), {"psd_kind": "2d"}, "has no unit m"),
         ("q (1/m),PSD (m^3)\n" + columns(Q, -profile()), {}, "line 2: the density is -"),
