@@ -43,11 +43,17 @@ from crackfront.topography.spectrum.stated import Surface, density_surface, self
 
 _YAML = {".yaml", ".yml"}
 
-_HEAD = re.compile(r"\s*(?P<name>[^(\[]*?)\s*(?:[\[(](?P<unit>[^)\]]+)[\])])?\s*")
+_HEAD = re.compile(r"\s*(?P<name>[^(\[]*?)\s*(?:[\[(](?P<unit>[^)\]]*)[\])])?\s*")
 """A name and its unit, as in `radius (mm)`."""
 
 _BARE = re.compile(r"[-+]?(\d+[.,]?\d*|[.,]\d+)([eE][-+]?\d+)?")
 """A number without a unit."""
+
+_NO_UNIT = {"", "1", "-"}
+"""Units of numbers without a unit."""
+
+_TWO_SIDES = re.compile(r"\d+,\d+")
+"""Sides of a scan that are as well one with a decimal comma."""
 
 _BETWEEN_FILES = re.compile(r"\s*[|;\n]\s*")
 
@@ -315,38 +321,64 @@ def _table_rows(path: Path) -> Iterator[tuple[int, dict[str, Any]]]:
     between = max("\t;,", key=first.count)
     reader = csv.reader(lines, delimiter=between)
     heads: list[tuple[str, str]] = []
+    signs: set[str] = set()
     for cells in reader:
         cells = [cell.strip() for cell in cells]
         if not any(cells) or cells[0].startswith("#"):
             continue
+        where = f"{path}, line {reader.line_num}"
         if not heads:
-            heads = [_head(cell) for cell in cells]
+            heads = [_head(cell, where) for cell in cells]
             names = [name for name, _ in heads if name]
             if twice := next((name for name in names if names.count(name) > 1), None):
-                raise ValueError(
-                    f"{path}, line {reader.line_num}: two columns are called {twice!r}"
-                )
+                raise ValueError(f"{where}: two columns are called {twice!r}")
             continue
         if len(cells) > len(heads) and any(cells[len(heads) :]):
             raise ValueError(
-                f"{path}, line {reader.line_num}: the row has {len(cells)} cells and the heads are "
+                f"{where}: the row has {len(cells)} cells and the heads are "
                 f"{len(heads)}; write {between!r} between cells alone, or quotes around them"
             )
-        pairs = zip(heads, cells, strict=False)
+        row = {name: (cell, unit) for (name, unit), cell in zip(heads, cells, strict=False) if name}
+        if between != ",":
+            signs |= _decimal_signs({name: cell for name, (cell, _) in row.items()}, where)
+            if len(signs) > 1:
+                raise ValueError(
+                    f"{where}: the table has numbers with decimal points and with decimal commas; "
+                    "write one of them"
+                )
         yield (
             reader.line_num,
-            {
-                name: _with_unit(cell, unit, between)
-                for (name, unit), cell in pairs
-                if name and cell
-            },
+            {name: _with_unit(cell, unit, between) for name, (cell, unit) in row.items() if cell},
         )
 
 
-def _head(cell: str) -> tuple[str, str]:
-    """Name and unit in the head of a column."""
+def _decimal_signs(row: Mapping[str, str], where: str) -> set[str]:
+    """Decimal signs of the numbers in a row, without those of names and of sides."""
+    size = row.get("size", "")
+    if _TWO_SIDES.fullmatch(size):
+        raise ValueError(
+            f"{where}: size is {size!r}, one side or two; write {size.replace(',', ', ')!r} for "
+            f"two sides, or {size.replace(',', '.')!r} for one"
+        )
+    numbers = (
+        cell
+        for name, cell in row.items()
+        if name not in ("sample", "group", "size") and _BARE.fullmatch(cell)
+    )
+    return {sign for cell in numbers for sign in ",." if sign in cell}
+
+
+def _head(cell: str, where: str) -> tuple[str, str]:
+    """Name and unit in the head of a column, refused where a number is part of the unit."""
     found = _HEAD.fullmatch(cell)
-    name, unit = (found["name"], found["unit"] or "") if found else (cell, "")
+    name, unit = (found["name"], (found["unit"] or "").strip()) if found else (cell, "")
+    if unit in _NO_UNIT:
+        unit = ""
+    elif re.match(r"[-+.,]?\d", unit):
+        raise ValueError(
+            f"{where}: the unit of the column {name!r} is {unit!r}, which begins with a number; "
+            "write a unit alone, as in mJ/m2, and the cells in it"
+        )
     return re.sub(r"[\s-]+", "_", name.strip().lower()), unit
 
 
@@ -376,7 +408,8 @@ def _yaml_rows(path: Path) -> Iterator[tuple[int, dict[str, Any]]]:
             f"{path} has no list of samples; write 'samples:' with '- sample: A' below"
         )
     for row in rows:
-        cells = {_head(str(name)): value for name, value in row.items() if value is not None}
+        where = f"{path}, line {row.lc.line + 1}"
+        cells = {_head(str(name), where): value for name, value in row.items() if value is not None}
         yield (
             row.lc.line + 1,
             {

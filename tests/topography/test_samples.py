@@ -87,6 +87,44 @@ def test_the_page_shows_the_table_of_the_example_and_its_scans_are_there():
     assert first.measured["hysteresis"].value == pytest.approx(27e-3)
 
 
+@pytest.mark.parametrize("unit", ["(1)", "[1]", "(-)", "()", "[ ]"])
+@pytest.mark.parametrize("name", ["samples.csv", "excel.csv", "samples.yaml"])
+def test_a_pure_number_in_the_unit_of_a_head_is_no_unit(tmp_path, name, unit):
+    path = tmp_path / name
+    text = TABLES[name].replace("hurst: 0.8", f"'hurst {unit}': 0.8")
+    path.write_text(text.replace("hurst;", f"hurst {unit};").replace("hurst,", f"hurst {unit},"))
+    assert [one.numbers.hurst for one in read_samples(path, SPHERE)] == [0.8, 0.8]
+
+
+@pytest.mark.parametrize("name", ["samples.csv", "excel.csv", "samples.yaml"])
+def test_a_unit_that_begins_with_a_number_is_refused(tmp_path, name):
+    path = tmp_path / name
+    path.write_text(TABLES[name].replace("rms (nm)", "rms (10^1 nm)"))
+    with pytest.raises(ValueError, match=r"'rms' is '10\^1 nm', which begins with a number; write"):
+        read_samples(path, SPHERE)
+
+
+def test_two_sides_between_semicolons_are_no_number_with_a_decimal_comma(tmp_path):
+    path, head = tmp_path / "samples.csv", "sample;scans;unit;tip radius (nm);size\n"
+    (tmp_path / "a.txt").write_text("1 2\n")
+    for size, expected in (("50, 25", (50, 25)), ("50.5", (50.5,)), ("50", (50,))):
+        path.write_text(f"{head}A;a.txt;um;20,5;{size}\n")
+        [found] = read_samples(path, SPHERE)
+        assert found.reading[0].size == expected
+    path.write_text(f"{head}A;a.txt;um;20,5;50,25\n")
+    with pytest.raises(ValueError, match=r"line 2: size is '50,25', one side or two; write '50, 2"):
+        read_samples(path, SPHERE)
+
+
+@pytest.mark.parametrize("between", [";", "\t"])
+def test_numbers_with_both_decimal_signs_are_refused(tmp_path, between):
+    path = tmp_path / "samples.csv"
+    text = CSV.replace(",", between).replace(".", ",")
+    path.write_text(text.replace(f"{between}40{between}", f"{between}40.000{between}"))
+    with pytest.raises(ValueError, match="line 4: the table has numbers with decimal points and"):
+        read_samples(path, SPHERE)
+
+
 @pytest.mark.parametrize(
     ("old", "new", "sentence"),
     [
