@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -50,6 +51,9 @@ _FEWEST_OCTAVES = 2
 
 _FEWEST_POINTS = 8
 """Points along a side that a crop must leave."""
+
+_ROUNDING = 1e-3
+"""Rms difference of heights that are written with other digits, over their rms."""
 
 _SCANNING_PROBES = {"di", "ezd", "ibw", "jpk", "mdt", "mi", "ps", "wsxm"}
 """Formats of scanning probes, whose files seldom say what their tip is."""
@@ -140,7 +144,25 @@ def read_measurements(
     if options is None or isinstance(options, ReadingOptions):
         options = [options or ReadingOptions()] * len(paths)
     pairs = zip(paths, options, strict=True)
-    return tuple(one for path, given in pairs for one in _measurements(path, given))
+    found = tuple(one for path, given in pairs for one in _measurements(path, given))
+    for first, second in itertools.combinations(found, 2):
+        if _is_same(first, second):
+            raise ValueError(
+                f"{second.path} holds the heights of {first.path}; a measurement counts once"
+            )
+    return found
+
+
+def _is_same(first: Measurement, second: Measurement) -> bool:
+    """Whether two measurements are copies, or have the same heights but for their rounding."""
+    if (first.checksum, first.channel) == (second.checksum, second.channel):
+        return True
+    if first.heights.shape != second.heights.shape:
+        return False
+    allowed = _ROUNDING * float(np.std(first.heights))
+    if abs(float(np.std(second.heights)) - allowed / _ROUNDING) > allowed:
+        return False
+    return bool(np.std(second.heights - first.heights) <= allowed)
 
 
 def _measurements(path: Path, options: ReadingOptions) -> Iterator[Measurement]:

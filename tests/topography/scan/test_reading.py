@@ -9,6 +9,7 @@ from crackfront.topography.scan.instruments import surface_library
 from crackfront.topography.scan.reading import read_measurements
 from studies.accuracy import scans
 from tests.topography.made import (
+    HEAD,
     SIDE,
     measured_mean_square,
     one_cell,
@@ -72,10 +73,23 @@ def test_a_mask_is_left_out_of_the_levelling_and_stays_in_the_map(tmp_path, nois
 
 
 def test_several_files_may_have_options_each(tmp_path, noise):
-    paths = [write_text(tmp_path / f"{number}.txt", noise) for number in range(2)]
+    paths = [write_text(tmp_path / f"{n}.txt", one) for n, one in enumerate((noise, noise[::-1]))]
     both = [ReadingOptions(detrend="center"), ReadingOptions(detrend=4)]
     found = read_measurements(paths, both)
     assert [item.levelling for item in found] == ["the mean", "the polynomial of order 4"]
+
+
+def test_a_measurement_counts_once_under_any_name_in_any_unit(tmp_path, noise):
+    path = write_text(tmp_path / "scan.txt", noise)
+    copy, nanometres, mirrored = (tmp_path / f"{name}.txt" for name in ("copy", "nm", "mirrored"))
+    copy.write_bytes(path.read_bytes())
+    np.savetxt(nanometres, 1e9 * noise.T, fmt="%.1f")
+    nanometres.write_text(HEAD.replace("units: um", "units: nm") + nanometres.read_text())
+    for other in (copy, nanometres):
+        assert f"{other} holds the heights of {path}; a measurement counts" in refusal(path, other)
+    with pytest.raises(ValueError, match=r"copy.txt holds the heights of .*scan.txt"):
+        read_measurements([path, copy], [ReadingOptions(), ReadingOptions(detrend="center")])
+    assert len(read_measurements([path, write_text(mirrored, noise[::-1])])) == 2
 
 
 @pytest.mark.parametrize(
