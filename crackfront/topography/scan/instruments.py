@@ -452,6 +452,11 @@ def _default(reader: Any) -> int | None:
 def _channel(path: Path, reader: Any, wanted: str | None) -> tuple[Any, str]:
     """A channel of heights, the library's own choice if none is named, and what it is called."""
     known = _channels(path, reader)
+    if not known and _is_tiff(path):
+        raise ValueError(
+            f"{path} is a picture in TIFF, which states no unit of its heights; export it from the "
+            "instrument again, as X3P if there is a choice, or the heights as text"
+        )
     if not known:
         raise ValueError(
             f"{path} holds no array of numbers in two dimensions; export the heights as one"
@@ -478,6 +483,12 @@ def _channel(path: Path, reader: Any, wanted: str | None) -> tuple[Any, str]:
     several = f", {found.number} of {len(known)}" if len(known) > 1 else ""
     [channel] = [one for one in reader.channels if one.index == found.number]
     return channel, f"{found.name!r}{several}"
+
+
+def _is_tiff(path: Path) -> bool:
+    """Whether a file begins as a picture in TIFF."""
+    with path.open("rb") as file:
+        return file.read(4) in (b"II*\0", b"MM\0*")
 
 
 def _kind(channel: Any) -> str:

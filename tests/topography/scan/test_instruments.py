@@ -102,6 +102,15 @@ def test_a_file_without_a_map_is_refused(tmp_path, noise):
     assert "holds no array" in refusal(write_arrays(tmp_path / "a.h5", x=noise[0]), **PLAIN)
 
 
+@pytest.mark.parametrize("mode", ["F", "I;16"])
+def test_a_picture_in_tiff_is_refused_with_what_to_export(tmp_path, noise, mode):
+    path = tmp_path / "scan.tif"
+    numbers = (1e9 * noise - 1e9 * noise.min()).astype("float32" if mode == "F" else "uint16")
+    image = pytest.importorskip("PIL.Image")
+    image.frombytes(mode, noise.shape, numbers.tobytes()).save(path)
+    assert "is a picture in TIFF, which states no unit of its heights; export" in refusal(path)
+
+
 @pytest.mark.parametrize("unit", ["um", "µm", "\u03bcm", "micron", "micrometer"])
 def test_a_unit_of_length_is_known_by_any_of_its_names(tmp_path, noise, unit):
     path = tmp_path / "plain.npy"
