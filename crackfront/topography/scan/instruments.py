@@ -18,7 +18,7 @@ import numpy as np
 
 from crackfront.data.bounds import counted
 from crackfront.data.optional_libraries import MissingExtraError
-from crackfront.data.written_units import prefixed, unit_value
+from crackfront.data.written_units import is_unit, prefixed, unit_value
 from crackfront.topography.options import ReadingOptions
 from crackfront.topography.scan.containers import contained_surfaces
 from crackfront.topography.scan.deferred_import import import_without_executing, import_without_mpi
@@ -28,10 +28,11 @@ from crackfront.topography.scan.points import (
     Points,
     are_points,
     even_line,
+    point_columns,
     read_points,
     refuse_positions,
 )
-from crackfront.topography.scan.psd import column_lengths, refuse_spectrum
+from crackfront.topography.scan.psd import column_heads, refuse_spectrum
 from crackfront.topography.scan.text import NumberText, number_text
 
 _LIBRARY = "SurfaceTopography"
@@ -290,8 +291,12 @@ def _text_reader(path: Path, text: NumberText) -> Any:
     """Reader of a text, of points or of a matrix of heights."""
     kind = next((_TEXT_HEADS[one] for one in _TEXT_HEADS if text.lines[0].startswith(one)), None)
     unit, factor, info = None, None, {}
+    heads: Sequence[tuple[str, str]] = ()
     if kind in (None, "comments"):
         refuse_spectrum(path, text)
+        heads = column_heads(text)
+        if heads and (places := point_columns(path, [name for name, _ in heads])):
+            text, heads = text.with_columns(places), [heads[place] for place in places]
     is_matrix = kind != "dektak" and not are_points(text)
     if kind is not None and not is_matrix:
         library_part("IO").readers  # noqa: B018  # Its modules for texts import each other.
@@ -310,24 +315,35 @@ def _text_reader(path: Path, text: NumberText) -> Any:
         with _errors_as_sentences(path, "text"):
             return library_part("IO").AscReader(io.StringIO("\n".join([*text.lines, ""])))
     if unit is None:
-        unit, factor = _stated_units(text)
+        unit, factor = _stated_units(path, heads)
     points = read_points(path, text, kind)
     heights = points.heights * (factor or 1.0)
     grid = Grid("default", Points(heights, points.size), None)
     return _GridsReader("xyz", [grid], unit, info)
 
 
-def _stated_units(text: NumberText) -> tuple[str | None, float]:
+def _stated_units(path: Path, heads: Sequence[tuple[str, str]]) -> tuple[str | None, float]:
     """Unit of the places of points, and that of their heights in it, as the heads state them.
 
-    The unit is None unless all columns have one, of which the last has the heights, and the places
-    the same.
+    The unit is None where no column has one; ValueError where some have none, or places several.
     """
-    units = [_length_unit("", one) for one in column_lengths(text)]
-    if len(units) < 2 or len(set(units[:-1])) > 1:
+    lengths = [unit for _, unit in heads if _is_length(unit)]
+    if not lengths:
         return None, 1.0
+    units = [_length_unit("", unit) for unit in lengths]
+    if len(units) < len(heads) or len(set(units[:-1])) > 1:
+        shown = ", ".join(f"{name} ({unit})" if unit else name for name, unit in heads)
+        raise ValueError(
+            f"{path}: its columns are {shown}; name those of the points x, y and z, each with its "
+            "unit of length and x and y in the same, as in x (um),y (um),z (nm)"
+        )
     place, height = units[0], units[-1]
     return place, in_metres(height, 1.0)[0] / in_metres(place, 1.0)[0]
+
+
+def _is_length(unit: str) -> bool:
+    """Whether a text is the name of a unit of length."""
+    return unit != "" and not unit[0].isdigit() and is_unit(unit, "m")
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -36,6 +37,16 @@ _FEWEST_FILLED = 0.05
 """Least part of the places of a grid that have a point; with fewer it is no grid."""
 
 
+_NAMES = {
+    "x": r"(x|position|distance)",
+    "y": r"y",
+    "z": r"(z|heights?|elevation|topography)",
+}
+"""What heads call the columns of points, with or without the words below."""
+
+_WORDS = r"([ _-]?(position|coordinate|axis|height)s?)?"
+
+
 @dataclass(frozen=True, slots=True)
 class Points:
     """Heights of a map or a line, on the grid of its positions, in the units of the file."""
@@ -43,6 +54,30 @@ class Points:
     heights: np.ndarray[Any, Any]
     """Masked where the file has no point."""
     size: tuple[float, ...]
+
+
+def point_columns(path: Path, names: Sequence[str]) -> list[int]:
+    """Places of the columns that heads name x, y and z, in this order; none if not both are named.
+
+    ValueError where the order of the columns contradicts the only name.
+    """
+    found = {
+        key: [
+            place
+            for place, name in enumerate(names)
+            if re.fullmatch(pattern + _WORDS, name.strip(), re.IGNORECASE)
+        ]
+        for key, pattern in _NAMES.items()
+    }
+    places = [place for key in "xy" for place in found[key]]
+    if max(map(len, found.values())) == 1 and places and found["z"]:
+        return [*places, *found["z"]]
+    if found["z"] and len(names) - 1 not in found["z"]:
+        raise ValueError(
+            f"{path}: its columns are {', '.join(map(repr, names))}; name those of the points x, y "
+            "and z, once each, or write the heights in the last one"
+        )
+    return []
 
 
 def read_points(path: Path, text: NumberText, kind: str | None) -> Points:

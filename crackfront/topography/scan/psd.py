@@ -54,7 +54,7 @@ _HEIGHTS = r"height|topograph|elevation|position|distance|\b[xz]\b"
 """Heads of line scans."""
 
 _UNIT = re.compile(r"[\[(]\s*([^\[\]()]+(?:\([^()]*\)[^\[\]()]*)?)\s*[\])]|\s/\s*(\S.*)$")
-_BRACKETED = re.compile(r"[\[(][^\[\]()]+[\])]")
+_BRACKETED = re.compile(r"[^\[\]()]*[\[(][^\[\]()]+[\])]")
 _UNIT_OF_LENGTH = re.compile(r"[\[(]\s*([^\[\]()]+?)\s*[\])]|/\s*([A-Za-zµμ]\S*)\s*$")
 _MARKUP = re.compile(r"</?su[bp]>")
 _SPLITS = (r";", r"\t", r",", r"\s{2,}", r"\s+")
@@ -171,24 +171,21 @@ def refuse_spectrum(path: Path, text: NumberText) -> None:
         )
 
 
-def column_lengths(text: NumberText) -> list[str]:
-    """Units of length in the heads of all columns; empty where one of them has none."""
+def column_heads(text: NumberText) -> tuple[tuple[str, str], ...]:
+    """Name and unit of every column, as heads have them; nothing where no head has them all."""
+    if text.n_column > _MOST_COLUMNS:
+        return ()
     lines = [_MARKUP.sub("", line.strip().lstrip("#%! ")) for line in text.head]
     lines = [line for line in lines if line.strip(" -=")]
     heads, below = _heads(lines, text.n_column)
-    cells = below or heads
-    if not cells and lines:
+    if not heads and lines:
         # Names and units between blanks alone, as in x [um] z [nm].
-        bracketed = tuple(found[0] for found in _BRACKETED.finditer(lines[-1]))
-        cells = bracketed if len(bracketed) == text.n_column else ()
-    units = [cell.strip("[]() ") if below else _unit_of_length(cell) for cell in cells]
-    # Of a column without one, as of numbers of points or of a signal, nothing says what it is.
-    return units if all(map(_is_length, units)) else []
-
-
-def _is_length(unit: str) -> bool:
-    """Whether a text is the name of a unit of length."""
-    return unit != "" and not unit[0].isdigit() and is_unit(unit, "m")
+        bracketed = tuple(_BRACKETED.findall(lines[-1]))
+        heads = bracketed if len(bracketed) == text.n_column else ()
+    if below:
+        names = heads or ("",) * len(below)
+        return tuple((name, unit.strip("[]() ")) for name, unit in zip(names, below, strict=True))
+    return tuple((_UNIT_OF_LENGTH.sub("", head).strip(), _unit_of_length(head)) for head in heads)
 
 
 def _unit_of_length(head: str) -> str:

@@ -68,6 +68,15 @@ class NumberText:
         first = next(row for row in self.rows if len(self.lines[row].split()) == self.n_column)
         return self.lines[:first]
 
+    def with_columns(self, places: Sequence[int]) -> NumberText:
+        """The text with some of the columns of its rows, in another order."""
+        lines = list(self.lines)
+        rows = [row for row in self.rows if len(lines[row].split()) == self.n_column]
+        for row in rows:
+            cells = lines[row].split()
+            lines[row] = " ".join(cells[place] for place in places)
+        return NumberText(tuple(lines), tuple(rows), len(places))
+
 
 def decoded(path: Path) -> str | None:
     """Content of a text file; None of any other. ValueError if it contradicts its own encoding."""

@@ -106,20 +106,77 @@ def test_units_in_the_heads_of_columns_are_those_of_the_points(tmp_path, line, h
     assert "leave out --height-unit nm" in refusal(path, height_unit="nm")
 
 
+COLUMNS = {
+    "z (nm),x (um)": "{z},{x}",
+    "height [nm],position [um]": "{z},{x}",
+    "n,x (um),z (nm)": "{i},{x},{z}",
+    "t (s),x (um),z (nm)": "{i},{x},{z}",
+    "x (um),z (nm),quality": "{x},{z},97",
+    "quality,z (nm),x (um),signal (V)": "97,{z},{x},0.5",
+    "x-axis (um),quality,quality 2,z height (nm)": "{x},97,1,{z}",
+}
+
+
+@pytest.mark.parametrize("head", COLUMNS)
+def test_columns_are_those_that_heads_name_x_and_z(tmp_path, line, head):
+    path = tmp_path / "line.csv"
+    cells = (
+        COLUMNS[head].format(i=i, x=f"{0.1 * i:.4f}", z=f"{1e9 * z:.6f}")
+        for i, z in enumerate(line)
+    )
+    path.write_text("\n".join([head, *cells]))
+    found = read(path, detrend="center")
+    assert found.size == pytest.approx((0.1e-6 * COUNT,))
+    np.testing.assert_allclose(found.heights, line - line.mean(), atol=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("head", "row"),
+    [
+        ("i,x (um),y (um),z (nm)", "{i},{x},{y},{z}"),
+        ("x (um),y (um),z (nm),quality", "{x},{y},{z},{q}"),
+        ("z (nm),y (um),x (um)", "{z},{y},{x}"),
+        ("quality,y (um),x (um),signal (V),z (nm)", "{q},{y},{x},{q},{z}"),
+    ],
+)
+def test_columns_of_a_map_are_those_that_heads_name(tmp_path, noise, head, row):
+    path = tmp_path / "map.csv"
+    cells = (
+        row.format(i=n, x=f"{0.4 * i:.4g}", y=f"{0.4 * j:.4g}", z=f"{1e9 * z:.6f}", q=90 + n % 7)
+        for n, ((i, j), z) in enumerate(np.ndenumerate(noise[:, :40]))
+    )
+    path.write_text("\n".join([head, *cells]))
+    found = read(path, detrend="center")
+    assert found.size == pytest.approx((48 * 0.4e-6, 40 * 0.4e-6))
+    wanted = noise[:, :40] - noise[:, :40].mean()
+    np.testing.assert_allclose(found.heights, wanted, atol=1e-14)
+
+
 @pytest.mark.parametrize(
     "head",
     [
-        *("x (um),z", "x,z (nm)", "x (um),z (V)"),
-        *("n,x (um),z (nm)", "t (s),x (um),z (nm)", "x (mm),y (um),z (nm)"),
+        *("x (um),z", "x,z (nm)", "x (um),z (V)", "a,b (um),c (nm)"),
+        *("x (mm),y (um),z (nm)", "z (nm),z (um),x (um)", "height (nm),time (s)", "x (px),z (nm)"),
     ],
 )
-def test_heads_without_the_same_length_for_each_place_state_no_unit(tmp_path, line, head):
+def test_heads_that_do_not_state_a_length_for_each_column_are_refused(tmp_path, line, head):
     path = tmp_path / "line.csv"
-    first = "3.0," if head.count(",") > 1 else ""
-    rows = (f"{first}{0.1 * i:.4f},{1e9 * z:.6f}\n" for i, z in enumerate(line))
-    path.write_text(f"{head}\n{''.join(rows)}")
+    first = "{0}," if head.count(",") > 1 else ""
+    rows = (f"{first.format(0.1 * i)}{0.1 * i:.4f},{1e9 * z:.6f}" for i, z in enumerate(line))
+    path.write_text("\n".join([head, *rows]))
+    for given in ({}, {"unit": "um"}):
+        message = refusal(path, **given)
+        assert "its columns are" in message
+        assert "--unit" not in message
+
+
+def test_heads_without_any_unit_need_one(tmp_path, line):
+    path = tmp_path / "line.csv"
+    path.write_text("z,x\n" + "".join(f"{1e6 * z:.9f},{0.1 * i:.4f}\n" for i, z in enumerate(line)))
     assert "states no unit of length; name it, as in --unit um" in refusal(path)
     assert "--unit 1um is no unit of length" in refusal(path, unit="1um")
+    found = read(path, unit="um", detrend="center")
+    np.testing.assert_allclose(found.heights, line - line.mean(), atol=1e-14)
 
 
 def test_a_line_of_a_stylus_with_one_decimal_is_read_in_its_units(tmp_path, line):
