@@ -145,24 +145,18 @@ def read_measurements(
         options = [options or ReadingOptions()] * len(paths)
     pairs = zip(paths, options, strict=True)
     found = tuple(one for path, given in pairs for one in _measurements(path, given))
-    for first, second in itertools.combinations(found, 2):
-        if _is_same(first, second):
+    spreads = [float(np.std(one.heights)) for one in found]
+    for (first, one), (second, other) in itertools.combinations(
+        zip(found, spreads, strict=True), 2
+    ):
+        is_alike = first.heights.shape == second.heights.shape
+        is_alike = is_alike and abs(one - other) <= _ROUNDING * one
+        is_copy = (first.checksum, first.channel) == (second.checksum, second.channel)
+        if is_copy or (is_alike and np.std(second.heights - first.heights) <= _ROUNDING * one):
             raise ValueError(
                 f"{second.path} holds the heights of {first.path}; a measurement counts once"
             )
     return found
-
-
-def _is_same(first: Measurement, second: Measurement) -> bool:
-    """Whether two measurements are copies, or have the same heights but for their rounding."""
-    if (first.checksum, first.channel) == (second.checksum, second.channel):
-        return True
-    if first.heights.shape != second.heights.shape:
-        return False
-    allowed = _ROUNDING * float(np.std(first.heights))
-    if abs(float(np.std(second.heights)) - allowed / _ROUNDING) > allowed:
-        return False
-    return bool(np.std(second.heights - first.heights) <= allowed)
 
 
 def _measurements(path: Path, options: ReadingOptions) -> Iterator[Measurement]:
