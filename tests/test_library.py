@@ -491,6 +491,14 @@ def test_a_straight_front_has_the_works_of_adhesion_of_a_period_of_its_tile():
     assert "so load further" in short.attrs["steady_sentence"]
 
 
+@pytest.mark.parametrize("loads", [(20, 5, 14), (10, -5, 5), (0, 8, 0, 30), (0, 30, 22, 30, 0)])
+def test_loads_that_turn_several_times_count_no_place_twice_and_leave_none_out(loads):
+    """At weak disorder no front is pinned, whatever part of the tile it passes."""
+    surface = cf.random_surface(0.8, 0.01, side=6.4, kind="chemical", seed=3)
+    found = cf.run_loop(cf.straight_front(surface, spring=1.0), loads=loads, step=0.1)
+    assert abs(float(found.hysteresis)) < 2e-3
+
+
 @pytest.mark.parametrize(
     ("loads", "sentence"),
     [

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -17,7 +18,9 @@ from crackfront.core.geometry.line import LineState
 from crackfront.core.geometry.sphere import ContactState
 from crackfront.core.variables import ADHESION, LATERAL, variable
 
-Branches = tuple[NDArray[np.int64], NDArray[np.int64]]
+Rows = NDArray[np.int64]
+
+Branches = tuple[Rows, Rows]
 """Indices, in a record, of the states of the approach and of the retraction."""
 
 _ROUND_OFF = 1e-5
@@ -28,7 +31,8 @@ STEADY_DEFINITION = (
     "the front, over the steady states of a branch. A state is steady once every site of the "
     "front has travelled at least one correlation length of w_loc since its branch began, so that "
     "the start and the transient after reversal are left out. Both branches are averaged over the "
-    "same window of mean radii, the overlap of the ranges of their steady states. All states of "
+    "same window of mean radii, the overlap of the ranges of their steady states; under loads that "
+    "turn several times a branch is one way without a turn. All states of "
     f"the load schedule in it have equal weight; each branch needs at least {FEWEST_STATES}. An "
     "experimenter's estimate is the work of adhesion of the JKR curve F = a^3 - sqrt(6 w a^3) "
     "(reduced units) that fits force against mean radius best, by least squares of the force "
@@ -117,12 +121,22 @@ def steady_branches(
     correlation_length: float,
     period: float = math.inf,
 ) -> tuple[Branches, tuple[float, float], str]:
-    """Steady states of both branches, the range of places they share, and why they are too few."""
+    """Steady states of both branches, the range of places they share, and why they are too few.
+
+    Under loads that turn several times a branch is one way without a turn, so that no place is
+    passed twice or left out: of all pairs of ways that which shares the most states.
+    """
     steady = states.least_travel >= correlation_length
-    approach, retraction = (
-        np.flatnonzero(steady & (sign * states.direction > 0)) for sign in (1, -1)
+    forward, back = (
+        _ways(np.flatnonzero(steady & (sign * states.direction > 0))) for sign in (1, -1)
     )
-    branches = approach, retraction
+    pairs: list[Branches] = list(itertools.product(forward, back))
+
+    def n_shared(pair: Branches) -> int:
+        return min(branch.size for branch in shared_window(place, pair, period)[0])
+
+    branches = max(pairs, key=n_shared) if len(pairs) > 1 else pairs[0]
+    approach, retraction = branches
     deeper = "penetrate deeper" if isinstance(states, ContactState) else "load further"
     needed = f"{FEWEST_STATES} each are needed, so {deeper} or use a smaller load step"
     if min(approach.size, retraction.size) < FEWEST_STATES:
@@ -134,6 +148,11 @@ def steady_branches(
         sentence = f"the steady branches share {counts} at equal mean {name}; {needed}"
         return branches, window, sentence
     return branches, window, ""
+
+
+def _ways(states: Rows) -> list[Rows]:
+    """States of one direction, apart where others are between them."""
+    return np.split(states, np.flatnonzero(np.diff(states) > 1) + 1)
 
 
 def shared_window(

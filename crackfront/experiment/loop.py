@@ -13,7 +13,7 @@ from scipy.special import stdtrit
 
 from crackfront.analysis.estimate import REACH, Estimate
 from crackfront.analysis.standard_error import FEWEST_STATES
-from crackfront.analysis.steady import Branches, branch_means, shared_window, within
+from crackfront.analysis.steady import Branches, Rows, branch_means, shared_window, within
 from crackfront.core import jkr
 from crackfront.core.arrays import Array
 from crackfront.core.units import Scales
@@ -21,8 +21,6 @@ from crackfront.core.variables import variable
 from crackfront.data.written_units import prefixed
 from crackfront.experiment.contact import force_at, penetration_at, radius_at
 from crackfront.experiment.recording import Recording
-
-Rows = NDArray[np.int64]
 
 _BLOCKS = 10
 """Parts of a branch, each of which is left out once to find the errors of noise."""
