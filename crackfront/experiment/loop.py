@@ -396,6 +396,8 @@ def _with_zero_force(recording: Recording) -> tuple[Recording, list[Array], list
     largest = prefixed("N", float(np.max(np.abs(zero[touching]))))
     kind = "a drift and a zero" if order else "a zero"
     sentence = f"{chosen.size} rows out of contact give {kind} of the force, up to {largest}."
+    if not order:
+        sentence += " Its drift is unknown, as no rows are out of contact on the other side."
     return replace(recording, force=force - zero), errors, [sentence]
 
 

@@ -137,6 +137,7 @@ def test_an_unclosed_loop_has_no_lost_energy_and_says_so():
     found = analyse_loop(loop(0, retraction=0.6), Rig(RADIUS, MODULUS))
     assert np.isnan(found.lost_energy)
     assert any("energy lost is not known" in remark for remark in found.remarks)
+    assert any("Its drift is unknown" in remark for remark in found.remarks)
 
 
 def test_errors_of_modulus_and_radius_widen_the_intervals():
