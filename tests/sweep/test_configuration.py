@@ -344,6 +344,18 @@ BAD = {
         "per short cutoff of flat, with which k comes out too large; use 225 or more, as "
         "angles_per_cutoff: 2 does",
     ),
+    "too few cubic samples": (
+        ("samples_per_cutoff: 4", "samples_per_cutoff: 1.9"),
+        "numerics: samples_per_cutoff is 1.9, with which cubic pieces miss waves of flat and k "
+        "comes out too small; use 2 or more",
+    ),
+    "too few linear samples": (
+        (
+            "samples_per_cutoff: 4\n  interpolation: cubic",
+            "samples_per_cutoff: 2\n  interpolation: linear",
+        ),
+        "with which linear pieces miss waves of flat and k comes out too small; use 3 or more",
+    ),
     "three angles": (
         ("angles_per_cutoff: 2", "angles: 3"),
         "numerics.angles is 3; it must lie between 4 and 1e+15",
