@@ -203,6 +203,12 @@ def _refuse_too_coarse(simulation: Simulation, requested: Settings | float) -> N
             f"numerics: tolerance is {tolerance}, below the round-off of the {sizes.n_angle} "
             f"sites of {name} ({round_off:.1e}); raise it"
         )
+    if isinstance(requested, Settings) and tolerance > energy:
+        raise ValueError(
+            f"numerics: tolerance is {tolerance:g}, above e_el {energy:.3g} of {name}, to which "
+            "forces of pinning are proportional, so that k comes out too large; use "
+            f"{energy / 10:.1g} or less"
+        )
     if isinstance(requested, float) and (left := missed_error(simulation, requested)):
         raise ValueError(
             f"numerics: error is {requested:g}, but the finest numerics leave {left:.2g} for "

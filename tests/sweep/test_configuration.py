@@ -376,6 +376,11 @@ BAD = {
         ("tolerance: 1e-6", "tolerance: 1e-14"),
         "below the round-off of the 240 sites of flat",
     ),
+    "tolerance above the forces": (
+        ("tolerance: 1e-6", "tolerance: 0.03"),
+        "numerics: tolerance is 0.03, above e_el 0.02 of flat, to which forces of pinning are "
+        "proportional, so that k comes out too large; use 0.002 or less",
+    ),
     "no YAML": (("seed: 1", "seed: [1"), "is no valid YAML in line"),
 }
 

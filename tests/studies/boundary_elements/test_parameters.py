@@ -58,6 +58,7 @@ def test_a_loop_begins_before_the_surfaces_attract_each_other():
         ("loops", "tion: 0.3}", "tion: 0.45}", r"must be below max_penetration 0.45"),
         ("loops", "step: 0.15", "step: 0.3", r"step 0.3 is above a third of max_penetration 0.45"),
         ("loops", "tolerance: 1.0e-4", "tolerance: 0", r"tolerance is 0.*greater than 0"),
+        ("loops", "tolerance: 1.0e-4", "tolerance: 0.9", r"tolerance is 0.9.*equal to 0.01"),
         ("loops", "seed: 5", "sead: 5", r"unknown key sead; did you mean seed"),
         ("branches", "first: 0.2", "first: 0.5", r"steady parts are first=0.5 last=0.4"),
         ("branches", "max_penetration: 0.6", "max_penetration: 0.4", r"all below max_penetration"),
