@@ -79,6 +79,23 @@ def test_a_start_twice_as_far_behind_is_forgotten():
         assert np.max(np.abs(ends[0] - ends[1])) < 1e-5
 
 
+def test_a_front_begins_within_its_field_however_long_the_steps_are():
+    weak = SWEEP.simulation(SWEEP.spectra[0], 0.0025, 0)
+    period = weak.schedule.period
+    coarse = run(replace(weak, schedule=replace(weak.schedule, step=period)))
+    fine = run(weak)
+    assert coarse.status is Status.STEADY
+    for direction in (1, -1):
+        one, other = (
+            record.fronts[
+                (record.states.direction == direction)
+                & np.isclose(record.states.spring_position, period)
+            ][0]
+            for record in (coarse, fine)
+        )
+        np.testing.assert_allclose(one, other, atol=1e-5)
+
+
 def test_the_mirrored_surface_with_the_opposite_sign_swaps_the_branches():
     adhesion, sizes = simulation_adhesion(ONE), ONE.resolution
     values, pixel = adhesion.work_of_adhesion, adhesion.pixel

@@ -16,7 +16,7 @@ from crackfront.core.adhesion import AdhesionMap
 from crackfront.core.arrays import Array
 from crackfront.core.cycle.follow import Load
 from crackfront.core.cycle.record import CycleRecord, Recorder
-from crackfront.core.field.fields import Interpolation, TileField
+from crackfront.core.field.fields import Interpolation, TileField, first_place, last_place
 from crackfront.core.geometry.base import Geometry, fast_site_count
 from crackfront.core.geometry.line import Line, line_field
 from crackfront.core.outcome import Direction, Status
@@ -134,6 +134,8 @@ class LineSchedule(Schedule):
         how far behind the load a branch begins, and the correlation length has no effect.
         """
         behind = _BEHIND * 4 * elastic_energy * self.spring + self.step
+        # The field reaches as far as any pinning: from its first and last sample all are driven.
+        behind = min(behind, -first_place(field), last_place(field) - float(self.loads[-1]))
         directions: tuple[Direction, Direction] = (1, -1)
         loads: list[Load] = []
         for direction in directions:
