@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -232,12 +233,13 @@ def surface_adhesion(surface: xr.DataArray) -> AdhesionMap:
             f"{bad[0, 1]} ({counted(len(bad), 'such value')}); write finite values"
         )
     _refuse_extreme(SURFACES[kind].name, samples, unit)
+    corner = float(surface["x"][0]), float(surface["y"][0])
     if kind == "roughness":
         if not surface.attrs.get("periodic"):
             _refuse_seam(samples)
-        return rough_adhesion(samples, pixel)
+        return replace(rough_adhesion(samples, pixel), corner=corner)
     _refuse_strange_mean(samples / unit, "w_int" if units == ADHESION else "reduced")
-    rms, corner = float(np.std(samples)) / unit, (float(surface["x"][0]), float(surface["y"][0]))
+    rms = float(np.std(samples)) / unit
     return AdhesionMap(samples, pixel, rms**2 / 4, rms, corner)
 
 

@@ -4,6 +4,8 @@ import numpy as np
 import pytest
 
 import crackfront as cf
+from crackfront.core.units import WORK_OF_ADHESION
+from crackfront.simulate.user_surface import surface_adhesion
 
 
 @pytest.fixture(scope="module")
@@ -30,6 +32,27 @@ def test_a_front_shorter_than_ten_springs_says_that_its_hysteresis_is_too_large(
 def test_a_front_shorter_than_its_springs_is_refused(patches):
     with pytest.raises(ValueError, match=r"spring is 2\.5, longer than the front, 2, which is"):
         pulled(patches, 2.5)
+
+
+@pytest.mark.parametrize("moved", [0.0, 5.5])
+def test_heights_and_their_works_of_adhesion_are_pulled_at_the_places_of_the_surface(moved):
+    heights = cf.random_surface(short_cutoff=0.4, elastic_energy=0.02, side=6, error=0.3, seed=1)
+    heights = heights.assign_coords(x=heights.x + moved, y=heights.y - moved)
+    works = surface_adhesion(heights).work_of_adhesion / WORK_OF_ADHESION
+    works = heights.copy(data=works).rename("work_of_adhesion").assign_attrs(units="w_int")
+    one, other = (
+        cf.run_loop(cf.straight_front(surface, 0.6), loads=[0, 1], step=0.5)
+        for surface in (heights, works)
+    )
+    np.testing.assert_allclose(one.y, heights.y, rtol=1e-12)
+    np.testing.assert_allclose(one.position, other.position, rtol=1e-9)
+
+
+def test_a_sphere_is_pressed_on_the_centre_of_heights_wherever_their_coordinates_begin():
+    heights = cf.random_surface(short_cutoff=0.4, elastic_energy=0.02, side=4, error=0.3, seed=1)
+    moved = heights.assign_coords(x=heights.x + 2, y=heights.y - 1)
+    one, other = (cf.run_loop(surface, loads=[0, 1], error=0.3) for surface in (heights, moved))
+    np.testing.assert_allclose(one.radius, other.radius, rtol=1e-9)
 
 
 def test_an_error_is_refused_where_none_was_measured(patches):
