@@ -196,7 +196,8 @@ def _result_sentence(record: CycleRecord, steady: SteadyAdhesion, remark: str) -
         return "no state was found"
     forces = states.forces_summary(record.status)
     if steady.sentence:
-        return f"no steady part: w_appr and w_retr are unknown; {forces}"
+        unknown = "no steady part: w_appr and w_retr are unknown"
+        return "; ".join(filter(None, (unknown, remark, forces)))
     works = []
     for name in ("w_appr", "w_retr", "hysteresis"):
         value, error = getattr(steady, name), getattr(steady, f"{name}_error")

@@ -1,5 +1,7 @@
 """Runs on a user's surface: what they refuse, and what their results say of themselves."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -75,6 +77,33 @@ def test_sites_and_samples_are_those_that_are_given(patches):
     assert [loop.sizes["y"] for loop in pulled] == [32, 64]
     usual = cf.run_loop(front, loads=[0, 1])
     np.testing.assert_array_equal(usual.position, pulled[0].position)
+
+
+def test_too_few_sites_say_that_the_hysteresis_is_too_large_and_how_many_are_enough(rng):
+    noise = np.fft.fft2(rng.standard_normal((48, 48)))
+    frequency = np.fft.fftfreq(48)
+    noise[np.hypot(frequency[:, None], frequency) > 1 / 8] = 0
+    waves = np.fft.ifft2(noise).real
+    values = 1 + 0.8 * (waves - waves.mean()) / waves.std()
+    surface = cf.surface(values, side=4.8, kind="chemical", units="w_int")
+
+    def run(sites):
+        return cf.run_loop(front, loads=[0, 15, 0], step=0.1, sites=sites)
+
+    front = cf.straight_front(surface, 1.0)
+    coarse, usual = run(6), run(None)
+    sentence = r"sites is 6, 1\.\d per .* too large; use (\d+) or"
+    [needed] = re.findall(sentence, coarse.attrs["result"])
+    enough = run(int(needed))
+    for one in (usual, enough):
+        assert "sites" not in one.attrs["result"]
+    assert enough.hysteresis == pytest.approx(float(usual.hysteresis), rel=0.1)
+    assert coarse.hysteresis > 1.3 * usual.hysteresis
+    pressed = cf.run_loop(surface, loads=[0, 1], sites=8)
+    assert "sites is 8, " in pressed.attrs["result"]
+    assert "sites" not in cf.run_loop(surface, loads=[0, 1], sites=80).attrs["result"]
+    plain = cf.surface(np.ones((48, 48)), side=4.8, kind="chemical", units="w_int")
+    assert "sites" not in cf.run_loop(plain, loads=[0, 1], sites=8).attrs["result"]
 
 
 def test_given_sites_overrule_the_spectrum_that_a_surface_states():

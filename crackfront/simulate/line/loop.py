@@ -18,7 +18,13 @@ from crackfront.data.bounds import NUMBER, refuse_outside
 from crackfront.simulate.costs import affordable_seconds
 from crackfront.simulate.line.loads import LAW_LENGTH
 from crackfront.simulate.line.schedule import LineSchedule
-from crackfront.simulate.loop_setup import LoopContact, LoopNumerics, LoopSetup, state_count
+from crackfront.simulate.loop_setup import (
+    LoopContact,
+    LoopNumerics,
+    LoopSetup,
+    remark_on_sites,
+    state_count,
+)
 from crackfront.simulate.surfaces import tile_measures
 from crackfront.simulate.user_surface import surface_adhesion, surface_kind
 
@@ -72,6 +78,7 @@ class StraightFront(LoopContact):
             spacing=adhesion.pixel / samples,
         )
         front, measures = initial_front(field, adhesion, loads[0]), tile_measures(adhesion)
+        few_sites = remark_on_sites(numerics, field.geometry.length, measures)
         return LoopSetup(
             kind=LineSchedule,
             field=field,
@@ -84,7 +91,7 @@ class StraightFront(LoopContact):
             measures=measures,
             period=measures.period,
             load_stiffness=field.geometry.length * field.geometry.stiffness,
-            remark=remark,
+            remark="; ".join(filter(None, (remark, few_sites))),
         )
 
     def _remark(self, adhesion: AdhesionMap) -> str:

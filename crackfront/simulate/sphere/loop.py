@@ -15,7 +15,13 @@ from crackfront.core.cycle.touch import checked_touch
 from crackfront.core.geometry.sphere import contact_field
 from crackfront.core.solver import DEFAULT_TOLERANCE
 from crackfront.simulate.costs import affordable_seconds
-from crackfront.simulate.loop_setup import LoopContact, LoopNumerics, LoopSetup, state_count
+from crackfront.simulate.loop_setup import (
+    LoopContact,
+    LoopNumerics,
+    LoopSetup,
+    remark_on_sites,
+    state_count,
+)
 from crackfront.simulate.numerical_errors import missed_error
 from crackfront.simulate.simulation import simulation_field
 from crackfront.simulate.sphere.cycle import FullCycle
@@ -110,4 +116,5 @@ class PressedSphere(LoopContact):
             tolerance=tolerance,
             measures=measures,
             simulation=simulation,
+            remark=remark_on_sites(numerics, 2 * math.pi * radius, measures),
         )
