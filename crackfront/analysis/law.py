@@ -56,7 +56,7 @@ _NARROWEST = 0.25
 """E-folds of the wavevector within which waves count as of one length."""
 
 _BROADER = 1.25
-"""By how much a spectrum may be broader than those that were measured."""
+"""By how much a spectrum may be broader or narrower than those that were measured."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -133,7 +133,7 @@ class PinningFactor:
     """Part of a Gaussian w_loc that is negative: where it is large the linearisation of the
     roughness is not to be trusted."""
     warning: str
-    """Sentence on numbers outside of the measured range; empty if there are none."""
+    """Sentences on numbers outside of the measured ranges; empty if there are none."""
 
 
 def law_value(
@@ -254,8 +254,8 @@ def pinning_factor(
     TypeError
         If one of them is no number.
     ValueError
-        If w_rms does not lie between 0 and 2, where e_el is w_int, the size or the breadth is not
-        positive, or there is no such kind.
+        If w_rms does not lie between 0 and 2, where e_el is w_int, the size is not positive, the
+        breadth is below 0.25, or there is no such kind.
 
     Examples
     --------
@@ -274,8 +274,11 @@ def pinning_factor(
         raise ValueError(f"size g is {size:g}; it must be positive, or inf")
     if breadth is not None:
         refuse_no_numbers(breadth=breadth)
-        if not 0 < breadth < math.inf:
-            raise ValueError(f"breadth is {breadth:g}; it must be positive and finite")
+        if not _NARROWEST <= breadth < math.inf:
+            raise ValueError(
+                f"breadth is {breadth:g}; it must be finite and at least {_NARROWEST:g}, that of a "
+                "single wavelength"
+            )
     law = shipped_law()
     place = w_rms, size, TYPICAL_BREADTH if breadth is None else breadth
     value = float(law_value(law.coefficients, *place))
@@ -356,23 +359,32 @@ def _statistical_error(law: Law, function: Callable[[Array, float], float]) -> f
 
 
 def _outside(law: Law, w_rms: float, size: float, breadth: float) -> tuple[float, str]:
-    """Additional relative error outside of the measured range, and a sentence that says so."""
+    """Additional relative error outside of the measured ranges, and a sentence for each of them.
+
+    Weak disorder and large sizes are safe: the law has its limits there.
+    """
     _, strongest = law.disorder
     smallest, _ = law.size
-    _, broadest = law.breadth
+    narrowest, broadest = law.breadth
+    extrapolated = ": k is extrapolated and its interval widened"
+    found = []
     if w_rms > strongest:
-        return 0.25 * math.log2(w_rms / strongest), (
-            f"w_rms {w_rms:.3g} w_int is above the strongest disorder that was measured "
-            f"({strongest:.3g}): k is extrapolated and its interval widened"
-        )
+        sentence = f"w_rms {w_rms:.3g} w_int is above the strongest disorder that was measured "
+        error = 0.25 * math.log2(w_rms / strongest)
+        found.append((error, f"{sentence}({strongest:.3g}){extrapolated}"))
     if size < smallest:
-        return 0.5, (
+        sentence = (
             f"size g {size:.3g} is below the smallest of the law ({smallest:.3g}), where "
             "hysteresis begins: the interval of k reaches down to zero"
         )
+        found.append((0.5, sentence))
     if breadth > _BROADER * broadest:
-        return 0.1 * math.log2(breadth / broadest), (
-            f"breadth {breadth:.3g} of the spectrum is above the largest that was measured "
-            f"({broadest:.3g}): k is extrapolated and its interval widened"
-        )
-    return 0.0, ""
+        sentence = f"breadth {breadth:.3g} of the spectrum is above the largest that was measured "
+        error = 0.1 * math.log2(breadth / broadest)
+        found.append((error, f"{sentence}({broadest:.3g}){extrapolated}"))
+    if breadth * _BROADER < narrowest:
+        sentence = f"breadth {breadth:.3g} of the spectrum is below the smallest that was measured "
+        error = 0.1 * math.log2(narrowest / breadth)
+        found.append((error, f"{sentence}({narrowest:.3g}){extrapolated}"))
+    errors, sentences = [error for error, _ in found], [sentence for _, sentence in found]
+    return math.hypot(*errors), "; ".join(sentences)

@@ -104,6 +104,22 @@ def test_outside_of_what_was_measured_there_is_a_warning_and_a_wider_interval(la
     assert "above the largest that was measured" in broad.warning
     assert broad.factor.standard_error > usual.factor.standard_error
     assert small.factor.low == 0
+    narrow = pinning_factor(0.3, 5.0, breadth=0.25)
+    assert "breadth 0.25 of the spectrum is below the smallest that was measured" in narrow.warning
+    narrowest = pinning_factor(0.3, 5.0, breadth=law.breadth[0])
+    assert narrow.factor.standard_error > narrowest.factor.standard_error
+    for limit in (pinning_factor(WEAKEST, 5.0), pinning_factor(0.3, 1e9)):
+        assert limit.warning == ""
+
+
+def test_every_number_outside_of_what_was_measured_has_its_sentence(law):
+    one = pinning_factor(1.2 * law.disorder[1], 5.0)
+    all_three = pinning_factor(1.2 * law.disorder[1], 0.1, breadth=10.0)
+    for sentence in ("above the strongest", "below the smallest of", "breadth 10 of the spectrum"):
+        assert sentence in all_three.warning
+    assert all_three.warning.startswith(one.warning)
+    relative = [found.factor.standard_error / found.factor.value for found in (one, all_three)]
+    assert relative[1] > relative[0]
 
 
 def test_a_measured_k_is_extrapolated_by_the_ratio_of_the_law(law):
@@ -164,6 +180,7 @@ def test_what_is_no_number_has_no_k():
         (lambda: pinning_factor(2.0, 1.0), "w_rms is 2 w_int"),
         (lambda: pinning_factor(0.3, 0.0), "size g is 0"),
         (lambda: pinning_factor(0.3, np.nan), "size g is nan"),
+        (lambda: pinning_factor(0.3, 5.0, breadth=0.1), "breadth is 0.1; it must be finite and at"),
         (lambda: pinning_factor(0.3, 5.0, "rough"), "kind is 'rough'; choose one of roughness"),
         (lambda: sphere_factors("roughness", FLAT, 1.0, 1.9), "energy of full conformity is 1"),
         (lambda: sphere_factors("roughness", FLAT, 0.05, 0.0), "contact radius is 0"),

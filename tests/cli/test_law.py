@@ -133,11 +133,11 @@ def test_a_breadth_is_that_of_the_law_and_narrows_the_interval():
     assert "breadth 0.92" in run(FRONT, "--breadth", "0.92").stdout
 
 
-@pytest.mark.parametrize("breadth", ["0", "-1", "nan", "inf"])
+@pytest.mark.parametrize("breadth", ["0", "-1", "0.1", "nan", "inf"])
 def test_a_breadth_that_no_spectrum_has_is_refused(breadth):
     result = run(FRONT, "--breadth", breadth)
     assert result.exit_code == 2
-    assert f"breadth is {breadth}; it must be positive and finite" in result.stderr
+    assert f"breadth is {breadth}; it must be finite and at least 0.25" in result.stderr
 
 
 def test_a_flat_spectrum_is_named_by_its_cutoff():
