@@ -745,6 +745,21 @@ def test_the_drawn_fronts_are_closed_and_the_last_of_a_branch_is_one_of_them(loo
     np.testing.assert_allclose(np.hypot(*retraction[0].get_data())[:-1], loop.radius[-1])
 
 
+def test_fronts_are_drawn_alike_whatever_the_order_of_their_dimensions(loop):
+    pulled = cf.run_loop(cf.straight_front(tile(0.03 * WAVE), 1.0), loads=np.arange(20.0))
+    for one, site in ((loop, "angle"), (pulled, "y")):
+        square = one.isel(step=slice(0, one.sizes[site]))
+        square = square.isel({site: slice(0, square.sizes["step"])})
+        assert square.sizes["step"] == square.sizes[site]
+        for given in (one, square):
+            drawn, turned = (
+                cf.plot_fronts(data, axes=axes_of_a_figure()).get_lines()
+                for data in (given, given.transpose(site, "step", ...))
+            )
+            for line, other in zip(drawn, turned, strict=True):
+                np.testing.assert_array_equal(line.get_data(), other.get_data())
+
+
 def test_the_patches_of_the_instabilities_have_the_area_of_the_sites_that_moved(jumps):
     [patches] = cf.plot_instabilities(jumps, axes_of_a_figure()).collections
     area = 0.0
@@ -771,6 +786,13 @@ def test_the_rms_values_of_a_spectrum_are_those_of_the_surface():
         (lambda surface, loop, jumps: cf.plot_loop(loop.drop_vars("force")), "it lacks force"),
         (lambda surface, loop, jumps: cf.plot_fronts(loop.drop_vars("radius")), "fronts=True"),
         (lambda surface, loop, jumps: cf.plot_fronts(loop, most=0), "most is 0"),
+        (lambda surface, loop, jumps: cf.plot_fronts(loop.isel(step=0)), r"\(angle\); a loop has"),
+        (lambda surface, loop, jumps: cf.plot_fronts(loop.drop_vars("direction")), "lacks direc"),
+        (lambda surface, loop, jumps: cf.plot_fronts(loop * np.nan), "radius .* not finite; drop"),
+        (
+            lambda surface, loop, jumps: cf.plot_loop((loop * np.nan).assign_attrs(loop.attrs)),
+            "force of the loop has no finite value to plot",
+        ),
         (lambda surface, loop, jumps: cf.plot_spectrum(0 * surface), "the surface is flat"),
         (lambda surface, loop, jumps: cf.plot_instabilities(jumps[{"instability": []}]), "none"),
         (lambda surface, loop, jumps: cf.plot_instabilities(loop), "holds no instabilities"),

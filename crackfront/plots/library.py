@@ -11,8 +11,10 @@ from numbers import Integral
 
 import numpy as np
 from matplotlib.axes import Axes
+from numpy.typing import NDArray
 from xarray import DataArray, Dataset
 
+from crackfront.core.arrays import Array
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.data.arguments import refuse_other_type
 from crackfront.plots.densities import draw_spectrum
@@ -51,6 +53,29 @@ def _refuse_no_loop(loop: object) -> None:
     """Raise TypeError if an argument is no loop."""
     wanted = "an xarray.Dataset, as run_loop returns it or crackfront cycle has written it"
     refuse_other_type("loop", loop, Dataset, wanted)
+
+
+def _refuse_no_state(loop: Dataset, name: str) -> None:
+    """Raise if the values of a name have no number, or no direction that goes with it."""
+    known = np.isfinite(loop[name].values) & np.isfinite(loop.direction.values)
+    if not np.any(known):
+        raise ValueError(f"{name} of the loop has no finite value to plot; give another loop")
+
+
+def _fronts(loop: Dataset, name: str, site: str) -> tuple[Array, Array, NDArray[np.int64]]:
+    """Places of sites, fronts over (step, site) and directions; ValueError if one is missing."""
+    if missing := [one for one in (site, "direction") if one not in loop]:
+        raise ValueError(f"the loop lacks {', '.join(missing)}; give it as run_loop returned it")
+    fronts, direction = loop[name], loop.direction
+    if {*fronts.dims} != {"step", site} or direction.dims != ("step",):
+        raise ValueError(
+            f"{name} has the dimensions ({', '.join(map(str, fronts.dims))}); a loop has step and "
+            f"{site}: keep a single state as a list, as in loop.isel(step=[0])"
+        )
+    fronts = fronts.transpose("step", site)
+    if not np.all(np.isfinite(fronts)):
+        raise ValueError(f"{name} holds values that are not finite; drop these states")
+    return loop[site].values, fronts.values, direction.values
 
 
 def plot_surface(surface: DataArray, axes: Axes | None = None) -> Axes:
@@ -129,11 +154,13 @@ def plot_loop(loop: Dataset, axes: Axes | None = None) -> Axes:
     _refuse_no_loop(loop)
     if "pinning_force" in loop:
         states = cycle_record(loop).states
+        _refuse_no_state(loop, "pinning_force")
         with _drawing(axes) as drawn:
             draw_pinning(drawn, states)
         return drawn
     loop, units = _reduced(loop)
     states = cycle_record(loop).states
+    _refuse_no_state(loop, "force")
     names = "w_appr", "w_retr", "lowest_radius", "highest_radius", "e_el"
     # A loop on rays has no such measures.
     w_appr, w_retr, lowest, highest, energy = (float(loop.get(name, math.nan)) for name in names)
@@ -158,7 +185,7 @@ def plot_fronts(
         If loop or surface cannot be used, or the loop holds no fronts.
     """
     _refuse_no_loop(loop)
-    if ("radius" not in loop and "position" not in loop) or loop.sizes["step"] == 0:
+    if ("radius" not in loop and "position" not in loop) or loop.sizes.get("step") == 0:
         raise ValueError(
             "the loop holds no fronts; run it with fronts=True, or crackfront cycle with "
             "--record fronts"
@@ -169,11 +196,12 @@ def plot_fronts(
     if "position" in loop:
         if surface is not None:
             raise ValueError("straight fronts are drawn without a surface; leave it out")
+        curves = _fronts(loop, "position", "y")
         with _drawing(axes) as drawn:
-            curves = loop.y.values, loop.position.values, loop.direction.values
             draw_straight_fronts(drawn, *curves, most)
         return drawn
     loop, units = _reduced(loop)
+    curves = _fronts(loop, "radius", "angle")
     with _drawing(axes) as drawn:
         if surface is not None:
             surface_kind(surface)
@@ -183,7 +211,6 @@ def plot_fronts(
             x, y = (adhesion.pixel * (np.arange(count) - count / 2) for count in values.shape)
             reach = max(2 * adhesion.w_rms, 0.05)
             draw_field(drawn, x, y, values, float(np.mean(values)), reach, units)
-        curves = loop.angle.values, loop.radius.values, loop.direction.values
         draw_fronts(drawn, *curves, most, units)
     return drawn
 
