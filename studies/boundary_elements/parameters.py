@@ -21,6 +21,13 @@ _LARGEST_TOLERANCE = 0.01
 """Pressure out of balance, relative to the largest tension; 0.03 raises the work of a loop by 4 to
 8%, 0.1 by 35 to 60%."""
 
+_LONGEST_RANGE = 1.0
+"""Range of attraction beyond which it is not short against the contact, whose radius is
+1.5 or more. (Units: reduced vertical length)"""
+
+_FEWEST_SAMPLES = 2.0
+"""Samples of the front's field per short cutoff, below which they miss waves."""
+
 
 class FrontSection(Section):
     """Resolution of the front model."""
@@ -33,7 +40,7 @@ class CaseSection(Section):
     """Cases of one grid, range, load step and spectrum, flat by default, as of :class:`Case`."""
 
     n_point: Annotated[Count, Field(ge=16)]
-    interaction_range: Positive
+    interaction_range: Annotated[Positive, Field(le=_LONGEST_RANGE)]
     elastic_energies: Annotated[
         tuple[Annotated[float, Field(ge=0, lt=1)], ...], Field(min_length=1)
     ]  # amplitudes, 0 for a smooth sphere (w_int)
@@ -58,6 +65,17 @@ class ValidationParameters(Section):
 
     @model_validator(mode="after")
     def _usable(self) -> ValidationParameters:
+        spacing, finest = self.front.spacing, self.short_cutoff / _FEWEST_SAMPLES
+        if spacing > finest * (1 + 1e-12):
+            raise refusal(
+                f"front: spacing {spacing:g} misses waves of short_cutoff {self.short_cutoff:g}; "
+                f"take {finest:g} or less"
+            )
+        if self.loads.steady is None and self.loads.shown_penetration < 0:
+            raise refusal(
+                f"loads: shown_penetration {self.loads.shown_penetration:g} has no contact in "
+                "approach; take 0 or more"
+            )
         for number, case in enumerate(self.cases):
             try:
                 self._refuse(case)
@@ -66,11 +84,16 @@ class ValidationParameters(Section):
         return self
 
     def _refuse(self, case: CaseSection) -> None:
-        """Raise if a case resolves neither roughness nor attraction, or is too large."""
+        """Raise if a case does not hold or resolve roughness and attraction, or is too large."""
         n_point, pixel, cutoff = case.n_point, self.side / case.n_point, self.short_cutoff
         if case.roll_off is not None and case.roll_off < cutoff:
             raise ValueError(
                 f"roll_off {case.roll_off:g} is shorter than short_cutoff {cutoff:g}; raise it"
+            )
+        if (longest := case.roll_off or cutoff) > self.side:
+            raise ValueError(
+                f"waves of {longest:g}, the roll_off or else the short_cutoff, do not fit in a "
+                f"domain of side {self.side:g}; shorten them or raise side"
             )
         if cutoff <= 2 * pixel:
             raise ValueError(
