@@ -624,7 +624,11 @@ def test_simulations_without_a_value_are_warned_of(tmp_path):
         (cf.find_instabilities, {"direction": 0}, "direction is 0; give 1 for approach or -1"),
         (cf.find_instabilities, {"precision": 0.01}, "precision is 0.01; .* at most a tenth of"),
         (cf.find_instabilities, {"precision": 0.0}, "precision is 0; it must be positive"),
+        (cf.find_instabilities, {"precision": 1e-16}, "precision is 1e-16, below the round-off of"),
+        (cf.find_instabilities, {"step": 0}, "load step is 0; it must be positive"),
+        (cf.find_instabilities, {"step": -1.0}, "load step is -1.0; it must be positive"),
         (cf.find_instabilities, {"travel": -1.0}, "travel is -1; it must be positive and finite"),
+        (cf.find_instabilities, {"travel": 1e-12}, "travel is 1e-12 .* by up to 0.0011 of them;"),
     ],
 )
 def test_a_loop_that_cannot_be_run_is_refused(surface, run, given, sentence):

@@ -231,7 +231,8 @@ def find_instabilities(
     max_penetration, step : float, optional
         As in :func:`run_loop`.
     travel : float, optional
-        Largest motion of a site in a smooth step, in correlation lengths of w_loc.
+        Largest motion of a site in a smooth step, in correlation lengths of w_loc; at least a
+        quarter of the root of the precision, by which a front moves smoothly before it jumps.
     precision : float, optional
         Penetration to which an instability is located, at most a tenth of the step: a smooth step
         that is not divided further would count as one. (Units: reduced vertical length)
@@ -263,6 +264,7 @@ def find_instabilities(
     refuse_no_numbers(
         max_penetration=max_penetration, step=step, travel=travel, precision=precision
     )
+    schedule = LoadSchedule(max_penetration, step)
     if not 0 < precision <= step / 10:
         raise ValueError(
             f"precision is {precision:g}; it must be positive, and at most a tenth of the step, "
@@ -270,9 +272,9 @@ def find_instabilities(
         )
     if not 0 < travel < math.inf:
         raise ValueError(f"travel is {travel:g}; it must be positive and finite")
-    schedule = LoadSchedule(max_penetration, step)
     numerics = LoopNumerics(error, sites, samples, usual_error=0.05)
     contact = PressedSphere(surface).setup(None, max_penetration, step, numerics)
+    _refuse_unresolved_motion(contact, travel, precision)
     compile_solver("newton")
     field, solver = contact.field, Newton(min(contact.tolerance, precision / 10))
     reach = travel * contact.measures.correlation_length
@@ -286,3 +288,25 @@ def find_instabilities(
     found = labelled_fields(measured_instabilities(jumps, field, reach))
     angle = field.geometry.variables[1]
     return Dataset(found, {angle.name: labelled(angle, field.geometry.sites)}, {"travel": reach})
+
+
+_SMOOTH = 0.25
+"""Motion of a smooth front within a step before a fold, over the root of the step, in correlation
+lengths: where a site is about to jump, it moves with that root."""
+
+
+def _refuse_unresolved_motion(contact: LoopSetup, travel: float, precision: float) -> None:
+    """Raise if round-off hides steps of a precision, or if smooth motion counts as a jump."""
+    round_off = 10 * float(np.finfo(float).eps) * contact.front.size
+    if precision < round_off:
+        raise ValueError(
+            f"precision is {precision:g}, below the round-off of a front of {contact.front.size} "
+            f"sites ({round_off:.1e}); raise it"
+        )
+    length = contact.measures.correlation_length
+    least = max(_SMOOTH * math.sqrt(precision), precision / length)
+    if travel < least:
+        raise ValueError(
+            f"travel is {travel:g} correlation lengths, but within a precision of {precision:g} a "
+            f"front moves smoothly by up to {least:.2g} of them; raise travel or lower precision"
+        )
