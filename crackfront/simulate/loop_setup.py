@@ -125,6 +125,26 @@ def remark_on_sites(numerics: LoopNumerics, length: float, measures: TileMeasure
     )
 
 
+_SAMPLES = 2.0
+"""Samples per correlation length of w_loc below which they miss its waves."""
+
+
+def refuse_few_samples(
+    numerics: LoopNumerics, pixel: float, measures: TileMeasures, least: float = 0.0
+) -> None:
+    """Raise if the given samples a pixel miss waves of a tile, or are below the least.
+
+    The pixel is that of the tile. (Units: reduced lateral length)
+    """
+    waves = 0.0 if measures.w_rms == 0 else _SAMPLES * pixel / measures.correlation_length
+    needed = math.ceil(1000 * max(waves, least)) / 1000
+    if numerics.samples is not None and numerics.samples < needed:
+        raise ValueError(
+            f"samples is {numerics.samples:g} a pixel along a ray, too few for this surface; use "
+            f"{needed:g} or more"
+        )
+
+
 def load_values(loads: Iterable[float | str]) -> tuple[float, ...]:
     """Loads of a protocol as numbers; a ValueError where there is none, or one is no number."""
     if isinstance(loads, str) or not isinstance(loads, Iterable):

@@ -113,6 +113,16 @@ def test_given_sites_overrule_the_spectrum_that_a_surface_states():
     assert np.isnan(loop.w_appr_numerical_error)
 
 
+def test_samples_that_miss_the_waves_of_a_surface_are_refused_and_as_many_as_it_says_are_not(
+    patches,
+):
+    for contact, few in ((patches, 0.2), (cf.straight_front(patches, 0.2), 0.4)):
+        with pytest.raises(ValueError, match=f"samples is {few} a pixel along a ray") as caught:
+            cf.run_loop(contact, loads=[0, 1], samples=few)
+        needed = float(re.findall(r"use (\S+) or more", str(caught.value))[0])
+        assert cf.run_loop(contact, loads=[0, 1], samples=needed).attrs["status"] == "converged"
+
+
 @pytest.mark.parametrize(
     ("given", "sentence"),
     [

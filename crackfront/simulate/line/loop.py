@@ -22,6 +22,7 @@ from crackfront.simulate.loop_setup import (
     LoopContact,
     LoopNumerics,
     LoopSetup,
+    refuse_few_samples,
     remark_on_sites,
     state_count,
 )
@@ -29,6 +30,9 @@ from crackfront.simulate.surfaces import tile_measures
 from crackfront.simulate.user_surface import surface_adhesion, surface_kind
 
 _ROUND_OFF = 1e-9
+
+_FEWEST_SAMPLES = 0.5
+"""Samples a pixel: the field of a straight front begins two pixels behind its first front."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,7 +65,8 @@ class StraightFront(LoopContact):
         adhesion, way = surface_adhesion(self.surface), protocol(loads, step)
         remark = self._remark(adhesion)
         values, n_state = adhesion.work_of_adhesion, state_count(loads, step)
-        samples = numerics.samples or 1.0
+        samples, measures = numerics.samples or 1.0, tile_measures(adhesion)
+        refuse_few_samples(numerics, adhesion.pixel, measures, _FEWEST_SAMPLES)
         # The first front lies as far behind its load as pinning may pull the springs.
         behind = 1.25 * self.spring * float(np.ptp(values)) / WORK_OF_ADHESION
         seconds = affordable_seconds(
@@ -77,7 +82,7 @@ class StraightFront(LoopContact):
             n_site=numerics.sites,
             spacing=adhesion.pixel / samples,
         )
-        front, measures = initial_front(field, adhesion, loads[0]), tile_measures(adhesion)
+        front = initial_front(field, adhesion, loads[0])
         few_sites = remark_on_sites(numerics, field.geometry.length, measures)
         return LoopSetup(
             kind=LineSchedule,

@@ -19,6 +19,7 @@ from crackfront.simulate.loop_setup import (
     LoopContact,
     LoopNumerics,
     LoopSetup,
+    refuse_few_samples,
     remark_on_sites,
     state_count,
 )
@@ -78,6 +79,7 @@ class PressedSphere(LoopContact):
             n_sample=4 * samples * radius / adhesion.pixel,
         )
         measures, simulation = tile_measures(adhesion), None
+        refuse_few_samples(numerics, adhesion.pixel, measures)
         spectrum = stated_spectrum(self.surface)
         if spectrum is None and numerics.error is not None:
             raise ValueError(
