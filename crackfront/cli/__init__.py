@@ -46,6 +46,12 @@ class Commands(click.Group):
         except MemoryError as error:
             sentence = "the memory does not suffice; compute less, or use a machine with more"
             raise click.ClickException(sentence) from error
+        except RuntimeError as error:
+            from crackfront.core.outcome import DefectError
+
+            if isinstance(error, DefectError):
+                raise click.ClickException(str(error)) from error
+            raise
         except (OSError, ValueError) as error:
             raise _RefusalError(_sentence(error)) from error
 

@@ -14,16 +14,18 @@ from contextlib import nullcontext
 from functools import partial
 from pathlib import Path
 
+import click
 import numpy as np
 import pytest
 import xarray as xr
+from click.testing import CliRunner
 from matplotlib.figure import Figure
 
 import crackfront as cf
-from crackfront.cli import main
+from crackfront.cli import Commands, main
 from crackfront.cli.report import StoppedError
 from crackfront.core import jkr
-from crackfront.core.outcome import Status
+from crackfront.core.outcome import DefectError, Status
 from crackfront.core.solver.relax import named_solver
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.sweep.configuration import load_configuration
@@ -586,7 +588,7 @@ SCAN = TEST.parents[1] / "examples/scans/nanodiamond-detail.al3d"
 def test_the_help_loads_nothing_that_computes():
     code = """
 import sys
-from crackfront.cli import main
+from crackfront.cli import Commands, main
 main(["--help"], standalone_mode=False)
 heavy = {"numpy", "scipy", "numba", "xarray", "mpi4py"}
 print(heavy & set(sys.modules), file=sys.stderr)
@@ -692,3 +694,13 @@ def test_once_the_solver_is_compiled_ahead_no_run_compiles_it(smooth_tile, tmp_p
         command = [sys.executable, "-m", "crackfront", *map(str, words)]
         done = subprocess.run(command, capture_output=True, text=True, check=True, timeout=600)
         assert "compiling" not in done.stdout + done.stderr
+
+
+def test_a_defect_of_a_solver_is_one_sentence():
+    def broken():
+        raise DefectError("the solver moved past its equilibrium; please report it")
+
+    commands = Commands(commands=[click.Command("broken", callback=broken)])
+    result = CliRunner().invoke(commands, ["broken"])
+    assert result.exit_code == 1
+    assert result.stderr == "Error: the solver moved past its equilibrium; please report it\n"

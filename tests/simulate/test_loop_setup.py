@@ -113,6 +113,19 @@ def test_given_sites_overrule_the_spectrum_that_a_surface_states():
     assert np.isnan(loop.w_appr_numerical_error)
 
 
+@pytest.mark.parametrize(("spring", "first"), [(1e-9, 0.0), (1e-15, 0.0), (0.2, 2e6), (0.2, -2e6)])
+def test_places_whose_digits_do_not_hold_the_forces_are_refused(patches, spring, first):
+    front = cf.straight_front(patches, spring)
+    with pytest.raises(ValueError, match=r"round-off of places .* by periods of the tile, 2, to"):
+        cf.run_loop(front, loads=[first, first + 1], step=0.1)
+
+
+def test_far_from_0_fronts_are_those_of_a_tile_whose_periods_lie_behind(patches):
+    front = cf.straight_front(patches, 0.2)
+    near, far = (cf.run_loop(front, loads=[x, x + 1], step=0.1) for x in (0.0, 2e4))
+    np.testing.assert_allclose(far.position - 2e4, near.position, atol=1e-8)
+
+
 def test_samples_that_miss_the_waves_of_a_surface_are_refused_and_as_many_as_it_says_are_not(
     patches,
 ):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from itertools import chain
 
@@ -33,6 +34,9 @@ _ROUND_OFF = 1e-9
 
 _FEWEST_SAMPLES = 0.5
 """Samples a pixel: the field of a straight front begins two pixels behind its first front."""
+
+_LINE_ROUND_OFF = 10.0
+"""Round-off of forces of the line, by Fourier transforms, over that of its shortest mode alone."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,6 +73,8 @@ class StraightFront(LoopContact):
         refuse_few_samples(numerics, adhesion.pixel, measures, _FEWEST_SAMPLES)
         # The first front lies as far behind its load as pinning may pull the springs.
         behind = 1.25 * self.spring * float(np.ptp(values)) / WORK_OF_ADHESION
+        furthest = max(abs(min(loads)), abs(max(loads))) + behind + 2 * adhesion.pixel
+        self._refuse_round_off(adhesion, furthest, numerics.sites or values.shape[1])
         seconds = affordable_seconds(
             n_angle=numerics.sites or values.shape[1],
             n_point=values.size,
@@ -98,6 +104,19 @@ class StraightFront(LoopContact):
             load_stiffness=field.geometry.length * field.geometry.stiffness,
             remark="; ".join(filter(None, (remark, few_sites))),
         )
+
+    def _refuse_round_off(self, adhesion: AdhesionMap, furthest: float, n_site: int) -> None:
+        """Raise if digits of places so far from 0 do not hold forces to the tolerance."""
+        length, period = (adhesion.pixel * n for n in adhesion.work_of_adhesion.shape[::-1])
+        stiffness = 1 / self.spring + _LINE_ROUND_OFF * math.pi * n_site / length
+        force = float(np.finfo(float).eps) * furthest * stiffness
+        if force > DEFAULT_TOLERANCE:
+            raise ValueError(
+                f"the front is pulled as far as {furthest:.4g} by springs of length "
+                f"{self.spring:g}, where the round-off of places makes forces of {force:.1e} "
+                f"w_int, above the tolerance of {DEFAULT_TOLERANCE:g}; shift the loads by periods "
+                f"of the tile, {period:g}, to near 0, or use longer springs or fewer sites"
+            )
 
     def _remark(self, adhesion: AdhesionMap) -> str:
         """What a short front means for k; ValueError if it is shorter than its springs."""
