@@ -413,6 +413,16 @@ def test_an_array_is_the_same_surface_in_all_units():
         ((1 + WAVE) / np.pi, {"units": "w_int"}, "0.3183 w_int, .* were they in reduced units"),
         (WAVE, {"units": "w_int"}, "were they deviations from it"),
         (5 + WAVE, {"units": "w_int"}, "check the values, or take their mean for w_int"),
+        (
+            0.063 * (1 + WAVE),
+            {"units": "mJ/m2", "side": "1mm", "sphere": SPHERE},
+            r"adhesion is 0\.063 mJ/m2, 0\.001 of that of the sphere; .* check the units, or the w",
+        ),
+        (
+            1 + WAVE,
+            {"side": "1mm", "sphere": SPHERE},
+            r"adhesion is 1 J/m\^2, 15\.87 of that of the sphere;",
+        ),
         (1 + WAVE, {"units": "mJ/m2"}, "units is 'mJ/m2'; choose one of reduced, w_int, or give"),
         ([1.0, 2.0], {}, r"the values have the shape \(2,\); a tile must be"),
         (WAVE, {"kind": "rough"}, "kind is 'rough'; choose one of"),
@@ -436,7 +446,14 @@ def test_an_array_is_the_same_surface_in_all_units():
 )
 def test_an_array_that_is_no_surface_is_refused_with_the_likely_cause(values, given, sentence):
     with pytest.raises(ValueError, match=sentence):
-        cf.surface(values, 4.0, **({"kind": "chemical"} | given))
+        cf.surface(values, **({"kind": "chemical", "side": 4.0} | given))
+
+
+def test_complex_numbers_are_no_surface():
+    with pytest.raises(TypeError, match="values are complex numbers; give real ones, as in"):
+        cf.surface((1 + WAVE) * (1 + 0.5j), 4.0, kind="chemical", units="w_int")
+    with pytest.raises(TypeError, match="values are complex numbers"):
+        cf.run_loop(tile(0.01 * WAVE * 1j), loads=[0])
 
 
 @pytest.mark.parametrize("unit", ["um", "m", "reduced"])

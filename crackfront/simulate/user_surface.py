@@ -84,6 +84,7 @@ def surface(
     refuse_other_type("units", units, (str, type(None)), "the name of a unit")
     if isinstance(values, xr.DataArray):
         values, units = _stated(values, units)
+    _refuse_complex(values)
     try:
         # What is masked is refused as NaN is.
         samples: Array = np.ma.array(values, dtype=float).filled(np.nan)
@@ -116,7 +117,8 @@ def surface(
     factor = known[given] if given in known else unit_value(given, unit) / scale
     found = surface_array(kind, factor * samples, float(side) / len(samples))
     if kind == "chemical":
-        _refuse_strange_mean(found.values, given)
+        stated = "" if given in known else f"{float(np.mean(samples)):.4g} {given}"
+        _refuse_strange_mean(found.values, given, stated)
     surface_adhesion(found)
     return found
 
@@ -167,12 +169,26 @@ def _refuse_other_side(values: xr.DataArray, side: float | str, sphere: Scales |
         )
 
 
-def _refuse_strange_mean(values: Array, units: str) -> None:
-    """Raise if works of adhesion (Units: w_int) have no mean around w_int; `units` are as given."""
+def _refuse_complex(values: ArrayLike) -> None:
+    """Raise TypeError if values have imaginary parts, which a surface has not."""
+    if np.iscomplexobj(values):
+        raise TypeError("the values are complex numbers; give real ones, as in values.real")
+
+
+def _refuse_strange_mean(values: Array, units: str, stated: str = "") -> None:
+    """Raise if works of adhesion (Units: w_int) have no mean around w_int.
+
+    `units` are as given, `stated` is the mean in units of SI.
+    """
     mean = float(np.mean(values))
     if not math.isfinite(mean) or 0.5 <= mean <= 2:
         return
     cause = "check the values, or take their mean for w_int"
+    if stated:
+        raise ValueError(
+            f"the mean work of adhesion is {stated}, {mean:.4g} of that of the sphere; it must lie "
+            "between 0.5 and 2: check the units, or the work of adhesion of the sphere"
+        )
     if units != "w_int" and 0.5 <= mean * WORK_OF_ADHESION <= 2:
         cause = "were they in units of w_int? Then set units to 'w_int'"
     elif units == "w_int" and 0.5 <= mean / WORK_OF_ADHESION <= 2:
@@ -216,6 +232,7 @@ def surface_adhesion(surface: xr.DataArray) -> AdhesionMap:
             "have x and y"
         )
     refuse_other_units(surface if kind == "roughness" else surface.coords.to_dataset())
+    _refuse_complex(surface)
     samples, pixel = _tile_values(surface)
     known = {"reduced": 1.0, "1": 1.0, ADHESION: WORK_OF_ADHESION}
     unit, units = 1.0, str(stated_unit(surface.attrs) or "reduced")
