@@ -138,10 +138,11 @@ class SpectrumSection(Section):
         if sections := self._sections():
             others = "short_cutoff", "roll_off", "hurst", *sections[1:]
             _refuse_overruled(self, sections[0], others)
-        elif missing := _missing(self, ("short_cutoff", *(() if self._is_flat else ("hurst",)))):
-            raise refusal(f"key {', '.join(missing)} is missing; add it, or a table or surface")
-        else:
+            return self
+        if self.short_cutoff is not None:
             _refuse_unless_made(self._self_affine)
+        if missing := _missing(self, ("short_cutoff", *(() if self._is_flat else ("hurst",)))):
+            raise refusal(f"key {', '.join(missing)} is missing; add it, or a table or surface")
         return self
 
     def named(self, position: int, lateral: float) -> NamedSpectrum:

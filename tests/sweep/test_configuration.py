@@ -243,6 +243,10 @@ BAD = {
     ),
     "missing key": (("seed: 1\n", ""), "key seed is missing; add it"),
     "key twice": (("seed: 1", "seed: 1\nseed: 2"), "is no valid YAML in line 3: key 'seed' stands"),
+    "roll-off below the cutoff without hurst": (
+        ("roll_off: 0.2, hurst: 0.8", "roll_off: 0.05"),
+        "spectra[1]: roll_off 0.05 is shorter than short_cutoff 0.1; lower the cutoff",
+    ),
     "hurst above one": (
         ("hurst: 0.8", "hurst: 1.2"),
         "spectra[1]: hurst is 1.2; it must lie in (0, 1]",
