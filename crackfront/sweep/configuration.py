@@ -12,9 +12,10 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
+from crackfront.analysis.standard_error import FEWEST_STATES
 from crackfront.core.adhesion import FieldKind, larkin_length
 from crackfront.core.units import Scales
-from crackfront.data.bounds import refuse_beyond_memory, refuse_beyond_time
+from crackfront.data.bounds import counted, refuse_beyond_memory, refuse_beyond_time
 from crackfront.data.section import (
     ConfigurationError,
     Count,
@@ -184,6 +185,12 @@ def _refuse_too_coarse(simulation: Simulation, requested: Settings | float) -> N
     larkin = larkin_length(simulation.kind, simulation.spectrum, 2 * math.sqrt(energy))
     site = sizes.tile_side / sizes.n_angle
     simulation.schedule.refuse_few_sites(f"{name} at e_el {energy:g}", larkin, site)
+    n_state = simulation.schedule.n_period
+    if n_state is not None and n_state < FEWEST_STATES:
+        raise ValueError(
+            f"load.line: the period of {name} at e_el {energy:g} has {counted(n_state, 'state')}, "
+            f"and errors need {FEWEST_STATES} or more; lower step or raise period"
+        )
     length, cutoff = simulation.schedule.front_length, simulation.spectrum.short_cutoff
     if (density := sizes.n_angle * cutoff / length) < _FEWEST_SITES:
         raise ValueError(

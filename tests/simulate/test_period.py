@@ -196,6 +196,11 @@ REFUSED = {
     "equal names": ("springs: [2, 8]", "springs: [2.0000001, 2]", "spring, 'flat-L2' stands twice"),
     "unit": ("step: 0.5", "step: 0.5, spring_unit: metre", "load.line.spring_unit is 'metre'"),
     "sphere too": ("load:", "load:\n  max_penetration: 1", "line already decides max_penetration"),
+    "few states": (
+        "step: 0.5",
+        "step: 3",
+        "the period of flat-L2 at e_el 0.04 has 2 states, and errors need 3 or more; lower step",
+    ),
     "few sites": (
         "angles_per_cutoff: 2",
         "angles_per_cutoff: 0.75",
