@@ -169,9 +169,9 @@ def _refuse_other_side(values: xr.DataArray, side: float | str, sphere: Scales |
         )
 
 
-def _refuse_complex(values: ArrayLike) -> None:
-    """Raise TypeError if values have imaginary parts, which a surface has not."""
-    if np.iscomplexobj(values):
+def _refuse_complex(values: object) -> None:
+    """Raise TypeError if an array has imaginary parts, which a surface has not."""
+    if isinstance(values, (np.ndarray, xr.DataArray)) and values.dtype.kind == "c":
         raise TypeError("the values are complex numbers; give real ones, as in values.real")
 
 

@@ -40,7 +40,7 @@ def test_what_is_appended_is_read_back_in_order_and_to_the_last_bit(tmp_path, pa
     assert names(tmp_path) == (expected, 0)
     index = RowIndex(tmp_path, "flat", range(2))
     assert index.entry(ONE.stem).row.w_appr == 0.1 + 0.2
-    assert index.latest(ONE.stem).parts == ONE.parts
+    assert next(index.alike(ONE.stem)).parts == ONE.parts
 
 
 @pytest.mark.parametrize("left", [1, 300, 512, 700, 5000, -1])
@@ -130,7 +130,7 @@ def test_a_row_of_another_definition_does_not_count(tmp_path, pack):
     pack.append(replace(ENTRY, definition="earlier").files())
     index = RowIndex(tmp_path, "flat", range(2))
     assert index.entry(ONE.stem) is None
-    assert index.latest(ONE.stem).parts == ONE.parts
+    assert next(index.alike(ONE.stem)).parts == ONE.parts
 
 
 def test_what_the_disk_does_not_take_leaves_nothing(tmp_path, monkeypatch, pack):

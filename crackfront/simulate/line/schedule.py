@@ -133,9 +133,10 @@ class LineSchedule(Schedule):
         Parameters are those of :meth:`crackfront.simulate.schedule.Schedule.run`; e_el decides
         how far behind the load a branch begins, and the correlation length has no effect.
         """
-        behind = _BEHIND * 4 * elastic_energy * self.spring + self.step
-        # The field reaches as far as any pinning: from its first and last sample all are driven.
-        behind = min(behind, -first_place(field), last_place(field) - float(self.loads[-1]))
+        pinned = _BEHIND * 4 * elastic_energy * self.spring
+        # As far behind as the field allows, never less than pinning may hold the front.
+        inside = min(-first_place(field), last_place(field) - float(self.loads[-1]))
+        behind = min(pinned + self.step, max(inside, pinned))
         directions: tuple[Direction, Direction] = (1, -1)
         loads: list[Load] = []
         for direction in directions:
