@@ -140,4 +140,4 @@ def _column(name: str, values: ArrayLike) -> Array:
         raise TypeError(f"the values of {name} are no array of numbers: {error}") from error
     if not np.any(np.isfinite(found)):
         raise ValueError(f"{name} has no finite value; leave the column out, or check the file")
-    return found
+    return np.where(np.isfinite(found), found, np.nan)

@@ -38,13 +38,19 @@ _ZEROS, _NO_FIT = 151, 1e6
 _FEWEST_BASELINE = 5
 """Rows out of contact from which the zero of the force is found."""
 
-_UNLIKELY, _LEAST_FORCE = 1e-5, 0.002
-"""Probability with which noise alone makes a row depart from those out of contact, and the part of
-the range of the force that makes a contact."""
+_UNLIKELY, _LEAST_PULL = 1e-4, 0.15
+"""Probability with which noise alone makes a row depart from those out of contact, two of which in
+succession are of a contact; and the least departure over the largest pulling force."""
 
 _STEEP, _CERTAIN = 0.1, 0.9995
 """Slope of the force over the displacement, relative to that of the whole loop, and the certainty
 that there is one, from which rows are of a contact: out of it the force hardly changes."""
+
+_SPIKE = 12.0
+"""Distance from the median of the rows around it, over that of all rows, that makes a spike."""
+
+_FITS = 1.5
+"""Variance that a parabola leaves over that of the noise, up to which it fits."""
 
 _NOISES = 4.0
 """Pull-off force over the noise of the force, below which no contact is found without radii."""
@@ -159,6 +165,7 @@ def analyse_loop(recording: Recording, rig: Rig) -> MeasuredLoop:
         and none can be fitted.
     """
     recording, zero_errors, remarks = _with_zero_force(recording)
+    _refuse_wrong_sign(recording)
     branches = _branches(recording)
     is_fitted = recording.force is not None and recording.radius is not None
     if rig.contact_modulus is None and not is_fitted:
@@ -186,13 +193,10 @@ def analyse_loop(recording: Recording, rig: Rig) -> MeasuredLoop:
         return np.array([appr, retr, retr - appr, modulus])
 
     shifted = [replace(recording, force=np.asarray(recording.force) + one) for one in zero_errors]
-    alone = []
+    alone: list[Array] = []
     if zero != 0.0:
         # A true trend of either branch moves the zero; one branch alone says by how much.
-        for rows in averaged:
-            place = _zero_displacement(recording, rig, known, [rows], near=zero)
-            appr, retr = _means(_contact(recording, rig, known, place), averaged)
-            alone.append(np.array([appr, retr, retr - appr, known]))
+        alone += [_by_zero_of_one(recording, rig, known, zero, averaged, one) for one in averaged]
     estimates = _estimates(found, averaged, first.radius, rig, shifted, alone)
     if not all(math.isfinite(one.high) for one in estimates[:3]):
         raise ValueError(
@@ -219,7 +223,7 @@ def analyse_loop(recording: Recording, rig: Rig) -> MeasuredLoop:
         remarks += _modulus_remark(rig, fitted)
     if rig.stiffness is not None and (is_fitted or recording.displacement is None):
         remarks.append(
-            "The given stiffness of the machine has no part in the works of adhesion, which "
+            "The given stiffness of the machine has no part in the works of adhesion: they follow "
             "from force and contact radius."
         )
     errors = zero_errors
@@ -233,7 +237,7 @@ def analyse_loop(recording: Recording, rig: Rig) -> MeasuredLoop:
             f"the force, {prefixed('N', noise)}; press less, average rows, or record the contact "
             "radius"
         )
-    remarks += _pull_off_remark(rig, pull_off, estimates[1])
+    remarks += _pull_off_remark(rig, pull_off, estimates[1].value, lost)
     return MeasuredLoop(
         force=first.force,
         contact_radius=first.radius,
@@ -376,7 +380,8 @@ def _with_zero_force(recording: Recording) -> tuple[Recording, list[Array], list
     force, touches = recording.force, _touches(recording)
     if force is None:
         return recording, [], []
-    rows, touching = np.flatnonzero(~touches & np.isfinite(force)), np.flatnonzero(touches)
+    rows, touching = _usual_rows(force), np.flatnonzero(touches)
+    rows = rows[~touches[rows]]
     sides = [rows[rows < touching[0]], rows[rows > touching[-1]]]
     enough = [side.size >= _FEWEST_BASELINE for side in sides]
     if not any(enough):
@@ -411,11 +416,15 @@ def _touches(recording: Recording) -> NDArray[np.bool_]:
         touches = recording.radius > 0
     else:
         force = np.asarray(recording.force)
-        known = np.flatnonzero(np.isfinite(force))
-        before, after = _rows_apart(recording, known), _rows_apart(recording, known[::-1])
+        known = _usual_rows(force)
+        turn = int(np.argmax(force[known])) if known.size else 0
+        pull = _largest_pull(force[known])
+        before = _rows_apart(recording, known[: turn + 1], pull)
+        after = _rows_apart(recording, known[turn:][::-1], pull)
         touches = np.zeros(force.size, bool)
-        if before + after < known.size:
-            touches[known[before] : known[known.size - 1 - after] + 1] = True
+        inside = known[before : known.size - after]
+        if inside.size and np.ptp(force[known]) > 0:
+            touches[inside[0] : inside[-1] + 1] = True
     if not np.any(touches):
         raise ValueError(
             "no row is in contact: no contact radius is above zero, or no force beyond its noise; "
@@ -424,35 +433,56 @@ def _touches(recording: Recording) -> NDArray[np.bool_]:
     return touches
 
 
-def _rows_apart(recording: Recording, rows: Rows) -> int:
+def _usual_rows(force: Array) -> Rows:
+    """Rows with a force that is no spike: not far from the median of five rows around it."""
+    rows = np.flatnonzero(np.isfinite(force))
+    apart = np.abs(force[rows] - scipy.ndimage.median_filter(force[rows], 5, mode="nearest"))
+    # Rows of a smooth rise are medians themselves, and say nothing of the noise.
+    noisy = apart[apart > 0]
+    return rows[apart <= _SPIKE * np.median(noisy)] if noisy.size else rows
+
+
+def _largest_pull(force: Array) -> float:
+    """Largest force below the line from the first to the last rows."""
+    if force.size < 2 * _FEWEST_BASELINE:
+        return 0.0
+    ends = np.median(force[:_FEWEST_BASELINE]), np.median(force[-_FEWEST_BASELINE:])
+    return float(max(np.max(np.linspace(*ends, force.size) - force), 0.0))
+
+
+def _rows_apart(recording: Recording, rows: Rows, pull: float) -> int:
     """Number of the first of some rows, in time or against it, that are out of contact.
 
-    They end where a row departs from the line of the rows before it. Contact begins and ends with a
-    force that pulls. Where the departure pushes, rows at the end were in contact, and so were those
-    at the begin whose force changes with the displacement as in a contact; else noise hides the
-    jump into contact.
+    They end where rows depart from the line of those before them by a pulling force, with which
+    contact begins and ends. Rows before the turn that depart by a pushing force alone were out of
+    contact, too, if their force does not change with the displacement as in a contact: noise hides
+    the jump into contact.
     """
     force = np.asarray(recording.force)[rows]
     if force.size < 2 * _FEWEST_BASELINE:
         return 0
-    departure = _departures(force - force[0])
-    found = np.flatnonzero(np.abs(departure) > 1)
-    if found.size == 0:
-        return int(rows.size)
-    first = int(found[0])
-    if departure[first] < 0:
-        return first
+    departure = _departures(force - force[0], _LEAST_PULL * pull)
+    pulled, pushed = (_first_two(sign * departure > 1) for sign in (-1, 1))
+    if pulled is not None:
+        return pulled
+    first = rows.size if pushed is None else pushed
     if rows[0] > rows[-1] or _is_contact(recording, rows, first):
         return 0
     # The force rises slowly from where it became positive.
     others = np.flatnonzero(departure[:first] < 0)
-    return int(others[-1]) + 1 if others.size else first
+    return int(others[-1]) + 1 if others.size and pushed is not None else first
 
 
-def _departures(force: Array) -> Array:
+def _first_two(found: NDArray[np.bool_]) -> int | None:
+    """Place of the first two entries after each other that are true; a single one is a spike."""
+    both = np.flatnonzero(found[:-1] & found[1:])
+    return int(both[0]) if both.size else None
+
+
+def _departures(force: Array, least: float) -> Array:
     """Distance of each row from the line of the first two thirds of those before it.
 
-    It is over what noise explains and over the least force of a contact. 0 for the first rows, from
+    It is over what noise explains in any row, and over a least force. 0 for the first rows, from
     which no line is found.
     """
     sums = np.zeros((5, force.size + 1))
@@ -465,9 +495,9 @@ def _departures(force: Array) -> Array:
     slope = (product - mean_x * mean_y) / spread
     left = np.maximum(square_y - mean_y**2 - slope**2 * spread, 0.0) * number / (number - 2)
     error = np.sqrt(left * (1 + (1 + (x - mean_x) ** 2 / spread) / number))
-    least = np.maximum(stdtrit(number - 2, 1 - _UNLIKELY) * error, _LEAST_FORCE * np.ptp(force))
-    apart = y - mean_y - slope * (x - mean_x)
-    return np.concatenate([np.zeros(_FEWEST_BASELINE), apart / np.maximum(least, _TINY)])
+    likely = stdtrit(number - 2, 1 - _UNLIKELY) * error
+    apart = (y - mean_y - slope * (x - mean_x)) / np.maximum(np.maximum(likely, least), _TINY)
+    return np.concatenate([np.zeros(_FEWEST_BASELINE), apart])
 
 
 def _is_contact(recording: Recording, rows: Rows, count: int) -> bool:
@@ -490,6 +520,19 @@ def _is_contact(recording: Recording, rows: Rows, count: int) -> bool:
     return bool(abs(slopes[0]) > _STEEP * stiffness and slopes[0] * slopes[1] > 0)
 
 
+def _refuse_wrong_sign(recording: Recording) -> None:
+    """Raise if the force pulls where the sphere is pushed furthest into the surface."""
+    force, moved = recording.force, recording.displacement
+    if force is None or moved is None or not np.any(np.isfinite(force + moved)):
+        return
+    turn = int(np.nanargmax(np.where(np.isfinite(force), moved, np.nan)))
+    if force[turn] < min(0.5 * np.nanmin(force), 0.0):
+        raise ValueError(
+            f"the force is {prefixed('N', float(force[turn]))} at the largest displacement, and "
+            "has the wrong sign there; displacement and force are positive where they press"
+        )
+
+
 def _branches(recording: Recording) -> Branches:
     """Rows of approach and of retraction: before and after the largest displacement, or force."""
     driven = recording.displacement if recording.displacement is not None else recording.force
@@ -502,7 +545,8 @@ def _branches(recording: Recording) -> Branches:
     moved = driven if recording.displacement is not None else np.asarray(recording.radius)
     span = float(np.ptp(moved[rows]))
     for sign, one in zip((1, -1), branches, strict=True):
-        way = sign * moved[one]
+        # The median of five rows is free of their noise.
+        way = sign * scipy.ndimage.median_filter(moved[one], 5, mode="nearest")
         if way.size and float(np.max(np.maximum.accumulate(way) - way)) > _RETURN * span:
             raise ValueError(
                 "the loop turns more than once, or a column has the wrong sign; displacement and "
@@ -516,6 +560,22 @@ def _means(contact: _Contact, branches: Branches) -> tuple[float, float]:
     """Works of adhesion of both branches, of the rows whose noise leaves them one."""
     appr, retr = (rows[np.isfinite(contact.work[rows])] for rows in branches)
     return branch_means(contact.work, (appr, retr)) if min(appr.size, retr.size) else _NO_MEANS
+
+
+def _by_zero_of_one(
+    recording: Recording, rig: Rig, modulus: float, zero: float, averaged: Branches, alone: Rows
+) -> Array:
+    """Both works, hysteresis and modulus with the zero of the displacement that one branch has.
+
+    Where both branches have no works there, it is that which the branch has near a zero of both.
+    """
+    found = np.full(4, math.nan)
+    for near in (None, zero):
+        if not np.all(np.isfinite(found)):
+            place = _zero_displacement(recording, rig, modulus, [alone], near=near)
+            appr, retr = _means(_contact(recording, rig, modulus, place), averaged)
+            found = np.array([appr, retr, retr - appr, modulus])
+    return found
 
 
 def _placed(
@@ -671,39 +731,50 @@ def _pull_off(
 ) -> tuple[Estimate[float], float]:
     """Largest pulling force of the retraction, by parabolas through some rows, and their noise.
 
-    The interval holds the noise, and some errors of the forces of all rows.
+    They are as many as a parabola fits within the noise. The interval holds the noise, and some
+    errors of the forces of all rows.
     """
     pulled = retraction[np.isfinite(force[retraction])]
-    width = max(5, pulled.size // 20 * 2 + 1)
-    smooth = scipy.signal.savgol_filter(force[pulled], width, 2)
-    place = int(np.argmin(smooth))
-    near = slice(max(place - width, 0), place + width)
+    values = force[pulled]
+    rough = np.diff(values, 2, prepend=values[:1], append=values[-1:]) ** 2
+    width = max(5, values.size // 20 * 2 + 1)
+    while True:
+        smooth = scipy.signal.savgol_filter(values, width, 2)
+        place = int(np.argmin(smooth))
+        near = slice(max(place - width, 0), place + width)
+        squares = float(np.mean((values - smooth)[near] ** 2)) * width / (width - 3)
+        # Second differences of noise have 6 times its variance, and the median of their squares
+        # is 0.455 of the mean.
+        noise = float(np.median(rough[near])) / (6 * 0.455)
+        if width == 5 or squares <= _FITS * noise:
+            break
+        width = max(5, width // 4 * 2 + 1)
     # A parabola knows its middle to 9/4, and its ends to 9 times the variance of the mean.
     at_end = min(place, pulled.size - 1 - place) < width // 2
-    squares = float(np.mean((force[pulled] - smooth)[near] ** 2)) * width / (width - 3)
     variance = squares / width * (9.0 if at_end else 2.25)
     variance += sum(float(one[pulled[place]]) ** 2 for one in errors)
     value, reach = -float(smooth[place]), REACH * math.sqrt(variance)
-    return Estimate(value, math.sqrt(variance), value - reach, value + reach), math.sqrt(squares)
+    return Estimate(value, math.sqrt(variance), value - reach, value + reach), math.sqrt(noise)
 
 
-def _pull_off_remark(rig: Rig, pull_off: Estimate[float], work: Estimate[float]) -> list[str]:
-    """A sentence where the pull-off force is not that of the work of adhesion of the retraction."""
-    least, value, most = (
-        1.5 * math.pi * rig.radius * one for one in (work.low, work.value, work.high)
-    )
+def _pull_off_remark(rig: Rig, pull_off: Estimate[float], work: float, lost: float) -> list[str]:
+    """A sentence where the pull-off force is not that of the work of adhesion of the retraction.
+
+    A retraction that does not end out of contact, whose lost energy is NaN, may end before it.
+    """
     if pull_off.high <= 0:
         return [
             "No force pulls in the retraction: check the zero of the force, the modulus and the "
             "stiffness of the machine."
         ]
-    if least <= _APART * pull_off.high and pull_off.low <= _APART * most:
+    value = 1.5 * math.pi * rig.radius * work
+    is_less = value > _APART * pull_off.high and math.isfinite(lost)
+    if not (is_less or pull_off.low > _APART * value):
         return []
     return [
-        f"A work of adhesion of {prefixed('J/m2', work.value)} pulls with up to "
-        f"{prefixed('N', value)}, and the loop with {prefixed('N', pull_off.value)}: check the "
-        "units, the modulus, the radius of the sphere and the stiffness of the machine, and "
-        "whether the retraction goes on to pull-off."
+        f"A work of adhesion of {prefixed('J/m2', work)} pulls with up to {prefixed('N', value)}, "
+        f"and the loop with {prefixed('N', pull_off.value)}: check the units, the modulus, the "
+        "radius of the sphere and the stiffness of the machine."
     ]
 
 

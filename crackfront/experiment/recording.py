@@ -29,6 +29,9 @@ _HEAD = re.compile(r"(?P<name>.*?)\s*(?:[\[(](?P<bracket>[^])]+)[])]|/\s*(?P<sla
 
 _SEPARATORS = ("\t", ";", ",")
 
+_MOST_HEADS = 1000
+"""Lines among which the first one of numbers is looked for."""
+
 
 @dataclass(frozen=True, slots=True)
 class Recording:
@@ -89,7 +92,7 @@ def read_recording(path: Path, named: Mapping[str, str], units: Mapping[str, str
     text = decoded(path)
     if text is None:
         raise ValueError(f"{path} is no text; export the loop as a table, as CSV")
-    lines = text.split("\n")
+    lines = [line for line in text.split("\n") if line.strip()]
     separator, first = _layout(path, lines)
     width = len(_cells(lines[first], separator))
     heads = _heads(lines[first - 1], separator, width) if first > 0 else []
@@ -105,37 +108,46 @@ def read_recording(path: Path, named: Mapping[str, str], units: Mapping[str, str
         written = _unit(head) or (below[place].strip("[]() ") if below else "")
         unit = units.get(name) or written
         if not unit:
+            symbol = "mN" if name == "force" else "um^2" if _is_area(name, head, "") else "um"
             raise ValueError(
-                f"{path}: the column {head!r} has no unit; give one, as in "
-                f"--{name}-unit {'mN' if name == 'force' else 'um'}"
+                f"{path}: the column {head!r} has no unit; give one, as in --{name}-unit {symbol}"
             )
-        if written and unit != written:
+        found = _in_si(table[place], name, head, unit)
+        if written and not np.array_equal(
+            _in_si(table[place], name, head, written), found, equal_nan=True
+        ):
             raise ValueError(
                 f"{path}: the column {head!r} has the unit {written}, and --{name}-unit is {unit}; "
                 "leave that out, or correct the heading"
             )
-        columns[name] = _in_si(table[place], name, head, unit)
+        # A column without a number is as good as none.
+        columns[name] = found if np.any(np.isfinite(found)) else None
     return Recording(**columns)
 
 
 def _in_si(values: Array, name: str, head: str, unit: str) -> Array:
-    """A column in SI units; radii also from contact areas or diameters, by their head."""
-    if name == "radius" and "area" in _name(head):
-        return np.sqrt(values * unit_value(unit, "m^2") / np.pi)
+    """A column in SI units; radii also from contact areas or diameters, by head and unit."""
+    if _is_area(name, head, unit):
+        return np.sqrt(np.maximum(values * unit_value(unit, "m^2"), 0.0) / np.pi)
     found = values * unit_value(unit, UNITS[name])
-    return found / 2 if name == "radius" and "diameter" in _name(head) else found
+    return found / 2 if name == "radius" and _name(head).endswith("diameter") else found
+
+
+def _is_area(name: str, head: str, unit: str) -> bool:
+    """Whether a column of radii has areas, by its unit or, without one, its head."""
+    return name == "radius" and (is_unit(unit, "m^2") if unit else _name(head).endswith("area"))
 
 
 def _layout(path: Path, lines: Sequence[str]) -> tuple[str | None, int]:
     """Separator of a table, None for spaces, and its first line of numbers."""
     for separator in (*_SEPARATORS, None):
-        for number, line in enumerate(lines):
+        for number, line in enumerate(lines[:_MOST_HEADS]):
             cells = _cells(line, separator)
             heads = _heads(lines[number - 1], separator, len(cells)) if number else []
             if not _is_row(cells, heads):
                 continue
             # A decimal comma is no separator: both cells of 1,5 would be numbers.
-            if len(heads) == len(cells) or separator != ",":
+            if len(heads) in (len(cells), len(cells) - (not cells[-1])) or separator != ",":
                 return separator, number
             break
     raise ValueError(f"{path} has no line with two numbers or more; a loop is a table of columns")
@@ -144,7 +156,8 @@ def _layout(path: Path, lines: Sequence[str]) -> tuple[str | None, int]:
 def _is_row(cells: Sequence[str], heads: Sequence[str]) -> bool:
     """Whether cells are a row of a table: two numbers, or below heads one beside empty cells."""
     count = sum(map(_is_number, cells))
-    has_heads = len(heads) == len(cells) and not any(map(_is_number, heads))
+    has_heads = len(heads) in (len(cells), len(cells) - (not cells[-1]))
+    has_heads = has_heads and not any(map(_is_number, heads))
     is_all = count == sum(map(bool, cells))
     fewest = 1 if is_all and has_heads and len(cells) > 1 else 2
     return count >= fewest and (is_all or has_heads)
@@ -166,14 +179,15 @@ def _cells(line: str, separator: str | None) -> list[str]:
 def _is_number(cell: str) -> bool:
     """Whether a cell is a number, with a decimal point or comma, or says that there is none."""
     return (
-        re.fullmatch(r"[-+]?(\d+[.,]?\d*|[.,]\d+)([eE][-+]?\d+)?|nan|NaN|NA|N/A", cell) is not None
+        re.fullmatch(r"[-+]?(\d+[.,]?\d*|[.,]\d+)([eE][-+]?\d+)?|nan|NaN|NA|N/A|-+", cell)
+        is not None
     )
 
 
 def _is_unit(head: str) -> bool:
     """Whether a cell of a line of heads is a unit of force, of length or of time, or says none."""
     text = head.strip("[]() ")
-    return text in ("", "-", "1") or any(is_unit(text, unit) for unit in ("N", "m", "s"))
+    return text in ("", "-", "1") or any(is_unit(text, unit) for unit in ("N", "m", "m^2", "s"))
 
 
 def _unit(head: str) -> str:
@@ -201,10 +215,14 @@ def _chosen(
                 raise ValueError(f"{path} has no column {named[name]!r}; its heads are {listed}")
         else:
             places = [i for i, head in enumerate(heads) if re.fullmatch(pattern, _name(head))]
+        # A radius beside its area is the same again.
+        named_so = [i for i in places if name == "radius" and _name(heads[i]).endswith(name)]
+        places = named_so if len(named_so) == 1 else places
         if len(places) > 1:
+            option = "contact-radius" if name == "radius" else name
             both = ", ".join(repr(heads[i]) for i in places)
             raise ValueError(
-                f"{path} has {len(places)} columns of {name}: {both}; name one by --{name}"
+                f"{path} has {len(places)} columns of {name}: {both}; name one by --{option}"
             )
         if places:
             yield name, places[0]
@@ -216,33 +234,47 @@ def _numbers(
     """Numbers of some columns of a table by their places, NaN in empty cells."""
     import pandas
 
+    text = "\n".join(lines)
+    # Where a comma separates no cells it is a decimal one; its numbers are converted one by one.
+    has_comma = separator != "," and "," in text
     try:
         table = pandas.read_csv(
-            io.StringIO("\n".join(lines)),
+            io.StringIO(text),
             sep=separator or r"\s+",
-            dtype=str,
+            dtype=str if has_comma else None,
             header=None,
-            names=range(width),
-            usecols=places,
-            skip_blank_lines=True,
+            names=range(width + 1),
+            na_values=["-", "--", "---"],
             index_col=False,
         )
     except pandas.errors.ParserError as error:
         raise ValueError(f"{path} is no table: {str(error).strip()}") from error
-    texts = table.to_numpy(str)
-    if all(np.any(np.char.find(texts, sign) >= 0) for sign in ".,"):
+    more = np.flatnonzero(table[width].notna())
+    if more.size:
         raise ValueError(
-            f"{path} has numbers with decimal points and with decimal commas; write one of them"
+            f"{path}: row {more[0] + 1} of the numbers has more cells than there are heads; write "
+            "a head for every column, and commas between cells alone"
         )
     found = {}
+    if has_comma:
+        texts = [table[place].str.strip() for place in places]
+        if all(any(one.str.contains(sign, regex=False).any() for one in texts) for sign in ".,"):
+            raise ValueError(
+                f"{path} has numbers with decimal points and with decimal commas; write one of them"
+            )
     for place in places:
-        column = table[place].str.strip().replace("", None)
-        numbers = pandas.to_numeric(column.str.replace(",", "."), errors="coerce")
+        column = table[place]
+        if not pandas.api.types.is_numeric_dtype(column):
+            column = column.str.strip().replace("", None)
+            numbers = pandas.to_numeric(column.str.replace(",", "."), errors="coerce")
+        else:
+            numbers = column
         bad = np.flatnonzero(numbers.isna() & column.notna())
         if bad.size:
             raise ValueError(
                 f"{path}: {column[bad[0]]!r} in row {bad[0] + 1} of the numbers, column "
                 f"{place + 1}, is no number; mend or remove the row"
             )
-        found[place] = numbers.to_numpy(float)
+        values = numbers.to_numpy(float)
+        found[place] = np.where(np.isfinite(values), values, np.nan)
     return found

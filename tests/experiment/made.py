@@ -20,12 +20,14 @@ def loop(
     stiffness=1e3,
     retraction=1.0,
     preload=1.5,
+    n_away=30,
+    wave=0.0,
     without=None,
 ):
     """A loop with a pinned edge at its turn, irregular steps and rows out of contact.
 
-    The largest radius is `preload` times that of the retraction without a force. Noise and drift
-    are relative to the largest force, that of the radius to itself. The retraction
+    The largest radius is `preload` times that of the retraction without a force. Noise, drift and
+    a wave in time are relative to the largest force, that of the radius to itself. The retraction
     ends at a part of its way.
     """
     random, scales = np.random.default_rng(seed), Scales(RADIUS, 1.0, MODULUS)
@@ -39,16 +41,17 @@ def loop(
     work = np.concatenate([np.full(n_row, W_APPR), pinned, np.full(n_row, W_RETR)])
     force = jkr.equilibrium_force(radius, work)
     penetration = jkr.equilibrium_penetration(radius, work)
-    away = np.zeros(30)
-    start = np.linspace(penetration[0] - 1, penetration[0], 30)
-    end = np.linspace(penetration[-1], penetration[-1] - 1, 30)
+    away = np.zeros(n_away)
+    start = np.linspace(penetration[0] - 1, penetration[0], n_away)
+    end = np.linspace(penetration[-1], penetration[-1] - 1, n_away)
     if retraction < 1:
         end = away = np.zeros(0)
-    radius = np.concatenate([np.zeros(30), radius, away])
-    force = np.concatenate([np.zeros(30), force, away])
+    radius = np.concatenate([np.zeros(n_away), radius, away])
+    force = np.concatenate([np.zeros(n_away), force, away])
     penetration = np.concatenate([start, penetration, end])
     largest, time = np.max(np.abs(force)), np.linspace(-0.3, 0.7, force.size)
     noise = force_noise * random.normal(size=force.size) + drift * time
+    noise += wave * np.sin(np.arange(force.size) / 7)
     columns = {
         "force": (force + largest * noise) * scales.force,
         "radius": radius * (1 + radius_noise * random.normal(size=radius.size)) * scales.lateral,

@@ -65,6 +65,8 @@ def test_two_columns_suffice_with_a_displacement_of_unknown_zero(without, stiffn
         ({"without": "radius", "preload": 2.0, "drift": 0.3}, 1e3),
         ({"without": "radius", "preload": 3.0, "force_noise": 2e-4, "stiffness": 300.0}, 300.0),
         ({"without": "radius", "preload": 1.2, "force_noise": 0.02}, 1e3),
+        ({"without": "radius", "n_away": 3000}, 1e3),
+        ({"without": "radius", "n_away": 100, "wave": 0.01}, 1e3),
         ({"without": "force", "stiffness": 300.0}, 300.0),
         ({"without": "force", "stiffness": 300.0, "preload": 3.0}, 300.0),
     ],
@@ -80,7 +82,7 @@ def test_two_columns_hold_the_truth_at_any_preload_and_drift(made, given):
     assert np.mean(held) >= 0.85
     # The table ends at 1.6 times the radius of pull-off, after the largest pull.
     pull = -jkr.pull_off_force(W_RETR) * Scales(RADIUS, 1.0, MODULUS).force
-    assert np.mean(pulled) == pytest.approx(pull, rel=0.05)
+    assert np.mean(pulled) == pytest.approx(pull, rel=0.12)
 
 
 @pytest.mark.parametrize("n_row", [100, 3000])
@@ -204,8 +206,29 @@ def test_what_is_no_loop_is_refused(columns, sentence):
         measured_loop(columns, radius=RADIUS, contact_modulus=MODULUS)
 
 
+def test_a_spike_out_of_contact_is_no_contact():
+    one = loop(0, without="radius")
+    for row in (5, -8):
+        force = one.force.copy()
+        force[row] += 0.2 * np.max(force)
+        spiked = Recording(force, None, one.displacement)
+        found = analyse_loop(spiked, Rig(RADIUS, MODULUS, stiffness=1e3))
+        assert found.hysteresis.value == pytest.approx(W_RETR - W_APPR, rel=0.1)
+
+
+def test_a_sharp_pull_off_is_not_smoothed_away():
+    radius = np.concatenate([np.linspace(35e-6, 400e-6, 400), np.linspace(400e-6, 20e-6, 400)])
+    work = np.repeat([W_APPR, W_RETR], 400)
+    force = 4 / 3 * MODULUS * radius**3 / RADIUS
+    force -= np.sqrt(8 * np.pi * MODULUS * work * radius**3)
+    found = measured_loop({"force": force, "radius": radius}, radius=RADIUS)
+    assert found.pull_off_force.value == pytest.approx(1.5 * np.pi * W_RETR * RADIUS, rel=0.01)
+
+
 def test_a_force_of_the_other_sign_is_refused_with_what_to_check():
     one = loop(0)
+    with pytest.raises(ValueError, match="at the largest displacement, and has the wrong sign"):
+        analyse_loop(Recording(-one.force, None, one.displacement), Rig(RADIUS, MODULUS))
     for modulus in (None, MODULUS):
         with pytest.raises(ValueError, match="has the wrong sign; displacement and force are posi"):
             measured_loop(

@@ -12,9 +12,11 @@ FORCE, RADIUS = np.array([-1.5e-3, 2.25e-3, 0.5e-3]), np.array([50e-6, 60.5e-6, 
 ROWS = [("-1.5", "50"), ("2.25", "60.5"), ("0.5", "70")]
 
 
-def table(separator=",", decimal=".", head=("Force (mN)", "Radius (um)"), before="", below=()):
+def table(
+    separator=",", decimal=".", head=("Force (mN)", "Radius (um)"), before="", below=(), more=""
+):
     lines = [separator.join(head), *([separator.join(below)] if below else [])]
-    lines += [separator.join(row).replace(".", decimal) for row in ROWS]
+    lines += [separator.join(row).replace(".", decimal) + more for row in ROWS]
     return before + "\n".join(lines) + "\n"
 
 
@@ -38,6 +40,9 @@ def table(separator=",", decimal=".", head=("Force (mN)", "Radius (um)"), before
         table(head=('"Force (mN)"', '"Radius (um)"')).encode(),
         table(head=("# Force (mN)", "Radius (um)")).encode(),
         table("  ", head=("Force (mN)", "Contact radius (um)")).encode(),
+        table().replace("\n", "\n\n").encode(),
+        table().replace("\n", ",\n").replace(",\n", "\n", 1).encode(),
+        table(head=("Force (mN)", "Radius (um)", "Contact area (um^2)"), more=",9").encode(),
         b"Speed (um/s);2\nTime;Force (mN);Radius (um);Phase\n"
         b"12:00:01.1;-1,5;50;approach\n12:00:01.2;2,25;60,5;approach\n12:00:01.3;0,5;70;retract\n",
     ],
@@ -52,7 +57,7 @@ def test_tables_of_common_programs_are_read(content, tmp_path):
 
 
 @pytest.mark.parametrize("separator", [",", ";", "\t"])
-@pytest.mark.parametrize("absent", ["", "NaN", "NA", " "])
+@pytest.mark.parametrize("absent", ["", "NaN", "NA", " ", "-"])
 def test_a_radius_may_be_absent_out_of_contact(separator, absent, tmp_path):
     path = tmp_path / "rig.csv"
     rows = [("0.1", absent), *ROWS]
@@ -68,13 +73,14 @@ def test_a_radius_may_be_absent_out_of_contact(separator, absent, tmp_path):
         ("Contact area (um^2)", np.pi * (1e6 * RADIUS) ** 2),
         ("area / mm2", np.pi * (1e3 * RADIUS) ** 2),
         ("Contact diameter [um]", 2e6 * RADIUS),
+        ("Area-equivalent radius (um)", 1e6 * RADIUS),
     ],
 )
 def test_a_camera_may_give_areas_or_diameters(head, values, tmp_path):
     path = tmp_path / "rig.csv"
     rows = zip(1e3 * FORCE, values, strict=True)
     path.write_text(f"Force (mN),{head}\n" + "".join(f"{f},{a:.9g}\n" for f, a in rows))
-    assert read_recording(path, {}, {}).radius == pytest.approx(RADIUS)
+    assert read_recording(path, {"radius": head}, {}).radius == pytest.approx(RADIUS)
 
 
 def test_a_unit_stands_in_the_heading_or_in_an_option(tmp_path):
@@ -82,7 +88,8 @@ def test_a_unit_stands_in_the_heading_or_in_an_option(tmp_path):
     path.write_text(table())
     with pytest.raises(ValueError, match="has the unit mN, and --force-unit is uN; leave that out"):
         read_recording(path, {}, {"force": "uN"})
-    assert read_recording(path, {}, {"force": "mN"}).force == pytest.approx(FORCE)
+    units = {"force": "mN", "radius": "micron"}
+    assert read_recording(path, {}, units).force == pytest.approx(FORCE)
 
 
 def test_columns_are_named_and_units_given_by_options(tmp_path):
@@ -102,6 +109,12 @@ def test_columns_are_named_and_units_given_by_options(tmp_path):
         (table(";").replace("60.5", "60,5"), "decimal points and with decimal commas"),
         (table(head=("Force (mN)", "Radius (kg)")), "the unit kg cannot be converted to m"),
         ("nothing here\n", "no line with two numbers"),
+        (
+            table().replace("60.5", "60,5"),
+            "row 2 of the numbers has more cells than there are heads",
+        ),
+        ("force(uN) radius(um)\n0 0.02 1\n1 0.03 1\n", "row 1 .* has more cells than there are"),
+        (table(head=("Force (mN)", "Contact area")), "--radius-unit um.2"),
         ("", "no line with two numbers"),
     ],
 )
