@@ -121,10 +121,15 @@ def summary(configuration: Path, output: Path | None) -> None:
             f"{kept}, and the figures beside it, are of another range of the fit than the one "
             "given; run crackfront fit and crackfront figures with this configuration, or make"
         )
+    pictures = {text: store.folder / "figures" / f"{name}.png" for name, text in _CAPTIONS.items()}
+    if absent := [path for path in pictures.values() if not path.is_file()]:
+        raise ValueError(
+            f"{absent[0]} is not there; run crackfront figures with this configuration, or make"
+        )
     page = summary_page(
         f"Adhesion hysteresis: {configuration.stem}",
         fit_table(_fitted(sweep, store)),
-        {text: store.folder / "figures" / f"{name}.png" for name, text in _CAPTIONS.items()},
+        pictures,
         read_statuses(store.hysteresis),
         origin.configuration,
         about | {"seed of the sweep": str(sweep.seed)},

@@ -49,6 +49,9 @@ _HEAD = re.compile(r"\s*(?P<name>[^(\[]*?)\s*(?:[\[(](?P<unit>[^)\]]*)[\])])?\s*
 _BARE = re.compile(r"[-+]?(\d+[.,]?\d*|[.,]\d+)([eE][-+]?\d+)?")
 """A number without a unit."""
 
+_NAMES = ("sample", "group")
+"""Columns whose cells are names, also where they look like numbers."""
+
 _NO_UNIT = {"", "1", "-"}
 """Units of numbers without a unit."""
 
@@ -348,7 +351,11 @@ def _table_rows(path: Path) -> Iterator[tuple[int, dict[str, Any]]]:
                 )
         yield (
             reader.line_num,
-            {name: _with_unit(cell, unit, between) for name, (cell, unit) in row.items() if cell},
+            {
+                name: cell if name in _NAMES else _with_unit(cell, unit, between)
+                for name, (cell, unit) in row.items()
+                if cell
+            },
         )
 
 
@@ -363,7 +370,7 @@ def _decimal_signs(row: Mapping[str, str], where: str) -> set[str]:
     numbers = (
         cell
         for name, cell in row.items()
-        if name not in ("sample", "group", "size") and _BARE.fullmatch(cell)
+        if name not in (*_NAMES, "size") and _BARE.fullmatch(cell)
     )
     return {sign for cell in numbers for sign in ",." if sign in cell}
 

@@ -685,8 +685,10 @@ def test_fit_and_summary_of_different_ranges_do_not_stand_side_by_side(whole, tm
     shorter = tmp_path / "shorter.yaml"
     text = TEST.read_text(encoding="utf-8")
     shorter.write_text(text.replace("lowest_elastic_energy: 0.02", "lowest_elastic_energy: 0.05"))
-    for one in (TEST, shorter):
-        assert command("fit", one, "--output", whole.folder)[0] == 0
+    assert command("fit", TEST, "--output", whole.folder)[0] == 0
+    code, output = command("summary", TEST, "--output", whole.folder)
+    assert (code, "factor.png is not there; run crackfront figures" in output) == (2, True)
+    assert command("fit", shorter, "--output", whole.folder)[0] == 0
     code, output = command("summary", TEST, "--output", whole.folder)
     assert code == 2
     assert "fit.nc, and the figures beside it, are of another range of the fit" in output

@@ -116,6 +116,12 @@ def test_two_sides_between_semicolons_are_no_number_with_a_decimal_comma(tmp_pat
         read_samples(path, SPHERE)
 
 
+def test_a_name_may_look_like_a_number_with_a_decimal_comma(tmp_path):
+    path = tmp_path / "samples.csv"
+    path.write_text(CSV.replace(",", ";").replace(".", ",").replace("\nA;", "\n1,5;"))
+    assert "1,5" in [one.name for one in read_samples(path, SPHERE)]
+
+
 @pytest.mark.parametrize("between", [";", "\t"])
 def test_numbers_with_both_decimal_signs_are_refused(tmp_path, between):
     path = tmp_path / "samples.csv"

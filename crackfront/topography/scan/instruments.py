@@ -335,7 +335,8 @@ def _stated_units(path: Path, heads: Sequence[tuple[str, str]]) -> tuple[str | N
         shown = ", ".join(f"{name} ({unit})" if unit else name for name, unit in heads)
         raise ValueError(
             f"{path}: its columns are {shown}; name those of the points x, y and z, each with its "
-            "unit of length and x and y in the same, as in x (um),y (um),z (nm)"
+            "unit of length and x and y in the same, as in x (um),y (um),z (nm), which options do "
+            "not replace"
         )
     place, height = units[0], units[-1]
     return place, in_metres(height, 1.0)[0] / in_metres(place, 1.0)[0]

@@ -113,12 +113,15 @@ def read_psd_file(path: Path, options: PsdOptions) -> Psd:
         raise ValueError(f"{path} has no rows of numbers; export the density as text, as CSV")
     one = _chosen(path, list(_series(text)), options.psd_series)
     abscissa, abscissa_unit = _abscissa(path, one, options)
-    density_unit = _density_unit(path, one, options)
+    named = _units(path, options)
+    written = named[1] if named else _written_unit(one, 1)
+    density_unit = _density_unit(path, written)
     kind, scale = _kind(path, one, density_unit, options)
     assumptions: list[str] = []
     factor, words = 1.0, ""
     if kind in ("1d", "2d"):
-        factor, words = _norm(one, abscissa, options, 1 if kind == "1d" else 2)
+        is_per_radian = re.search(_PER_LENGTH["wavevector"], written, re.IGNORECASE) is not None
+        factor, words = _norm(one, abscissa, options, 1 if kind == "1d" else 2, is_per_radian)
     if kind == "1d":
         sides = options.psd_sides or _stated_sides(one)
         if sides is None:
@@ -351,10 +354,9 @@ def _uncounted(unit: str) -> str:
     return re.sub("|".join(_PER_LENGTH.values()), "1", unit, flags=re.IGNORECASE)
 
 
-def _density_unit(path: Path, one: _Series, options: PsdOptions) -> str:
-    """Unit of the second column."""
-    named = _units(path, options)
-    unit = _uncounted(named[1] if named else _written_unit(one, 1))
+def _density_unit(path: Path, written: str) -> str:
+    """Unit of the second column, as lengths alone."""
+    unit = _uncounted(written)
     if not unit:
         raise ValueError(
             f"{path} states no unit of its density; name both, as in --psd-units 1/um,um^3"
@@ -390,12 +392,17 @@ def _kind(path: Path, one: _Series, unit: str, options: PsdOptions) -> tuple[Psd
 
 
 def _norm(
-    one: _Series, abscissa: PsdAbscissa, options: PsdOptions, n_dimension: int
+    one: _Series,
+    abscissa: PsdAbscissa,
+    options: PsdOptions,
+    n_dimension: int,
+    is_per_radian: bool,
 ) -> tuple[float, str]:
     """Factor of a density for its norm over wavevectors, and the norm in words."""
     if abscissa == "frequency":
         return 1.0, "mean square its integral over frequencies"
-    norm = options.psd_norm or ("1" if re.search(_GWYDDION, one.text) else "2pi")
+    is_over_wavevectors = is_per_radian or re.search(_GWYDDION, one.text)
+    norm = options.psd_norm or ("1" if is_over_wavevectors else "2pi")
     if norm == "1":
         return (2 * math.pi) ** n_dimension, "mean square its integral over wavevectors"
     return 1.0, "mean square its integral over wavevectors / 2 pi"

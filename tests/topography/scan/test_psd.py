@@ -117,6 +117,13 @@ def test_a_density_per_cycle_is_one_over_frequencies(tmp_path):
     np.testing.assert_allclose(read_psd_file(path, PsdOptions()).value, profile(), rtol=1e-6)
 
 
+def test_a_density_per_radian_is_one_over_wavevectors(tmp_path):
+    path = tmp_path / "psd.csv"
+    head = "q (rad/um),two-sided PSD (um^2/(rad/um))\n"
+    path.write_text(head + columns(Q * 1e-6, 1e18 * profile() / (2 * np.pi)))
+    np.testing.assert_allclose(read_psd_file(path, PsdOptions()).value, profile(), rtol=1e-6)
+
+
 def test_a_density_that_does_not_say_its_sides_is_taken_as_two_sided_with_a_sentence(tmp_path):
     path = tmp_path / "psd.csv"
     path.write_text("q (1/m),PSD (m^3)\n" + columns(Q, profile()))
