@@ -42,6 +42,9 @@ _UNLIKELY, _LEAST_PULL = 1e-4, 0.15
 """Probability with which noise alone makes a row depart from those out of contact, two of which in
 succession are of a contact; and the least departure over the largest pulling force."""
 
+_SIGMAS = 4.5
+"""Distance from those out of contact over the noise of a row, two of which make a contact."""
+
 _STEEP, _CERTAIN = 0.1, 0.9995
 """Slope of the force over the displacement, relative to that of the whole loop, and the certainty
 that there is one, from which rows are of a contact: out of it the force hardly changes."""
@@ -398,12 +401,23 @@ def _with_zero_force(recording: Recording) -> tuple[Recording, list[Array], list
     # Independent errors of the line, each of one standard error; a baseline may have no noise.
     squares, directions = np.linalg.eigh(covariance)
     errors = list((powers @ (directions * np.sqrt(np.maximum(squares, 0.0)))).T)
+    if order == 1:
+        errors += _bend(chosen / force.size, force[chosen], powers)
     largest = prefixed("N", float(np.max(np.abs(zero[touching]))))
     kind = "a drift and a zero" if order else "a zero"
     sentence = f"{chosen.size} rows out of contact give {kind} of the force, up to {largest}."
     if not order:
         sentence += " Its drift is unknown, as no rows are out of contact on the other side."
     return replace(recording, force=force - zero), errors, [sentence]
+
+
+def _bend(place: Array, force: Array, powers: Array) -> list[Array]:
+    """Error of a line of the force at all rows, where a parabola fits it significantly better."""
+    bent, covariance = np.polyfit(place, force, 2, cov=True)
+    if abs(bent[0]) <= _SIGMAS * math.sqrt(max(covariance[0, 0], 0.0)):
+        return []
+    time = powers[:, 0]
+    return [np.polyval(bent, time) - np.polyval(np.polyfit(place, force, 1), time)]
 
 
 def _touches(recording: Recording) -> NDArray[np.bool_]:
@@ -415,13 +429,17 @@ def _touches(recording: Recording) -> NDArray[np.bool_]:
     if recording.radius is not None:
         touches = recording.radius > 0
     else:
-        force = np.asarray(recording.force)
+        force, moved = np.array(recording.force), np.asarray(recording.displacement)
         known = _usual_rows(force)
-        turn = int(np.argmax(force[known])) if known.size else 0
-        pull = _largest_pull(force[known])
-        before = _rows_apart(recording, known[: turn + 1], pull)
-        after = _rows_apart(recording, known[turn:][::-1], pull)
+        known = known[np.isfinite(moved[known])]
         touches = np.zeros(force.size, bool)
+        turn = int(np.argmax(moved[known])) if known.size else 0
+        after = _rows_apart(recording, force, known[turn:][::-1])
+        if after >= _FEWEST_BASELINE:
+            # The drift after the contact is also that before it.
+            last = known[-after:]
+            force -= np.polyfit(last, force[last], 1)[0] * np.arange(force.size)
+        before = _rows_apart(recording, force, known[: turn + 1])
         inside = known[before : known.size - after]
         if inside.size and np.ptp(force[known]) > 0:
             touches[inside[0] : inside[-1] + 1] = True
@@ -450,7 +468,7 @@ def _largest_pull(force: Array) -> float:
     return float(max(np.max(np.linspace(*ends, force.size) - force), 0.0))
 
 
-def _rows_apart(recording: Recording, rows: Rows, pull: float) -> int:
+def _rows_apart(recording: Recording, force: Array, rows: Rows) -> int:
     """Number of the first of some rows, in time or against it, that are out of contact.
 
     They end where rows depart from the line of those before them by a pulling force, with which
@@ -458,19 +476,28 @@ def _rows_apart(recording: Recording, rows: Rows, pull: float) -> int:
     contact, too, if their force does not change with the displacement as in a contact: noise hides
     the jump into contact.
     """
-    force = np.asarray(recording.force)[rows]
-    if force.size < 2 * _FEWEST_BASELINE:
+    if rows.size < 2 * _FEWEST_BASELINE:
         return 0
-    departure = _departures(force - force[0], _LEAST_PULL * pull)
+    values = force[rows] - force[rows[0]]
+    usual = force[_usual_rows(force)]
+    departure = _departures(values, _LEAST_PULL * _largest_pull(usual), _row_noise(usual))
     pulled, pushed = (_first_two(sign * departure > 1) for sign in (-1, 1))
     if pulled is not None:
         return pulled
     first = rows.size if pushed is None else pushed
-    if rows[0] > rows[-1] or _is_contact(recording, rows, first):
+    if rows[0] > rows[-1] or _is_contact(recording, force, rows, first):
         return 0
     # The force rises slowly from where it became positive.
     others = np.flatnonzero(departure[:first] < 0)
     return int(others[-1]) + 1 if others.size and pushed is not None else first
+
+
+def _row_noise(force: Array) -> float:
+    """Noise of the rows, of those fifth whose second differences are smallest.
+
+    These have 6 times its variance; a fifth of squares of normal numbers is below 0.0642.
+    """
+    return math.sqrt(float(np.quantile(np.diff(force, 2) ** 2, 0.2)) / (6 * 0.0642))
 
 
 def _first_two(found: NDArray[np.bool_]) -> int | None:
@@ -479,11 +506,11 @@ def _first_two(found: NDArray[np.bool_]) -> int | None:
     return int(both[0]) if both.size else None
 
 
-def _departures(force: Array, least: float) -> Array:
+def _departures(force: Array, least: float, noise: float) -> Array:
     """Distance of each row from the line of the first two thirds of those before it.
 
-    It is over what noise explains in any row, and over a least force. 0 for the first rows, from
-    which no line is found.
+    It is over what their scatter explains, or a known noise if that is less, and over a least
+    force. 0 for the first rows, from which no line is found.
     """
     sums = np.zeros((5, force.size + 1))
     place = np.arange(force.size, dtype=float)
@@ -494,18 +521,18 @@ def _departures(force: Array, least: float) -> Array:
     spread = square_x - mean_x**2
     slope = (product - mean_x * mean_y) / spread
     left = np.maximum(square_y - mean_y**2 - slope**2 * spread, 0.0) * number / (number - 2)
-    error = np.sqrt(left * (1 + (1 + (x - mean_x) ** 2 / spread) / number))
-    likely = stdtrit(number - 2, 1 - _UNLIKELY) * error
+    likely = np.minimum(stdtrit(number - 2, 1 - _UNLIKELY) * np.sqrt(left), _SIGMAS * noise)
+    likely *= np.sqrt(1 + (1 + (x - mean_x) ** 2 / spread) / number)
     apart = (y - mean_y - slope * (x - mean_x)) / np.maximum(np.maximum(likely, least), _TINY)
     return np.concatenate([np.zeros(_FEWEST_BASELINE), apart])
 
 
-def _is_contact(recording: Recording, rows: Rows, count: int) -> bool:
+def _is_contact(recording: Recording, force: Array, rows: Rows, count: int) -> bool:
     """Whether the force of the first of some rows changes with the displacement as in a contact.
 
     The slope must be steep, and go on in as many rows beyond these.
     """
-    force, moved = np.asarray(recording.force), np.asarray(recording.displacement)
+    moved = np.asarray(recording.displacement)
     stiffness = np.nanmax(force) - np.nanmin(force)
     stiffness /= np.nanmax(moved) - np.nanmin(moved)
     slopes = []
@@ -749,9 +776,8 @@ def _pull_off(
         if width == 5 or squares <= _FITS * noise:
             break
         width = max(5, width // 4 * 2 + 1)
-    # A parabola knows its middle to 9/4, and its ends to 9 times the variance of the mean.
-    at_end = min(place, pulled.size - 1 - place) < width // 2
-    variance = squares / width * (9.0 if at_end else 2.25)
+    # A parabola knows its ends to 9 times the variance of the mean, and its lowest place no better.
+    variance = 9.0 * squares / width
     variance += sum(float(one[pulled[place]]) ** 2 for one in errors)
     value, reach = -float(smooth[place]), REACH * math.sqrt(variance)
     return Estimate(value, math.sqrt(variance), value - reach, value + reach), math.sqrt(noise)

@@ -134,8 +134,11 @@ def _in_si(values: Array, name: str, head: str, unit: str) -> Array:
 
 
 def _is_area(name: str, head: str, unit: str) -> bool:
-    """Whether a column of radii has areas, by its unit or, without one, its head."""
-    return name == "radius" and (is_unit(unit, "m^2") if unit else _name(head).endswith("area"))
+    """Whether a column of radii has areas, by its head, or by its unit where the head says none."""
+    named = _name(head)
+    if name != "radius" or named.endswith(("radius", "diameter")):
+        return False
+    return named.endswith("area") or is_unit(unit, "m^2")
 
 
 def _layout(path: Path, lines: Sequence[str]) -> tuple[str | None, int]:
@@ -207,6 +210,7 @@ def _chosen(
 ) -> Iterator[tuple[str, int]]:
     """Columns of force, radius and displacement among the heads of a table."""
     listed = ", ".join(map(repr, heads)) or "none"
+    taken = {head.strip().lower() for head in named.values()}
     for name, pattern in _HEADS.items():
         if name in named:
             wanted = named[name].strip().lower()
@@ -214,7 +218,11 @@ def _chosen(
             if not places:
                 raise ValueError(f"{path} has no column {named[name]!r}; its heads are {listed}")
         else:
-            places = [i for i, head in enumerate(heads) if re.fullmatch(pattern, _name(head))]
+            places = [
+                i
+                for i, head in enumerate(heads)
+                if re.fullmatch(pattern, _name(head)) and not taken & {head.lower(), _name(head)}
+            ]
         # A radius beside its area is the same again.
         named_so = [i for i in places if name == "radius" and _name(heads[i]).endswith(name)]
         places = named_so if len(named_so) == 1 else places

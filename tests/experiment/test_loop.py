@@ -1,5 +1,7 @@
 """Measured loops: works of adhesion within their intervals, the modulus and the machine."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -66,6 +68,8 @@ def test_two_columns_suffice_with_a_displacement_of_unknown_zero(without, stiffn
         ({"without": "radius", "preload": 3.0, "force_noise": 2e-4, "stiffness": 300.0}, 300.0),
         ({"without": "radius", "preload": 1.2, "force_noise": 0.02}, 1e3),
         ({"without": "radius", "n_away": 3000}, 1e3),
+        ({"without": "radius", "n_away": 8, "force_noise": 0.001}, 1e3),
+        ({"without": "radius", "drift": 0.5, "force_noise": 0.005}, 1e3),
         ({"without": "radius", "n_away": 100, "wave": 0.01}, 1e3),
         ({"without": "force", "stiffness": 300.0}, 300.0),
         ({"without": "force", "stiffness": 300.0, "preload": 3.0}, 300.0),
@@ -204,6 +208,15 @@ def test_a_loop_without_noise_is_that_of_its_works():
 def test_what_is_no_loop_is_refused(columns, sentence):
     with pytest.raises(ValueError, match=sentence):
         measured_loop(columns, radius=RADIUS, contact_modulus=MODULUS)
+
+
+def test_a_bent_drift_widens_the_intervals():
+    one, time = loop(0), np.linspace(-1, 1, 320)
+    bent = one.force + 0.05 * np.max(one.force) * time**2
+    found = analyse_loop(replace(one, force=bent), Rig(RADIUS, MODULUS))
+    for name, truth in TRUTH.items():
+        estimate = getattr(found, name)
+        assert estimate.low <= truth <= estimate.high
 
 
 def test_a_spike_out_of_contact_is_no_contact():

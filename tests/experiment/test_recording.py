@@ -115,6 +115,8 @@ def test_columns_are_named_and_units_given_by_options(tmp_path):
         ),
         ("force(uN) radius(um)\n0 0.02 1\n1 0.03 1\n", "row 1 .* has more cells than there are"),
         (table(head=("Force (mN)", "Contact area")), "--radius-unit um.2"),
+        (table(head=("Force (mN)", "Contact area (um)")), "unit um cannot be converted to m.2"),
+        (table(head=("Force (mN)", "Radius (um^2)")), "unit um.2 cannot be converted to m"),
         ("", "no line with two numbers"),
     ],
 )

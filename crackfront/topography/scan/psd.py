@@ -121,6 +121,11 @@ def read_psd_file(path: Path, options: PsdOptions) -> Psd:
     factor, words = 1.0, ""
     if kind in ("1d", "2d"):
         is_per_radian = re.search(_PER_LENGTH["wavevector"], written, re.IGNORECASE) is not None
+        if is_per_radian and abscissa != "wavevector":
+            raise ValueError(
+                f"{path}: the density has the unit {written!r}, per radian, and the first column "
+                f"is a {abscissa}; name both units, as in --psd-units 1/um,um^3"
+            )
         factor, words = _norm(one, abscissa, options, 1 if kind == "1d" else 2, is_per_radian)
     if kind == "1d":
         sides = options.psd_sides or _stated_sides(one)

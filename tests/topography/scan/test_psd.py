@@ -144,6 +144,11 @@ def test_a_density_that_does_not_say_its_sides_is_taken_as_two_sided_with_a_sent
         ("f (°/m),PSD (m^3)\n" + columns(Q, profile()), {}, "'°/m', none of a frequency"),
         ("q (mrad/m),PSD (m^3)\n" + columns(Q, profile()), {}, "'mrad/m', none of a wavevector"),
         (
+            "frequency (1/um),PSD (um^3/rad)\n" + columns(Q, profile()),
+            {},
+            "per radian, and the first column is a frequency; name both units",
+        ),
+        (
             "q (cycles/m),PSD (m^3)\n" + columns(Q, profile()),
             {"psd_abscissa": "wavevector"},
             "one of a frequency; leave --psd-abscissa wavevector out",
