@@ -530,13 +530,15 @@ def _departures(force: Array, least: float, noise: float) -> Array:
 def _is_contact(recording: Recording, force: Array, rows: Rows, count: int) -> bool:
     """Whether the force of the first of some rows changes with the displacement as in a contact.
 
-    The slope must be steep, and go on in as many rows beyond these.
+    The slope must be steep in the first half of them, and go on in the other: the last rows of
+    those out of contact may be in contact without a sign of it.
     """
     moved = np.asarray(recording.displacement)
     stiffness = np.nanmax(force) - np.nanmin(force)
     stiffness /= np.nanmax(moved) - np.nanmin(moved)
     slopes = []
-    for chosen, certainty in ((rows[:count], 0.99), (rows[: 2 * count], _CERTAIN)):
+    half = max(count // 2, _FEWEST_BASELINE)
+    for chosen, certainty in ((rows[:half], 0.99), (rows[: 2 * half], _CERTAIN)):
         x, y = moved[chosen], force[chosen]
         x, y = x[np.isfinite(x)], y[np.isfinite(x)]
         if x.size < _FEWEST_BASELINE or np.ptp(x) == 0:
