@@ -47,7 +47,8 @@ def measured_loop(
     modulus_error, radius_error : float, optional
         Relative standard errors of the two.
     stiffness : float or str, optional
-        Stiffness of the machine, for displacements without a contact radius. (Units: N/m)
+        Stiffness of the machine, for displacements with a force or a contact radius alone.
+        (Units: N/m)
     window : (float, float), optional
         Contact radii that both branches are averaged over. (Units: m)
 

@@ -84,7 +84,7 @@ class Rig:
     radius_error: float = 0.0
     """Standard error of the radius of the sphere, relative."""
     stiffness: float | None = None
-    """Stiffness of the machine, where no radius was measured. (Units: N/m)"""
+    """Stiffness of the machine, where force or radius was not measured. (Units: N/m)"""
     window: tuple[float, float] | None = None
     """Contact radii that both works are averaged over; None to find them. (Units: m)"""
 
@@ -159,13 +159,15 @@ def analyse_loop(recording: Recording, rig: Rig) -> MeasuredLoop:
     MeasuredLoop
         Works of adhesion, modulus and more, with 95% intervals. These hold the noise of the rows
         (one of ten blocks of each branch is left out in turn), the errors of modulus and radius
-        that are given or fitted, and what half of the window changes.
+        that are given or fitted, those of the zeros of force and displacement, and what half of the
+        window changes.
 
     Raises
     ------
     ValueError
-        If the branches share too few rows, the loop turns more than once, or no modulus is given
-        and none can be fitted.
+        If the branches share too few rows, the loop turns more than once, a column has the wrong
+        sign, noise hides the pull-off of a loop without radii, or no modulus is given and none can
+        be fitted.
     """
     recording, zero_errors, remarks = _with_zero_force(recording)
     _refuse_wrong_sign(recording)
