@@ -203,12 +203,7 @@ def analyse_loop(recording: Recording, rig: Rig) -> MeasuredLoop:
         # A true trend of either branch moves the zero; one branch alone says by how much.
         alone += [_by_zero_of_one(recording, rig, known, zero, averaged, one) for one in averaged]
     estimates = _estimates(found, averaged, first.radius, rig, shifted, alone)
-    if not all(math.isfinite(one.high) for one in estimates[:3]):
-        raise ValueError(
-            "the works of adhesion have no interval: the noise of the force, or the error of its "
-            "zero, is as large as the adhesion in some rows; check the units and the modulus, "
-            "press less, or record the contact radius"
-        )
+    _refuse_no_interval(estimates[:3])
     if is_fitted:
         free = Rig(rig.radius, None, 0.0, rig.radius_error)
         fitted = _estimates(found, averaged, first.radius, free, shifted)[3]
@@ -236,12 +231,8 @@ def analyse_loop(recording: Recording, rig: Rig) -> MeasuredLoop:
         # Forces that follow from radii err as their work of adhesion does.
         errors = [first.force * (estimates[1].standard_error / max(estimates[1].value, _TINY))]
     pull_off, noise = _pull_off(first.force, branches[1], errors)
-    if recording.radius is None and 0 < pull_off.value < _NOISES * noise:
-        raise ValueError(
-            f"the pull-off force, {prefixed('N', pull_off.value)}, is hardly beyond the noise of "
-            f"the force, {prefixed('N', noise)}; press less, average rows, or record the contact "
-            "radius"
-        )
+    if recording.radius is None:
+        _refuse_hidden(pull_off.value, noise)
     remarks += _pull_off_remark(rig, pull_off, estimates[1].value, lost)
     return MeasuredLoop(
         force=first.force,
@@ -335,7 +326,7 @@ def _zero_displacement(
                 return _NO_FIT
             curve = force_at(contact.penetration[rows] / scales.vertical, float(np.mean(known)))
             apart = contact.force[rows] - scales.force * curve
-            total += float(np.nanmean(apart**2)) / variance
+            total += float(np.nanmean(apart**2)) / max(variance, _TINY)
         return total
 
     moved = displacement[np.concatenate(branches)]
@@ -785,6 +776,25 @@ def _pull_off(
     variance += sum(float(one[pulled[place]]) ** 2 for one in errors)
     value, reach = -float(smooth[place]), REACH * math.sqrt(variance)
     return Estimate(value, math.sqrt(variance), value - reach, value + reach), math.sqrt(noise)
+
+
+def _refuse_no_interval(works: Sequence[Estimate[float]]) -> None:
+    """Raise if works of adhesion have no interval."""
+    if not all(math.isfinite(one.high) for one in works):
+        raise ValueError(
+            "the works of adhesion have no interval: the noise of the force, or the error of its "
+            "zero, is as large as the adhesion in some rows; check the units and the modulus, "
+            "press less, or record the contact radius"
+        )
+
+
+def _refuse_hidden(pull_off: float, noise: float) -> None:
+    """Raise if noise hides a pull-off force (Units: N), by which contact is found."""
+    if 0 < pull_off < _NOISES * noise:
+        raise ValueError(
+            f"the pull-off force, {prefixed('N', pull_off)}, is hardly beyond the noise of the "
+            f"force, {prefixed('N', noise)}; press less, average rows, or record the contact radius"
+        )
 
 
 def _pull_off_remark(rig: Rig, pull_off: Estimate[float], work: float, lost: float) -> list[str]:

@@ -150,7 +150,7 @@ def _layout(path: Path, lines: Sequence[str]) -> tuple[str | None, int]:
             if not _is_row(cells, heads):
                 continue
             # A decimal comma is no separator: both cells of 1,5 would be numbers.
-            if len(heads) in (len(cells), len(cells) - (not cells[-1])) or separator != ",":
+            if separator != "," or _are_headed(cells, heads):
                 return separator, number
             break
     raise ValueError(f"{path} has no line with two numbers or more; a loop is a table of columns")
@@ -159,11 +159,15 @@ def _layout(path: Path, lines: Sequence[str]) -> tuple[str | None, int]:
 def _is_row(cells: Sequence[str], heads: Sequence[str]) -> bool:
     """Whether cells are a row of a table: two numbers, or below heads one beside empty cells."""
     count = sum(map(_is_number, cells))
-    has_heads = len(heads) in (len(cells), len(cells) - (not cells[-1]))
-    has_heads = has_heads and not any(map(_is_number, heads))
+    has_heads = _are_headed(cells, heads) and not any(map(_is_number, heads))
     is_all = count == sum(map(bool, cells))
     fewest = 1 if is_all and has_heads and len(cells) > 1 else 2
     return count >= fewest and (is_all or has_heads)
+
+
+def _are_headed(cells: Sequence[str], heads: Sequence[str]) -> bool:
+    """Whether there is a head for each cell; a last empty one may be that of a closing comma."""
+    return len(heads) == len(cells) or (not cells[-1] and len(heads) == len(cells) - 1)
 
 
 def _heads(line: str, separator: str | None, width: int) -> list[str]:
