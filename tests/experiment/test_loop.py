@@ -86,7 +86,8 @@ def test_two_columns_hold_the_truth_at_any_preload_and_drift(made, given):
     assert np.mean(held) >= 0.85
     # The table ends at 1.6 times the radius of pull-off, after the largest pull.
     pull = -jkr.pull_off_force(W_RETR) * Scales(RADIUS, 1.0, MODULUS).force
-    assert np.mean(pulled) == pytest.approx(pull, rel=0.12)
+    # A wave of 1% of the largest force is 8% of this pull.
+    assert np.mean(pulled) == pytest.approx(pull, rel=0.12 if "wave" in made else 0.05)
 
 
 @pytest.mark.parametrize("n_row", [100, 3000])
