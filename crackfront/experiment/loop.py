@@ -315,17 +315,20 @@ def _zero_displacement(
     if radius is not None:
         return _zero_by_radius(displacement, radius, rig, modulus, branches)
     scales = Scales(rig.radius, 1.0, modulus)
-    spread = [float(np.nanvar(np.asarray(force)[rows])) for rows in branches]
+    # Rows out of contact may be many more, and have no part in it.
+    parts = [Recording(np.asarray(force)[rows], None, displacement[rows]) for rows in branches]
+    spread = [float(np.nanvar(np.asarray(part.force))) for part in parts]
 
     def misfit(zero: float) -> float:
         """Variance of the force that the curves leave, over that of the force."""
-        contact, total = _contact(recording, rig, modulus, zero), 0.0
-        for rows, variance in zip(branches, spread, strict=True):
-            known = contact.work[rows][np.isfinite(contact.work[rows])]
+        total = 0.0
+        for part, variance in zip(parts, spread, strict=True):
+            contact = _contact(part, rig, modulus, zero)
+            known = contact.work[np.isfinite(contact.work)]
             if known.size < FEWEST_STATES:
                 return _NO_FIT
-            curve = force_at(contact.penetration[rows] / scales.vertical, float(np.mean(known)))
-            apart = contact.force[rows] - scales.force * curve
+            curve = force_at(contact.penetration / scales.vertical, float(np.mean(known)))
+            apart = contact.force - scales.force * curve
             total += float(np.nanmean(apart**2)) / max(variance, _TINY)
         return total
 

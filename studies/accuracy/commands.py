@@ -166,6 +166,9 @@ def energy_balance(keep: bool) -> None:
 def loops(loops: int, keep: bool) -> None:
     """Record simulated cycles as rigs would, and count truths within intervals; print a table."""
     announce_compilation()
-    shown = with_progress(rigs.cycles(loops), loops, "loops")
-    parts = {"Measured loops": rigs.coverage_table(rigs.coverage(shown))}
+    found: dict[str, rigs.Coverage] = {}
+    for press, instruments in rigs.RECORDED:
+        shown = with_progress(rigs.cycles(loops, press), loops, "loops")
+        found |= rigs.coverage(shown, instruments)
+    parts = {"Measured loops": rigs.coverage_table(found)}
     tell("accuracy", parts, "studies.accuracy.loops", keep=keep)

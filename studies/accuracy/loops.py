@@ -32,9 +32,24 @@ SURFACES = tuple(
 """Spectra of the spheres, in reduced lengths, and e_el in w_int."""
 
 WORKS = ("w_appr", "w_retr", "hysteresis")
-_SIDE, _DEEPEST, _STEP = 5.0, 2.5, 0.02
-_FREE_ROWS = 30
-"""Rows out of contact, before the contact and after it."""
+
+
+@dataclass(frozen=True, slots=True)
+class Press:
+    """How deep a sphere is pressed, in reduced units."""
+
+    deepest: float
+    """Largest penetration."""
+    side: float
+    """Side of the surface."""
+    step: float
+    """Step of the penetration."""
+
+
+SHALLOW = Press(deepest=2.5, side=5.0, step=0.02)
+"""To twice the pull-off force of the smooth sphere."""
+DEEP = Press(deepest=9.2, side=8.0, step=0.05)
+"""To 18 times the pull-off force of the smooth sphere."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,10 +62,14 @@ class Instrument:
     """Standard deviation, relative to the contact radius."""
     drift: float = 0.0
     """Drift of the force over the loop, relative to the largest force."""
+    wave: float = 0.0
+    """Amplitude of a wave of the force in time, relative to the largest force."""
     stiffness: float = 1e3
     """Stiffness of the machine. (Units: N/m)"""
     recorded: float = 0.7
     """Part of the states that is recorded, at random, so that steps are irregular."""
+    free_rows: int = 30
+    """Rows out of contact, before the contact and after it."""
     retraction: float = 1.0
     """Part of the way of the mount from the turn to pull-off that it goes back."""
     knows_modulus: bool = True
@@ -72,8 +91,22 @@ INSTRUMENTS: Mapping[str, Instrument] = {
     "machine of 100 N/m": Instrument(stiffness=100.0),
     "machine of 1 MN/m": Instrument(stiffness=1e6),
     "no contact radius": Instrument(sees_contact=False),
+    "no contact radius, drift of 30%": Instrument(sees_contact=False, drift=0.3),
+    "no contact radius, wave of 1%": Instrument(sees_contact=False, wave=0.01),
+    "no contact radius, 8 rows outside": Instrument(sees_contact=False, free_rows=8),
 }
 """What the loops are recorded with."""
+
+DEEP_INSTRUMENTS: Mapping[str, Instrument] = {
+    "18 pull-off forces": Instrument(),
+    "18 pull-off forces, no contact radius": Instrument(sees_contact=False),
+    "18 pull-off forces, no contact radius, drift of 30%": Instrument(
+        sees_contact=False, drift=0.3
+    ),
+}
+"""What the loops of spheres that are pressed deep are recorded with."""
+
+RECORDED = ((SHALLOW, INSTRUMENTS), (DEEP, DEEP_INSTRUMENTS))
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,12 +123,12 @@ class Coverage:
     """Loops of too few rows for any number."""
 
 
-def cycles(count: int) -> Iterator[Dataset]:
+def cycles(count: int, press: Press = SHALLOW) -> Iterator[Dataset]:
     """Simulated cycles of rough spheres in SI units, the spectra in turn."""
     for number in range(count):
         spectrum, energy = SURFACES[number % len(SURFACES)]
-        surface = random_surface(spectrum, energy, side=_SIDE, seed=number)
-        cycle = run_loop(surface, max_penetration=_DEEPEST, step=_STEP, fronts=False)
+        surface = random_surface(spectrum, energy, side=press.side, seed=number)
+        cycle = run_loop(surface, max_penetration=press.deepest, step=press.step, fronts=False)
         yield in_si_units(cycle, SPHERE)
 
 
@@ -120,8 +153,9 @@ def recording(cycle: Dataset, instrument: Instrument, rng: np.random.Generator) 
     kept[turn] = True
     rows = visited[kept]
     largest = float(np.max(np.abs(force)))
-    before, after = np.zeros(_FREE_ROWS), np.zeros(_FREE_ROWS if instrument.retraction == 1 else 0)
-    free = np.linspace(1e-6, 0, _FREE_ROWS)
+    before = np.zeros(instrument.free_rows)
+    after = before if instrument.retraction == 1 else np.zeros(0)
+    free = np.linspace(1e-6, 0, before.size)
     columns = {
         "force": np.concatenate([before, force[rows], after]),
         "radius": np.concatenate([before, radius[rows], after]),
@@ -132,6 +166,7 @@ def recording(cycle: Dataset, instrument: Instrument, rng: np.random.Generator) 
     count = columns["force"].size
     noise = instrument.force_noise * rng.normal(size=count)
     noise += instrument.drift * np.linspace(-0.3, 0.7, count)
+    noise += instrument.wave * np.sin(np.arange(count) / 7)
     columns["force"] += largest * noise
     columns["radius"] *= 1 + instrument.radius_noise * rng.normal(size=count)
     seen = instrument.sees_contact
@@ -148,13 +183,15 @@ def _first_visits(mount: Array, direction: Array) -> Array:
     return found
 
 
-def coverage(loops: Iterable[Dataset], seed: int = 0) -> dict[str, Coverage]:
-    """Coverage by the names of :data:`INSTRUMENTS`, each of which records every loop."""
-    found: dict[str, list[tuple[Array, Array]]] = {name: [] for name in INSTRUMENTS}
+def coverage(
+    loops: Iterable[Dataset], instruments: Mapping[str, Instrument], seed: int = 0
+) -> dict[str, Coverage]:
+    """Coverage by the names of the instruments, each of which records every loop."""
+    found: dict[str, list[tuple[Array, Array]]] = {name: [] for name in instruments}
     refused = Counter[str]()
     for number, cycle in enumerate(loops):
         truth = simulated_loop(cycle)
-        for place, (name, instrument) in enumerate(INSTRUMENTS.items()):
+        for place, (name, instrument) in enumerate(instruments.items()):
             rng = np.random.default_rng((seed, number, place))
             rig = Rig(
                 SPHERE.radius,

@@ -7,6 +7,7 @@ import pytest
 from click.testing import CliRunner
 
 import crackfront as cf
+from crackfront.core import jkr
 from crackfront.experiment.loop import Rig, analyse_loop
 from crackfront.experiment.simulated import simulated_loop
 from studies.__main__ import main
@@ -70,7 +71,7 @@ def test_intervals_hold_what_an_unknown_zero_of_the_displacement_leaves(rng):
 
 
 def test_offsets_and_intervals_are_told_in_parts_of_the_true_hysteresis(cycle):
-    found = coverage([cycle])
+    found = coverage([cycle], loops.INSTRUMENTS)
     assert found.keys() == loops.INSTRUMENTS.keys()
     truth = simulated_loop(cycle)
     assert found["usual"].refused == 0
@@ -90,14 +91,22 @@ def test_the_table_has_the_shares_of_every_instrument_and_of_all():
 
 
 def test_the_command_prints_the_table(cycle, monkeypatch):
-    monkeypatch.setattr(loops, "cycles", lambda count: [cycle] * count)
+    monkeypatch.setattr(loops, "cycles", lambda count, press: [cycle] * count)
     done = CliRunner().invoke(main, ["accuracy", "loops", "--loops", "2"])
     assert done.exit_code == 0, done.output
     assert "| machine of 100 N/m | 2 | 0 |" in done.output
+    assert "| 18 pull-off forces, no contact radius | 2 | 0 |" in done.output
 
 
 @pytest.mark.slow
 def test_intervals_hold_the_truth_of_simulated_spheres():
     """95% are claimed; in 90% of 12 loops, three works and all instruments."""
-    found = coverage(loops.cycles(12))
-    assert np.mean([one.inside for one in found.values()]) >= 0.9
+    for press, instruments in loops.RECORDED:
+        found = coverage(loops.cycles(12, press), instruments)
+        assert np.mean(np.concatenate([one.inside for one in found.values()])) >= 0.9
+
+
+def test_deep_spheres_are_pressed_to_the_force_of_their_name():
+    smooth = -jkr.pull_off_force() * loops.SPHERE.force
+    (cycle,) = loops.cycles(1, loops.DEEP)
+    assert float(np.max(cycle.force)) / smooth == pytest.approx(18, rel=0.03)
