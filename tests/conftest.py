@@ -32,6 +32,11 @@ hypothesis.settings.register_profile(
 hypothesis.settings.load_profile("ours")
 
 
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """The workflow first: one worker makes the sweep its tests share, and no long test is last."""
+    items.sort(key=lambda item: not item.nodeid.startswith("tests/workflow/"))
+
+
 @pytest.fixture(autouse=True, scope="session")
 def _kernels_shared_out(request: pytest.FixtureRequest) -> None:
     """Of workers side by side, two begin with kernels of either kind: neither compiles both.
