@@ -300,6 +300,13 @@ def _gap_sentences(fit: SweepFit) -> Iterator[str]:
                 f"{name}: no value at e_el = {gaps} w_int; its k averages the other amplitudes "
                 "and does not compare with the k of other spectra."
             )
+        alone = fit.in_range & (fit.cells.count[index] == 1)
+        if np.any(alone) and fit.n_realisation[index] > 1:
+            gaps = ", ".join(f"{value:.4g}" for value in fit.table.amplitude[alone])
+            yield (
+                f"{name}: one realisation alone has a value at e_el = {gaps} w_int, which is left "
+                "out of the exponent and of the trend with w_rms (not of k)."
+            )
         if fit.n_realisation[index] == 1:
             yield f"{name}: one realisation gives no interval, nor do pooled results with it."
 

@@ -35,6 +35,9 @@ FEWEST_BOOTSTRAP = 100
 COUNTS_AT_ONCE = 2**23
 """Counts of bootstrap samples in memory at once; few realisations are drawn in one go."""
 
+_SAME_SIZE = 1e-6
+"""Difference of the logarithm of lengths, below which spectra have no different size."""
+
 FIT_DEFINITION = (
     "k of one simulation is (w_retr - w_appr) / (2 e_el) with e_el measured on its tile. k of a "
     "spectrum is the mean over the amplitudes in the range, each the mean over its realisations, "
@@ -47,9 +50,11 @@ FIT_DEFINITION = (
     "both by least squares with equal weights, pooled with one intercept a spectrum. The midpoint "
     "slope m in w_int - (w_retr + w_appr)/2 = m e_el (by the law 1 for roughness, 0 for a chemical "
     "field) is a ratio of sums, the best estimator for noise whose variance grows with w_rms^2. "
-    "The size slope is that of k in log2 of the correlation "
-    "length among spectra of one shape (equal roll_off / short_cutoff and Hurst exponent), with "
-    "one intercept a shape. The law's k is that of the straight front at the measured w_rms and at "
+    "A cell of one realisation among others of several has no part in either slope, whose "
+    "interval would lack its scatter. The size slope is that of k in log2 of the correlation "
+    "length among spectra of one shape (equal roll_off / short_cutoff and Hurst exponent; of "
+    "straight fronts also equal springs in correlation lengths), with one intercept a shape. The "
+    "law's k is that of the straight front at the measured w_rms and at "
     "g, the length of the springs that hold the front (of a sphere those of the smooth contact of "
     "the radius in the middle of the steady window) over the Larkin length; the law was not "
     "fitted to spheres. k of the infinite contact is the measured one times what the law's k gains "
@@ -204,11 +209,14 @@ def _fit_spectra(
         present = np.any(np.isfinite(own.factor), axis=0)
         own = _Samples(*(quantity[:, present] for quantity in own))
         whole = np.ones((1, np.count_nonzero(present)))
-        value, weight = _statistics(_means(own, whole))
+        count = np.count_nonzero(np.isfinite(own.factor), axis=1)
+        # A cell of one realisation has no scatter, which the slopes' intervals would lack.
+        sloped = count >= min(2, np.max(count, initial=0))
+        value, weight = _statistics(_means(own, whole), sloped)
         values[:, index], weights[:, index] = value[:, 0], weight[:, 0]
         if freedom[index] > 0:
             rng = np.random.default_rng(streams[index])
-            drawn, _ = _statistics(_resampled(own, n_bootstrap, rng))
+            drawn, _ = _statistics(_resampled(own, n_bootstrap, rng), sloped)
             errors[:, index] = scatter(drawn)
     estimates = [student_estimate(*row, freedom) for row in zip(values, errors, strict=True)]
     return estimates, weights
@@ -233,9 +241,12 @@ def _means(samples: _Samples, counts: Array) -> _Samples:
     return _Samples(*means)
 
 
-def _statistics(means: _Samples) -> tuple[Array, Array]:
-    """Entries of LawEstimates for every bootstrap sample, and weights, (n_entry, n_sample)."""
-    doublings = np.log2(means.rms)
+def _statistics(means: _Samples, sloped: NDArray[np.bool_]) -> tuple[Array, Array]:
+    """Entries of LawEstimates for every bootstrap sample, and weights, (n_entry, n_sample).
+
+    The slopes are those of some amplitudes.
+    """
+    doublings = np.where(sloped, np.log2(means.rms), np.nan)
     positive = means.hysteresis > 0
     logarithm = np.log2(means.hysteresis, where=positive, out=np.full(positive.shape, np.nan))
     energy, one = finite_sum(means.energy), np.ones(positive.shape[0])
@@ -278,9 +289,10 @@ def _size_slope(table: SweepTable, factor: Estimate, freedom: NDArray[np.int64])
     """Change of k per doubling of the correlation length among spectra of one shape."""
     doublings = np.log2(table.correlation_length)
     deviation = np.zeros(doublings.size)
-    for shape in np.unique(table.shape):
-        family = (table.shape == shape) & np.isfinite(factor.value)
-        if np.count_nonzero(family) > 1:
+    for index in np.unique(table.family):
+        family = (table.family == index) & np.isfinite(factor.value)
+        # Equal lengths may differ by a rounding.
+        if np.any(family) and np.ptp(doublings[family]) > _SAME_SIZE:
             deviation[family] = doublings[family] - np.mean(doublings[family])
     spread = np.sum(deviation**2)
     return combination(factor, freedom, deviation / spread if spread > 0 else np.zeros(1))

@@ -21,7 +21,7 @@ PLACE = SPECTRUM, AMPLITUDE, REALISATION
 """Dimensions whose coordinates together identify one simulation of a sweep."""
 
 _SHAPE = SPECTRUM, AMPLITUDE
-_SHAPE_TEXT = "JSON of a spectrum's parameters, where not all are self-affine"
+_SHAPE_TEXT = "JSON of a spectrum's parameters in reduced units, where not all are self-affine"
 
 
 @dataclass(frozen=True)
@@ -54,7 +54,7 @@ class SweepAxes:
     spring: Array = variable("springs of a straight front, L_kappa; else NaN", LATERAL, *_SHAPE)
     n_angle: NDArray[np.int64] = variable("sites of the front", "1", *_SHAPE)
     sample_spacing: Array = variable("distance of samples along a ray", LATERAL, *_SHAPE)
-    tile_side: Array = variable("side of the periodic tile", LATERAL, SPECTRUM)
+    tile_side: Array = variable("side of the periodic tile", LATERAL, *_SHAPE)
     n_point: NDArray[np.int64] = variable("points along a side of the tile", "1", *_SHAPE)
     tolerance: Array = variable(
         "largest force along the motion that may be left", ADHESION, *_SHAPE
@@ -137,3 +137,10 @@ class SweepTable:
         octaves = np.round(np.log2(self.roll_off / self.short_cutoff), 9)
         hurst = np.where(octaves > 0, self.hurst, 0.0)
         return np.asarray(np.unique(np.stack([octaves, hurst]), axis=1, return_inverse=True)[1])
+
+    @property
+    def family(self) -> Array:
+        """Number of the shape and the springs in correlation lengths, (n_spectrum,)."""
+        springs = np.log2(self.spring[:, 0] / self.correlation_length)
+        known = np.round(np.nan_to_num(springs), 6)
+        return np.asarray(np.unique(np.stack([self.shape, known]), axis=1, return_inverse=True)[1])

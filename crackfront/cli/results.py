@@ -13,6 +13,7 @@ from crackfront.cli.sweep import configuration_argument, output_option, run_miss
 
 if TYPE_CHECKING:
     from crackfront.analysis.result import SweepFit
+    from crackfront.analysis.table import SweepTable
     from crackfront.simulate.simulation import Simulation
     from crackfront.sweep.store import Store
     from crackfront.sweep.sweep import Sweep
@@ -55,7 +56,7 @@ def fit(configuration: Path, output: Path | None, as_json: bool) -> None:
 
     sweep, store, origin = opened(configuration, output)
     fitted = _fitted(sweep, store)
-    paths = write_fit(store.folder, fitted, origin)
+    paths = write_fit(store.folder, fitted, sweep.table_fingerprint, origin)
     if as_json:
         click.echo(paths[1].read_text(encoding="utf-8"))
         return
@@ -76,7 +77,7 @@ def figures(configuration: Path, output: Path | None) -> None:
 
     sweep, store, origin = opened(configuration, output)
     fitted = _fitted(sweep, store)
-    simulation = _loop_example(sweep)
+    simulation = _loop_example(sweep, fitted.table)
     # Its file may have gone since the table was made.
     missing = store.inventory([simulation]).missing
     announce_cost(sum(expected_cost(one).seconds for one in missing))
@@ -88,7 +89,7 @@ def figures(configuration: Path, output: Path | None) -> None:
         "factor": factor_figure(fitted),
     }
     for name, figure in drawn.items():
-        for path in save_figure(figure, store.folder / "figures" / name):
+        for path in save_figure(figure, store.folder / "figures" / name, sweep.fingerprint):
             click.echo(f"figure: {path}")
 
 
@@ -108,6 +109,7 @@ def summary(configuration: Path, output: Path | None) -> None:
     from crackfront.analysis.report import fit_table
     from crackfront.data.digests import forget_sums
     from crackfront.data.files import write_text
+    from crackfront.plots.style import picture_subject
     from crackfront.sweep.fit_files import fit_range
     from crackfront.sweep.library import opened
     from crackfront.sweep.summary import summary_page
@@ -116,15 +118,20 @@ def summary(configuration: Path, output: Path | None) -> None:
     sweep, store, origin = opened(configuration, output)
     about = {name: text for name, text in store.about(sweep).items() if name != "configuration"}
     kept = store.folder / "fit.nc"
-    if kept.is_file() and fit_range(kept) != sweep.fit:
+    if kept.is_file() and fit_range(kept) != (sweep.fit, sweep.table_fingerprint):
         raise ValueError(
-            f"{kept}, and the figures beside it, are of another range of the fit than the one "
-            "given; run crackfront fit and crackfront figures with this configuration, or make"
+            f"{kept} is the fit of another range or table than those of the configuration given; "
+            "run crackfront fit with it, or make"
         )
     pictures = {text: store.folder / "figures" / f"{name}.png" for name, text in _CAPTIONS.items()}
     if absent := [path for path in pictures.values() if not path.is_file()]:
         raise ValueError(
             f"{absent[0]} is not there; run crackfront figures with this configuration, or make"
+        )
+    if other := [path for path in pictures.values() if picture_subject(path) != sweep.fingerprint]:
+        raise ValueError(
+            f"{other[0]} was drawn with another configuration than the one given; run crackfront "
+            "figures with this one, or make"
         )
     page = summary_page(
         f"Adhesion hysteresis: {configuration.stem}",
@@ -209,12 +216,24 @@ def _fitted(sweep: Sweep, store: Store) -> SweepFit:
     )
 
 
-def _loop_example(sweep: Sweep) -> Simulation:
-    """The simulation that comes nearest to the paper's Fig. 3c, a front on its longest springs."""
+def _loop_example(sweep: Sweep, table: SweepTable) -> Simulation:
+    """The simulation that comes nearest to the paper's Fig. 3c, a front on its longest springs.
+
+    It is one with a value: others may have no curve.
+    """
+    import numpy as np
+
     self_affine = [
         item for item in sweep.spectra if item.spectrum.longest_feature > item.spectrum.short_cutoff
     ]
-    energy = min(sweep.elastic_energies, key=lambda value: abs(value - 0.05))
     # The springs of spheres are NaN and count as none: the first spectrum stays.
     longest = max(self_affine or sweep.spectra, key=lambda item: max(0.0, item.spring))
-    return sweep.simulation(longest, energy, 0)
+    spectrum, amplitude, realisation = np.nonzero(table.finite)
+    away = np.abs(np.array(sweep.elastic_energies) - 0.05)[amplitude]
+    others = spectrum != sweep.spectra.index(longest)
+    first = np.lexsort((realisation, away, others))[0]
+    return sweep.simulation(
+        sweep.spectra[spectrum[first]],
+        sweep.elastic_energies[amplitude[first]],
+        int(realisation[first]),
+    )

@@ -116,10 +116,15 @@ _DATES = {".pdf": "CreationDate", ".png": "Software", ".svg": "Date"}
 """Metadata in which each format states the date or the program of a figure; they are left out."""
 
 
-def save_figure(figure: Figure, stem: Path) -> tuple[Path, ...]:
+_SUBJECTS = {".pdf": "Subject", ".png": "Description", ".svg": "Description"}
+"""Metadata in which each format states what it is a figure of."""
+
+
+def save_figure(figure: Figure, stem: Path, subject: str = "") -> tuple[Path, ...]:
     """Write a figure as PDF and PNG (300 dpi), its folder too; equal figures give equal bytes.
 
-    A name that ends in .pdf, .png or .svg is that of the one file to write.
+    A name that ends in .pdf, .png or .svg is that of the one file to write. Each file states a
+    subject, which :func:`picture_subject` reads.
     """
     paths = [stem.with_name(stem.name + suffix) for suffix in (".pdf", ".png")]
     if stem.suffix in _DATES:
@@ -129,13 +134,24 @@ def save_figure(figure: Figure, stem: Path) -> tuple[Path, ...]:
     disabled, logger.disabled = logger.disabled, True
     try:
         for path in paths:
-            metadata = {_DATES[path.suffix]: None}
+            metadata = {_DATES[path.suffix]: None, _SUBJECTS[path.suffix]: subject or None}
             look: dict[str, Any] = {"format": path.suffix[1:], "metadata": metadata}
             with house_style():
                 replace_atomically(path, functools.partial(figure.savefig, **look))
     finally:
         logger.disabled = disabled
     return tuple(paths)
+
+
+def picture_subject(path: Path) -> str:
+    """Subject that a PNG states; empty where it states none, or is no picture."""
+    from PIL import Image
+
+    try:
+        with Image.open(path) as picture:
+            return str(picture.info.get(_SUBJECTS[".png"], ""))
+    except OSError:
+        return ""
 
 
 def save_picture(figure: Figure, path: Path) -> None:

@@ -126,8 +126,10 @@ def draw_factor_by_size(axes: Axes, fit: SweepFit) -> None:
             cell = fit.cells.factor.at(([index], amplitude))
             here = fit.in_range[[amplitude]]
             draw_estimates(axes, style, size[[index], amplitude], cell, here)
-        curve, label = law_value(law.coefficients, s, abscissa, breadth), 2 * np.sqrt(energy)
-        axes.plot(abscissa, curve, color=colour, linewidth=0.8, label=rf"law, $s={label:.3g}$")
+        curve, label = law_value(law.coefficients, s, abscissa, breadth), rf"law, $s={s:.3g}$"
+        if fit.uncorrelated:
+            label = rf"law, $s=0$ ($e_\mathrm{{el}}={energy:.3g}$)"
+        axes.plot(abscissa, curve, color=colour, linewidth=0.8, label=label)
     for family in dict.fromkeys(families):
         label = spectrum_label(table, families.index(family))
         axes.plot([], [], spectrum_marker(family), color="0.4", label=label)
@@ -147,6 +149,7 @@ def set_factor_limits(axes: Axes, fit: SweepFit) -> None:
 _DECIMALS = 100.0
 """Ratio of the ends of an abscissa up to which its labels are decimal numbers."""
 
+_VARIANCE = r"(w_\mathrm{rms}/w_\mathrm{int})^2"
 _FACTOR_LABEL = r"$k = (w_\mathrm{retr}-w_\mathrm{appr})\,/\,2e_\mathrm{el}$"
 
 
@@ -157,7 +160,9 @@ def _ends(values: Array, margin: float) -> Array:
 
 def draw_hysteresis(axes: Axes, fit: SweepFit) -> None:
     """Draw mean hysteresis against (w_rms / w_int)^2 on log-log axes, the law and the theory."""
-    variance, hysteresis = fit.cells.w_rms**2, fit.cells.hysteresis
+    # The rms of uncorrelated sites is that of their pixels; the law and the theory have e_el.
+    variance = 4 * fit.cells.e_el if fit.uncorrelated else fit.cells.w_rms**2
+    hysteresis = fit.cells.hysteresis
     ends = _ends(variance, 1.8)
     # Below its onset hysteresis falls to nothing; such points must not stretch the axes.
     floor = 0.05 * PAPER_FACTOR / 2 * ends[0]
@@ -176,7 +181,8 @@ def draw_hysteresis(axes: Axes, fit: SweepFit) -> None:
     if ends[1] < _DECIMALS * ends[0]:
         label_decimals(axes.xaxis)
     axes.set_ylim(lowest, PERTURBATION_FACTOR / 2 * ends[1] * 4)
-    axes.set_xlabel(r"disorder $(w_\mathrm{rms}/w_\mathrm{int})^2$")
+    disorder = r"4e_\mathrm{el}/w_\mathrm{int}" if fit.uncorrelated else _VARIANCE
+    axes.set_xlabel(f"disorder ${disorder}$")
     axes.set_ylabel(r"hysteresis $(w_\mathrm{retr}-w_\mathrm{appr})/w_\mathrm{int}$")
     handles, labels = legend_entries(axes)
     for index, family in enumerate(spectrum_families(fit.table)):

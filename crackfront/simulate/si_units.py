@@ -104,7 +104,8 @@ _REDUCED = {
 } | {"x": LATERAL, "y": LATERAL, STEP: "1"}
 """Reduced units of everything that may be converted."""
 
-_ATTRIBUTES = dict.fromkeys((*Spectrum.length_names(), "travel"), LATERAL)
+_LENGTHS = (*Spectrum.length_names(), "travel", "spacing", "tile_side")
+_ATTRIBUTES = dict.fromkeys(_LENGTHS, LATERAL)
 _ATTRIBUTES |= {"end_penetration": VERTICAL, "pull_off_energy": ENERGY}
 """Reduced units of attributes; those of an array in SI units are in SI units, too."""
 

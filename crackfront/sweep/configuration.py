@@ -71,6 +71,14 @@ class Configuration(Section):
             )
         if measured and self.field == "chemical":
             raise refusal(f"spectrum {measured[0]!r} is that of heights; field must be roughness")
+        line = self.load.line
+        if line is not None and line.uncorrelated and self.numerics.error is not None:
+            raise refusal(
+                f"numerics.error is {self.numerics.error:g}, which chooses other pixels for each "
+                "amplitude, and the disorder of load.line.uncorrelated sites depends on them; give "
+                "angles_per_cutoff, samples_per_cutoff, interpolation, pixels_per_cutoff and "
+                "tolerance"
+            )
         if self.amplitudes.measured and not len(measured) == len(self.spectra) == 1:
             raise refusal(
                 "amplitudes.measured are multiples of the heights of one surface; give one "
@@ -89,9 +97,9 @@ class Configuration(Section):
             energy = surface.measured.conformity_energy(scales.contact_modulus).value
             measured = energy / scales.work_of_adhesion
         energies, fit = self.amplitudes.elastic_energies(measured), self.fit
-        if not any(
-            fit.lowest_elastic_energy <= energy <= fit.highest_elastic_energy for energy in energies
-        ):
+        lowest = fit.lowest_elastic_energy * (1 - _ROUND_OFF)
+        highest = fit.highest_elastic_energy * (1 + _ROUND_OFF)
+        if not any(lowest <= energy <= highest for energy in energies):
             raise ConfigurationError(
                 f"no amplitude lies in the range of the fit, e_el from "
                 f"{fit.lowest_elastic_energy:g} to {fit.highest_elastic_energy:g}; widen the range"

@@ -19,16 +19,23 @@ from crackfront.data.jsonable import to_jsonable
 from crackfront.data.labels import labelled
 from crackfront.data.provenance import Provenance, utc_now
 from crackfront.sweep.sweep import FitRange
+from crackfront.sweep.table import SWEEP_FINGERPRINT
 
 
-def fit_range(path: Path) -> FitRange:
-    """Range and bootstrap samples of the fit in a `fit.nc`; refused as by `read_attributes`."""
+def fit_range(path: Path) -> tuple[FitRange, str]:
+    """Range and bootstrap samples of a `fit.nc`, and the fingerprint of the table that it fits.
+
+    Refused as by `read_attributes`.
+    """
     about = read_attributes(path)
-    return FitRange(*(about.get(item.name) for item in fields(FitRange)))  # type: ignore[arg-type]
+    known = FitRange(*(about.get(item.name) for item in fields(FitRange)))  # type: ignore[arg-type]
+    return known, str(about.get(SWEEP_FINGERPRINT, ""))
 
 
-def write_fit(folder: Path, fit: SweepFit, origin: Provenance) -> tuple[Path, Path, Path]:
-    """Write `fit.nc`, `fit.json` and `fit.md`, and return their paths."""
+def write_fit(
+    folder: Path, fit: SweepFit, fingerprint: str, origin: Provenance
+) -> tuple[Path, Path, Path]:
+    """Write `fit.nc`, `fit.json` and `fit.md`, which state a fingerprint of the table."""
     forget_sums(folder)
     paths = folder / "fit.nc", folder / "fit.json", folder / "fit.md"
     about = {
@@ -39,6 +46,7 @@ def write_fit(folder: Path, fit: SweepFit, origin: Provenance) -> tuple[Path, Pa
         "highest_elastic_energy": fit.highest_elastic_energy,
         "n_bootstrap": fit.n_bootstrap,
         "seed": fit.seed,
+        SWEEP_FINGERPRINT: fingerprint,
         "factor_of_the_paper": PAPER_FACTOR,
         "factor_of_perturbation_theory": PERTURBATION_FACTOR,
     }

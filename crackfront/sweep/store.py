@@ -206,11 +206,15 @@ class Store:
                 pack.close()
 
     def result(self, simulation: Simulation) -> SimulationResult:
-        """Stored result of a simulation; `UnreadableFileError` where there is none."""
+        """Stored result of a simulation; `UnreadableFileError` where no curve of it can be read."""
         name, block = simulation.spectrum_name, _span([simulation])
+        reason = f"{self.curves} has no curve of {simulation.label}; simulate it"
         for member in RowIndex(self.curves, name, block).curves(simulation.stem):
-            return read_simulation(member, simulation)
-        raise UnreadableFileError(f"{self.curves} has no curve of {simulation.label}; simulate it")
+            try:
+                return read_simulation(member, simulation)
+            except UnreadableFileError as error:  # another pack may have it, too
+                reason = str(error)
+        raise UnreadableFileError(reason)
 
     def inventory(self, simulations: Iterable[Simulation], *, checked: bool = True) -> Inventory:
         """What the packs have and lack of some simulations; as :meth:`stored_results`."""

@@ -133,7 +133,7 @@ def _axes(sweep: Sweep, realisations: range) -> SweepAxes:
         spring=each("schedule.spring"),
         n_angle=each("resolution.n_angle"),
         sample_spacing=each("resolution.spacing"),
-        tile_side=each("resolution.tile_side")[:, 0],
+        tile_side=each("resolution.tile_side"),
         n_point=each("resolution.n_point"),
         tolerance=each("solver.tolerance"),
         amplitude=energies,

@@ -95,19 +95,24 @@ def mixture_sentences(store: Store) -> Iterator[str]:
             f"{len(others)} of {len(listed)} rows of {store.hysteresis} are in no file of "
             f"{store.folder / 'shards'}, which are {cause}"
         )
-    yield from _fit_sentences(store)
+    yield from _fit_sentences(store, about.get(SWEEP_FINGERPRINT, ""))
     known = {one.name for pack in pack_paths(store.curves) for one in members(pack)[0]}
     if known and listed and not listed & known:
         yield f"{store.curves} holds no curve of {store.hysteresis}, but those of another sweep"
 
 
-def _fit_sentences(store: Store) -> Iterator[str]:
-    """A sentence where the fit of a folder is not that of its configuration."""
+def _fit_sentences(store: Store, table: str) -> Iterator[str]:
+    """Sentences where the fit of a folder is not that of its table and its configuration."""
     path = store.folder / "fit.nc"
     with contextlib.suppress(ValueError, OSError):
-        if path.is_file() and store.configuration.is_file():
+        if not path.is_file():
+            return
+        found, fitted = fit_range(path)
+        if fitted and fitted != table:
+            yield f"{path} is the fit of another table than {store.hysteresis}"
+        if store.configuration.is_file():
             wanted = load_configuration(store.configuration).fit
-            if fit_range(path) != wanted:
+            if found != wanted:
                 yield f"{path} is the fit of another range than that of {store.configuration}"
 
 

@@ -18,9 +18,7 @@ from crackfront.analysis.estimate import mean_estimate
 from crackfront.analysis.law import spectral_breadth
 from crackfront.core.adhesion import FieldKind, force_correlation_length, larkin_length
 from crackfront.core.variables import variable
-from crackfront.data.files import read_dataset
 from crackfront.simulate.line.loads import LineLoad
-from crackfront.sweep.configuration import load_configuration, results_folder
 from crackfront.sweep.sweep import Sweep
 
 Row = TypeVar("Row")
@@ -131,13 +129,12 @@ def cell_means(kind: FieldKind, dataset: xr.Dataset) -> dict[tuple[int, int], Me
     }
 
 
-def law_cells(configuration: Path) -> list[LawCell]:
-    """Cells of one sweep of straight fronts that has been run; spheres are a ValueError."""
-    sweep = load_configuration(configuration)
+def law_cells(sweep: Sweep, dataset: xr.Dataset) -> list[LawCell]:
+    """Cells of a sweep of straight fronts from its table; spheres are a ValueError."""
     load = sweep.schedule
     if not isinstance(load, LineLoad):
-        raise ValueError(f"{configuration} runs spheres; the law is measured on straight fronts")
-    dataset, cells = read_dataset(results_folder(configuration) / "hysteresis.nc"), []
+        raise ValueError("the sweep runs spheres; the law is measured on straight fronts")
+    cells = []
     for (place, amplitude), found in cell_means(sweep.kind, dataset).items():
         item, requested = sweep.spectra[place], sweep.elastic_energies[amplitude]
         simulation = sweep.simulation(item, requested, 0)
@@ -166,12 +163,19 @@ def law_cells(configuration: Path) -> list[LawCell]:
 
 
 def _without_spacing(sweep: Sweep, cells: Sequence[LawCell]) -> list[LawCell]:
-    """Extrapolation of two spacings of uncorrelated sites to none, linear in the spacing."""
-    fine, coarse = sorted(sweep.elastic_energies)
+    """Extrapolation of two spacings of uncorrelated sites to none, linear in the spacing.
+
+    ValueError if there are not two amplitudes, whose spacings these are.
+    """
+    energies = sweep.elastic_energies
+    if len(energies) != 2:
+        raise ValueError(f"uncorrelated sites have {len(energies)} amplitudes; give two")
+    fine, coarse = sorted(energies)
     # The spacing is a pixel; in units of the Larkin length it goes with e_el.
     weight = fine / (coarse - fine)
-    found = []
-    for first, second in zip(cells[::2], cells[1::2], strict=True):
+    found, order = [], 1 if energies[0] == fine else -1
+    for pair in zip(cells[::2], cells[1::2], strict=True):
+        first, second = pair[::order]
         numbers = {
             name: getattr(first, name) + weight * (getattr(first, name) - getattr(second, name))
             for name in ("approach", "retraction", "both", "front_rms")

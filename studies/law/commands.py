@@ -3,18 +3,22 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import asdict
 from pathlib import Path
 from typing import cast
 
 import click
+import xarray as xr
 
 from crackfront.cli.report import FILE, examples, refuse_unwritable
-from crackfront.data.files import write_text
+from crackfront.data.files import read_dataset, write_text
 from crackfront.plots.style import save_picture
 from crackfront.simulate.sphere.steady import SteadySchedule
 from crackfront.sweep.configuration import load_configuration
-from studies.law.cells import LawCell, csv_rows, csv_text, law_cells, measured_cells
+from crackfront.sweep.library import opened
+from crackfront.sweep.sweep import Sweep
+from studies.law.cells import LawCell, Row, csv_rows, csv_text, law_cells, measured_cells
 from studies.law.drawing import law_figure, spectra_points
 from studies.law.fitting import fitted_law
 from studies.law.page import law_parts
@@ -45,6 +49,16 @@ _tables = click.option(
 )
 
 
+def _rows(configuration: Path, rows: Callable[[Sweep, xr.Dataset], Iterable[Row]]) -> Iterator[Row]:
+    """Rows of a sweep that has been run; ValueError if its table is of another configuration."""
+    sweep, store, _ = opened(configuration, None)
+    store.about(sweep)
+    try:
+        yield from rows(sweep, read_dataset(store.hysteresis))
+    except ValueError as error:
+        raise ValueError(f"{configuration}: {error}") from error
+
+
 @commands.command(
     epilog=examples("python -m studies law fit", f"python -m studies law fit {_FRONTS}")
 )
@@ -57,7 +71,7 @@ def fit(configurations: tuple[Path, ...], output: Path) -> None:
     Predictions use the copies in studies/law/cells.csv and crackfront/analysis/law.json.
     """
     refuse_unwritable(output)
-    cells = [cell for path in configurations for cell in law_cells(path)]
+    cells = [cell for path in configurations for cell in _rows(path, law_cells)]
     cells.sort(key=lambda cell: (cell.spectrum, cell.disorder, cell.size))
     text = csv_text(cells or measured_cells())
     # The fit is that of the rows as they are written, to five digits.
@@ -82,7 +96,7 @@ def spheres(configurations: tuple[Path, ...], tables: tuple[Path, ...], output: 
 
     Of sweeps it writes spheres.csv, which is kept as docs/reference/spheres.csv.
     """
-    rows = [row for path in configurations for row in sphere_rows(path)]
+    rows = [row for path in configurations for row in _rows(path, sphere_rows)]
     if rows:
         write_text(output / "spheres.csv", csv_text(rows))
     click.echo(sphere_table(rows or read_spheres(tables)))

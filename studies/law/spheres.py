@@ -7,6 +7,7 @@ from dataclasses import astuple, dataclass, replace
 from pathlib import Path
 
 import numpy as np
+import xarray as xr
 
 from crackfront.analysis.estimate import REACH, Estimate, with_error, with_interval
 from crackfront.analysis.law import spectral_breadth
@@ -19,8 +20,8 @@ from crackfront.simulate.numerics import Numerics
 from crackfront.simulate.run import run_simulation
 from crackfront.simulate.sizing import simulation_of
 from crackfront.simulate.sphere.steady import SteadySchedule
-from crackfront.sweep.configuration import load_configuration, results_folder
 from crackfront.sweep.rows import sweep_row
+from crackfront.sweep.sweep import Sweep
 from studies.law.cells import COLUMNS, Means, cell_means, csv_rows, mean_factors
 from studies.law.drawing import LawPoints
 from studies.pages import markdown_table
@@ -61,20 +62,18 @@ def _row(
     return SphereRow(name, kind, *shape, radius, *astuple(found))
 
 
-def sphere_rows(configuration: Path) -> Iterator[SphereRow]:
-    """Spheres of a sweep that has been run.
+def sphere_rows(sweep: Sweep, dataset: xr.Dataset) -> Iterator[SphereRow]:
+    """Spheres of a sweep from its table.
 
     Full cycles, straight fronts, and spectra that are not self-affine are a ValueError.
     """
-    sweep = load_configuration(configuration)
     if not isinstance(sweep.schedule, SteadySchedule):
-        raise ValueError(f"{configuration} does not run the steady branches of spheres")
-    dataset = read_dataset(results_folder(configuration) / "hysteresis.nc")
+        raise ValueError("the sweep does not run the steady branches of spheres")
     radius = (dataset.lowest_radius + dataset.highest_radius).mean("realisation") / 2
     for (place, amplitude), found in cell_means(sweep.kind, dataset).items():
         item = sweep.spectra[place]
         if not isinstance(item.spectrum, SelfAffineSpectrum):
-            raise ValueError(f"{item.name} of {configuration} is not self-affine; leave it out")
+            raise ValueError(f"spectrum {item.name} is not self-affine; leave it out")
         yield _row(item.name, sweep.kind, item.spectrum, float(radius[place, amplitude]), found)
 
 

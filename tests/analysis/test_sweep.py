@@ -242,6 +242,58 @@ def test_size_is_compared_only_among_spectra_of_one_shape(rng):
     assert np.unique(replace(table, hurst=np.array([0.1, 0.5, 1.0])).shape).size == 1
 
 
+def on_springs(table, springs):
+    """The spectra of a table, each on springs of so many correlation lengths."""
+    number, columns = len(springs), {}
+    for item in variables(SweepTable):
+        values = getattr(table, item.name)
+        if item.dims and item.dims[0] == "spectrum" and values is not None:
+            columns[item.name] = np.repeat(values, number, axis=0)
+    lengths = np.tile(springs, table.spectrum.size) * columns["correlation_length"]
+    spring = np.repeat(lengths[:, None], table.amplitude.size, axis=1)
+    return replace(table, **columns | {"spring": spring})
+
+
+@pytest.mark.parametrize("number", [3, 5, 7])
+def test_springs_of_one_spectrum_are_no_trend_with_its_size(rng, number):
+    """The mean of three, five or seven equal logarithms differs from them by a rounding."""
+    one = synthetic_table(rng, constant, lengths=[0.07])
+    fit = fit_all(on_springs(one, np.geomspace(0.3, 30, number)))
+    assert np.isnan(fit.pooled_size_slope.value)
+    assert np.all(np.isnan(fit.size_slope.value))
+
+
+def test_size_is_compared_only_among_equal_springs_in_correlation_lengths(rng):
+    table = synthetic_table(rng, lambda energy, index: constant(energy, 0) - index, noise=0.0)
+    fronts = on_springs(table, [1.0, 4.0, 16.0])
+    assert np.unique(fronts.family).size == 3
+    # k rises with the springs, and of the longest the largest spectrum has no value.
+    rising = np.tile([0.0, 2.0, 4.0], 3)[:, None, None] * fronts.e_el
+    fronts = replace(fronts, w_appr=fronts.w_appr - rising, w_retr=fronts.w_retr + rising)
+    gaps = np.zeros(fronts.e_el.shape, bool)
+    gaps[8] = True
+    assert fit_all(with_gaps(fronts, gaps)).pooled_size_slope.value == pytest.approx(-1.0)
+
+
+def test_a_cell_of_one_realisation_narrows_no_interval_of_a_slope(rng):
+    """Two amplitudes, of which one has lost all realisations but one, have no slope."""
+    table = synthetic_table(rng, constant, n_realisation=4, amplitudes=AMPLITUDES[3:])
+    gaps = np.zeros(table.e_el.shape, bool)
+    gaps[:, 1, 1:] = True
+    fit = fit_all(with_gaps(table, gaps))
+    assert np.isnan(fit.pooled.exponent.value)
+    assert np.isnan(fit.pooled.disorder_slope.value)
+    assert covered(fit.pooled.factor, 3.0)
+    assert any("one realisation alone has a value at e_el = 0.1" in one for one in fit_notes(fit))
+    three = synthetic_table(rng, constant, n_realisation=4, amplitudes=AMPLITUDES[2:])
+    gaps = np.zeros(three.e_el.shape, bool)
+    gaps[:, 2, 1:] = True
+    known = fit_all(with_gaps(three, gaps)).pooled.disorder_slope
+    gaps[:, 2] = True
+    two = fit_all(with_gaps(three, gaps)).pooled.disorder_slope
+    assert known.value == pytest.approx(float(two.value))
+
+
 def test_a_k_that_depends_on_disorder_is_called_no_constant(rng):
     falling = synthetic_table(rng, lambda energy, _: 3 - 0.5 * np.log2(energy / 0.005))
     sentence = trend_sentence(fit_all(falling))

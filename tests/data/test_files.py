@@ -331,7 +331,7 @@ def test_the_table_of_a_fit_is_what_the_file_holds(hysteresis):
 def test_a_fit_is_written_for_machines_and_for_people(tmp_path, hysteresis):
     ends = {"lowest_elastic_energy": 0.02, "highest_elastic_energy": 0.1}
     fit = fit_sweep(read_table(hysteresis), **ends, n_bootstrap=200)
-    netcdf, plain, text = write_fit(tmp_path / "fit", fit, ORIGIN)
+    netcdf, plain, text = write_fit(tmp_path / "fit", fit, "table", ORIGIN)
     dataset = xr.load_dataset(netcdf)
     content = json.loads(plain.read_text(encoding="utf-8"))
     assert_follows_cf(dataset)

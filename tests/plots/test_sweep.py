@@ -171,6 +171,23 @@ def test_k_of_straight_fronts_is_shown_against_their_size_beside_the_law(line_ta
     assert len(drawn) == np.count_nonzero(fit.cells.size > 1)
 
 
+def test_uncorrelated_sites_stand_at_their_e_el_beside_a_law_of_no_disorder(line_table):
+    """Their w_rms is that of a pixel, which the abscissa of law and theory is not."""
+    of_pixels = replace(line_table, w_rms=3 * line_table.w_rms)
+    fit = fit_sweep(
+        of_pixels, lowest_elastic_energy=0.01, highest_elastic_energy=0.04, uncorrelated=True
+    )
+    axes = hysteresis_figure(fit).axes[0]
+    for container in axes.containers:
+        np.testing.assert_allclose(container.lines[0].get_xdata(), [0.04, 0.16])
+    assert "e_" in axes.get_xlabel()
+    left = factor_figure(fit).axes[0]
+    labels = [str(line.get_label()) for line in left.get_lines()]
+    assert [one for one in labels if "law" in one] == [
+        rf"law, $s=0$ ($e_\mathrm{{el}}={energy}$)" for energy in (0.01, 0.04)
+    ]
+
+
 def test_points_are_the_means_over_realisations(table, fit):
     axes = hysteresis_figure(fit).axes[0]
     drawn = axes.containers[0].lines[0]

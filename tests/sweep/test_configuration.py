@@ -554,7 +554,30 @@ def test_the_table_of_a_sweep_in_metres_is_converted_for_the_sphere_that_it_stat
     assert found.short_cutoff.attrs["units"] == "m"
     assert found.identical(cf.in_si_units(table, cf.Scales(**scales)))
     again = cf.in_reduced_units(found, cf.Scales(**scales))
+    assert found.tile_side.dims == found.n_point.dims == ("spectrum", "amplitude")
     assert again.tile_side.values == pytest.approx(table.tile_side.values, rel=1e-12)
+
+
+def test_a_range_of_the_fit_may_end_at_an_amplitude_but_for_round_off(tmp_path):
+    amplitudes = "{work_of_adhesion_rms: [0.2]}"
+    text = changed("{elastic_energy: [0.02, 0.1]}", amplitudes)
+    ends = "lowest_elastic_energy: 0.01, highest_elastic_energy: 0.01"
+    text = text.replace("lowest_elastic_energy: 0.01, highest_elastic_energy: 0.1", ends)
+    [energy] = load_configuration(written(tmp_path, text)).elastic_energies
+    assert energy != 0.01
+    assert energy == pytest.approx(0.01)
+
+
+def test_an_error_chooses_no_pixels_of_uncorrelated_sites(tmp_path):
+    """Their disorder is that of a pixel, so that amplitudes would not compare."""
+    text = (ROOT / "config/line-weak.yaml").read_text(encoding="utf-8")
+    assert load_configuration(written(tmp_path, text))
+    content = from_yaml(text)
+    numerics = {"error": 0.05} | {
+        name: content["numerics"][name] for name in ("tile", "max_sweeps", "solver")
+    }
+    with pytest.raises(ConfigurationError, match=r"numerics\.error is 0\.05, which chooses other"):
+        load_configuration(written(tmp_path, to_yaml(content | {"numerics": numerics})))
 
 
 def test_a_table_without_a_sphere_is_not_converted_without_one(tmp_path):

@@ -18,6 +18,7 @@ from click.testing import CliRunner
 from numba.core.errors import NumbaError
 
 from crackfront.cli import main
+from crackfront.cli.results import _loop_example
 from crackfront.core.outcome import DefectError
 from crackfront.data.bounds import TooLargeError
 from crackfront.data.comparison import comparison
@@ -691,10 +692,49 @@ def test_fit_and_summary_of_different_ranges_do_not_stand_side_by_side(whole, tm
     assert command("fit", shorter, "--output", whole.folder)[0] == 0
     code, output = command("summary", TEST, "--output", whole.folder)
     assert code == 2
-    assert "fit.nc, and the figures beside it, are of another range of the fit" in output
+    assert "fit.nc is the fit of another range or table than those of the config" in output
     whole.configuration.write_text(text)
     [told] = mixture_sentences(whole)
     assert told.startswith(f"{whole.folder / 'fit.nc'} is the fit of another range than that of")
+
+
+def test_fit_and_figures_of_another_table_do_not_stand_in_a_summary(whole, tmp_path):
+    assert command("fit", TEST, "--output", whole.folder)[0] == 0
+    assert command("figures", TEST, "--output", whole.folder)[0] == 0
+    assert command("summary", TEST, "--output", whole.folder)[0] == 0
+    assert list(mixture_sentences(whole)) == []
+    wider = tmp_path / "wider.yaml"
+    text = TEST.read_text(encoding="utf-8").replace("realisations: 2", "realisations: 3")
+    wider.write_text(text)
+    assert command("simulate", wider, "--output", whole.folder)[0] == 0
+    assert command("aggregate", wider, "--output", whole.folder)[0] == 0
+    code, output = command("summary", wider, "--output", whole.folder)
+    assert (code, "fit.nc is the fit of another range or table" in output) == (2, True)
+    [told] = mixture_sentences(whole)
+    assert told.endswith(f"fit.nc is the fit of another table than {whole.hysteresis}")
+    assert command("fit", wider, "--output", whole.folder)[0] == 0
+    assert list(mixture_sentences(whole)) == []
+    code, output = command("summary", wider, "--output", whole.folder)
+    assert (code, ".png was drawn with another configuration" in output) == (2, True)
+    assert command("figures", wider, "--output", whole.folder)[0] == 0
+    assert command("summary", wider, "--output", whole.folder)[0] == 0
+
+
+def test_the_loop_that_is_drawn_is_one_with_a_value(whole, tmp_path):
+    """What is refused or a defect has no curve, and the next realisation is drawn."""
+    table = whole.table(SWEEP)
+    first = _loop_example(SWEEP, table)
+    place = [item.name for item in SWEEP.spectra].index(first.spectrum_name)
+    amplitude = SWEEP.elastic_energies.index(first.elastic_energy)
+    gone = np.array(table.w_retr)
+    gone[place, amplitude, 0] = np.nan
+    second = _loop_example(SWEEP, replace(table, w_retr=gone))
+    assert (first.realisation, second.realisation) == (0, 1)
+    assert replace(second, realisation=0).label == first.label
+    gone[place, amplitude] = np.nan
+    third = _loop_example(SWEEP, replace(table, w_retr=gone))
+    assert third.spectrum_name == first.spectrum_name
+    assert third.elastic_energy != first.elastic_energy
 
 
 def test_repair_touches_no_folder_of_another_kind(tmp_path):

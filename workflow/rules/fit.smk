@@ -28,6 +28,7 @@ rule fit:
 rule summary:
     input:
         f"{RESULTS}/hysteresis.nc",
+        f"{RESULTS}/fit.nc",
         expand("{results}/figures/{figure}.png", results=RESULTS, figure=SWEEP_FIGURES),
     output:
         report(

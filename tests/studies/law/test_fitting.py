@@ -1,16 +1,25 @@
 """The fit behind the law of k."""
 
 import json
+import re
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 from click.testing import CliRunner
 
 from crackfront.analysis.law import law_value, shipped_law
+from crackfront.data.files import write_dataset
+from crackfront.data.provenance import provenance
+from crackfront.sweep.configuration import load_configuration
+from crackfront.sweep.rows import failed_row
+from crackfront.sweep.table import rows_dataset
 from studies.__main__ import main
-from studies.law.cells import MEASURED, LawCell, csv_rows, measured_cells
+from studies.law.cells import MEASURED, LawCell, _without_spacing, csv_rows, measured_cells
 from studies.law.fitting import fitted_law
+
+ROOT = Path(__file__).parents[3]
 
 
 @pytest.mark.slow
@@ -54,6 +63,34 @@ def test_the_command_fits_the_law_of_the_package_to_the_kept_cells(tmp_path):
         cell.size >= known.size[0] for cell in measured_cells()
     )
     np.testing.assert_allclose(again["departures"], known.departures, rtol=1e-5, atol=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("verb", "name"), [("fit", "config/line-quick.yaml"), ("spheres", "config/default.yaml")]
+)
+def test_the_table_of_another_configuration_is_refused(tmp_path, monkeypatch, verb, name):
+    text = (ROOT / name).read_text(encoding="utf-8")
+    monkeypatch.chdir(tmp_path)
+    path = Path("sweep.yaml")
+    path.write_text(text)
+    sweep = load_configuration(path)
+    rows = [failed_row(one, "refused", "a test") for one in sweep.simulations()]
+    table = rows_dataset(sweep, rows, range(sweep.n_realisation))
+    write_dataset(Path("results/sweep/hysteresis.nc"), table, provenance(text))
+    path.write_text(re.sub(r"^seed: \d+", "seed: 77", text, flags=re.M))
+    done = CliRunner().invoke(main, ["law", verb, str(path), "--output", "out"])
+    assert done.exit_code == 2
+    assert "hysteresis.nc is the table of another configuration than the one given" in done.output
+
+
+def test_spacings_are_extrapolated_to_none_in_either_order_of_the_amplitudes():
+    sweep = load_configuration(ROOT / "config/line-weak.yaml")
+    cells = [replace(measured_cells()[0], both=value, error=0.1) for value in (3.0, 2.0)]
+    energies = sweep.elastic_energies
+    [found] = _without_spacing(sweep, cells)
+    [again] = _without_spacing(replace(sweep, elastic_energies=energies[::-1]), cells[::-1])
+    assert found == again
+    assert found.both == pytest.approx(3.0 + energies[0] / (energies[1] - energies[0]))
 
 
 @pytest.mark.parametrize("text", ["", "spectrum,kind\nflat,roughness\n"])
