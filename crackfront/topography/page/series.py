@@ -22,6 +22,10 @@ PREDICTED = {
 }
 """Numbers that a series may show: label of the axis, and factor from SI units to it."""
 
+_BOUNDS = {"hysteresis": "↑", "e_el": "↑", "w_appr": "↓"}
+"""Where the true number lies if shorter waves than the points add to e_el; elsewhere k, which
+falls, decides."""
+
 _ASIDE = 0.14
 """Distance of measured points from predicted ones, in samples."""
 
@@ -39,7 +43,7 @@ class SeriesPoint:
     measured: Estimate[float]
     """NaN where there is none. (Units: SI)"""
     is_lower_bound: bool
-    """Whether the predicted number is a least one."""
+    """Whether e_el is a least one."""
 
 
 def series_figure(points: Sequence[SeriesPoint], name: str) -> Figure:
@@ -53,9 +57,12 @@ def series_figure(points: Sequence[SeriesPoint], name: str) -> Figure:
             colour, marker = _look(groups.index(one.group))
             _draw(axes, place - _ASIDE, one.predicted, factor, colour, marker, filled=True)
             _draw(axes, place + _ASIDE, one.measured, factor, colour, marker, filled=False)
-            top = one.predicted.high * factor
-            if one.is_lower_bound and math.isfinite(top):
-                axes.annotate("↑", (place - _ASIDE, top), ha="center", va="bottom")
+            arrow = _BOUNDS.get(name, "") if one.is_lower_bound else ""
+            end, side = one.predicted.high, "bottom"
+            if arrow == "↓":
+                end, side = one.predicted.low, "top"
+            if arrow and math.isfinite(end):
+                axes.annotate(arrow, (place - _ASIDE, end * factor), ha="center", va=side)
             if not math.isfinite(one.predicted.value):
                 axes.annotate(
                     "none",
@@ -74,7 +81,7 @@ def series_figure(points: Sequence[SeriesPoint], name: str) -> Figure:
         axes.set_xticks(range(len(named)), [one.name for one in named], rotation=45, ha="right")
         axes.tick_params(axis="x", top=False, length=0)
         _add_legend(axes, groups, any(math.isfinite(one.measured.value) for one in points))
-        explain(figure, _sentences(points))
+        explain(figure, _sentences(points, _BOUNDS.get(name, "")))
         return figure
 
 
@@ -137,11 +144,12 @@ def _add_legend(axes: Axes, groups: Sequence[str], is_measured: bool) -> None:
         axes.legend(handles=entries, loc="best")
 
 
-def _sentences(points: Sequence[SeriesPoint]) -> str:
+def _sentences(points: Sequence[SeriesPoint], arrow: str) -> str:
     """What bars, arrows and words in the figure mean."""
     found = ["Bars: 95% intervals of predictions, two standard errors of measurements."]
-    if any(one.is_lower_bound for one in points):
-        found.append("Arrows: at least, as waves shorter than the points are left out.")
+    if arrow and any(one.is_lower_bound for one in points):
+        word = "at least" if arrow == "↑" else "at most"
+        found.append(f"Arrows: {word}, as waves shorter than the points are left out.")
     if any(not math.isfinite(one.predicted.value) for one in points):
         found.append("none: no prediction; the table says why.")
     return " ".join(found)

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
-from crackfront.analysis.estimate import Estimate, product
+from crackfront.analysis.estimate import Estimate
 from crackfront.analysis.law import shipped_law
 from crackfront.analysis.law_spheres import SphereFactors
 from crackfront.analysis.validity import Excess
@@ -19,7 +19,7 @@ from crackfront.topography.prediction.conditions import theory_verdict, zero_loa
 from crackfront.topography.prediction.remarks import Remark, Verdict, remark_text
 from crackfront.topography.prediction.surface_remarks import disagreements, measure_next
 from crackfront.topography.prediction.texts import ENERGY, estimate_text, wavelengths_text
-from crackfront.topography.prediction.works import Works, implied_work_of_adhesion, inverse, works
+from crackfront.topography.prediction.works import Works, implied_work_of_adhesion, works
 from crackfront.topography.spectrum.stated import StatedSurface, Surface
 
 
@@ -173,20 +173,25 @@ def predicted(
     conforms.
     """
     found = works(surface, scales)
-    energy, factors, excess, w_appr, w_retr = found
+    energy, factors, excess, w_retr = found.energy, found.factors, found.excess, found.w_retr
     radius, adhesion = zero_load_radius(scales), scales.work_of_adhesion
-    front = product(factors.both, energy).each(lambda work: 2 * work)
     # By JKR, pull-off forces are linear in the work of adhesion.
     at_load, at_displacement = (
         -reduced * scales.force / adhesion
         for reduced in (jkr.pull_off_force(), float(jkr.equilibrium_force(jkr.pull_off_radius())))
     )
-    implied = Estimate(*[math.nan] * 4)
+    implied, remarks = Estimate(*[math.nan] * 4), [*_law_remarks(found)]
     if pull_off is not None:
         implied = implied_work_of_adhesion(surface, scales, pull_off / at_load)
+        if not math.isfinite(implied.value):
+            sentence = (
+                f"No w_int with which the theory applies gives the measured pull-off force of "
+                f"{prefixed('N', pull_off)}: check the force, the radius and the modulus."
+            )
+            remarks.append(Remark("w_int by pull-off", "reservation", sentence))
     return Prediction(
         surface=surface,
-        verdict=theory_verdict(surface, scales, attraction_range, _law_remarks(found)),
+        verdict=theory_verdict(surface, scales, attraction_range, remarks),
         factors=factors,
         excess=excess,
         radius=scales.radius,
@@ -203,10 +208,10 @@ def predicted(
         k_appr=replace(factors.approach.factor, standard_error=math.nan),
         k_retr=replace(factors.retraction.factor, standard_error=math.nan),
         front_excess=excess.ratio,
-        front_hysteresis=front,
-        w_appr=w_appr,
+        front_hysteresis=found.front_hysteresis,
+        w_appr=found.w_appr,
         w_retr=w_retr,
-        hysteresis=product(front, inverse(excess.ratio)),
+        hysteresis=found.hysteresis,
         pull_off_force=w_retr.each(lambda work: at_load * work),
         pull_off_force_held=w_retr.each(lambda work: at_displacement * work),
         pull_off_force_smooth=-jkr.pull_off_force() * scales.force,

@@ -2,19 +2,23 @@
 
 import math
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
+from crackfront.analysis.estimate import Estimate
 from crackfront.analysis.law import shipped_law
 from crackfront.analysis.law_spheres import sphere_factors
 from crackfront.core import jkr
 from crackfront.core.adhesion import larkin_length
 from crackfront.core.spectrum import TabulatedSpectrum
+from crackfront.topography.options import reading_options
 from crackfront.topography.page.report import report_text
 from crackfront.topography.prediction.prediction import predicted
 from crackfront.topography.prediction.surface_remarks import spectrum_remarks
-from crackfront.topography.prediction.works import reduced_spectrum, surface_spectrum
+from crackfront.topography.prediction.works import reduced_spectrum, surface_spectrum, works
+from crackfront.topography.spectrum.measures import read_surface
 from tests.topography.made import DETAIL, OVERVIEW, SCENE
 
 
@@ -42,12 +46,36 @@ def test_intervals_hold_those_of_k_and_of_e_el(prediction):
     for name in ("k_appr", "k_retr", "w_appr", "w_retr", "hysteresis", "pull_off_force"):
         found = getattr(prediction, name)
         assert found.low < found.value < found.high
-    e_el, k, excess = prediction.e_el, prediction.k_appr, prediction.front_excess
+    k, excess, e_el = prediction.k_appr, prediction.front_excess, prediction.e_el.value
     more = np.hypot(np.log(k.high / k.value), np.log(excess.value / excess.low))
-    by_factor = e_el.value * k.value / excess.value * np.expm1(more)
-    by_energy = (1 + k.value / excess.value) * (e_el.high - e_el.value)
+    by_factor = e_el * k.value / excess.value * np.expm1(more)
+    [by_energy] = (
+        prediction.w_appr.value - works(other, SCENE).w_appr.value
+        for other in (amplified(prediction.surface, prediction.e_el.high / e_el),)
+    )
     below = prediction.w_appr.value - prediction.w_appr.low
     assert below == pytest.approx(np.hypot(by_factor, by_energy))
+
+
+def amplified(surface, factor):
+    """A surface with so many times the e_el, which is known exactly."""
+    modulus = SCENE.contact_modulus
+    exact = surface.conformity_energy(modulus).value * factor
+    return SimpleNamespace(
+        spectrum=surface.spectrum.amplified(factor),
+        conformity_energy=lambda _: Estimate(exact, math.nan, exact, exact),
+    )
+
+
+@pytest.mark.parametrize("scans", [[OVERVIEW], [DETAIL, OVERVIEW]])
+def test_intervals_hold_the_works_at_every_e_el_within_its_own(scans):
+    """The factor k falls with e_el, so that w_retr is largest within the interval of one scan."""
+    found = predicted(read_surface(scans, reading_options({}, len(scans))), SCENE)
+    for e_el in np.geomspace(found.e_el.low, found.e_el.high, 7):
+        other = works(amplified(found.surface, e_el / found.e_el.value), SCENE)
+        for name in ("w_appr", "w_retr", "hysteresis", "front_hysteresis"):
+            wide = getattr(found, name)
+            assert wide.low <= getattr(other, name).value <= wide.high
 
 
 def test_nanodiamond_is_predicted_as_it_was_simulated(prediction):
@@ -133,7 +161,18 @@ def test_a_pull_off_force_gives_the_work_of_adhesion_that_it_implies(surface, pr
     assert found.low < found.value < found.high
     low = replace(SCENE, work_of_adhesion=found.low)
     assert predicted(surface, low).pull_off_force.high == pytest.approx(measured, rel=1e-3)
-    assert math.isnan(predicted(surface, SCENE, pull_off=1e-9).implied_work_of_adhesion.value)
+    none = predicted(surface, SCENE, pull_off=1e-9)
+    assert math.isnan(none.implied_work_of_adhesion.value)
+    told = "No w_int with which the theory applies gives the measured pull-off force of 1 nN"
+    assert any(told in one for one in sentences(none, "reservation"))
+
+
+def test_a_work_of_adhesion_with_which_the_theory_does_not_apply_is_implied_by_nothing(surface):
+    for measured in np.geomspace(5e-6, 500e-6, 9):
+        found = predicted(surface, SCENE, pull_off=float(measured)).implied_work_of_adhesion.value
+        if math.isfinite(found):
+            scene = replace(SCENE, work_of_adhesion=found)
+            assert predicted(surface, scene).verdict.outcome != "does not apply"
 
 
 def test_scans_smaller_than_the_contact_are_told(surface, prediction):
