@@ -95,8 +95,9 @@ class Band:
     """All limits that were found, both ends among them."""
     stripes: tuple[int, ...]
     """Axes along which the map is shifted or levelled row by row; these waves are left out."""
-    anisotropy: float
-    """Of a map the rms slope along x over that along y; 1 for lines."""
+    anisotropy: tuple[float, float]
+    """Of a map the largest rms slope over that across it, and its angle from x; 1 and 0 for lines.
+    (Units: 1, degree)"""
     periodic: tuple[float, float]
     """Part of e_el in one wave, as of grooves, and its wavelength; 0 if none. (Units: 1, m)"""
     instrument: Instrument
@@ -157,13 +158,26 @@ class Scan:
 
 
 def analysed_scan(
-    measurement: Measurement, shortest: float | None = None, longest: float | None = None
+    measurement: Measurement,
+    shortest: float | None = None,
+    longest: float | None = None,
+    *,
+    among_others: bool = False,
 ) -> Scan:
     """A measurement with its density and its trusted band, whose ends may be given (Units: m).
 
-    ValueError if the band is narrower than an octave, or has too few values of the density.
+    Ends that are given for several scans do not reach beyond what the points and the levelling of
+    each allow. ValueError if the band is narrower than an octave, has too few values of the
+    density, or is to begin below two points.
     """
-    pairs, pixel = surrogate_pairs(measurement), max(measurement.pixels)
+    pixel = max(measurement.pixels)
+    if shortest is not None and not among_others and shortest < NYQUIST * pixel * (1 - 1e-9):
+        raise ValueError(
+            f"{measurement.path}: --shortest is {prefixed('m', shortest)}, and points at a "
+            f"distance of {prefixed('m', pixel)} hold waves from {prefixed('m', NYQUIST * pixel)}; "
+            "name that or more"
+        )
+    pairs = surrogate_pairs(measurement)
     waves = restored_periodogram(measurement, pairs)
     periodic = periodic_part(waves, measurement.shortest, measurement.longest)
     # Grooves along an axis are no rows that the instrument has shifted.
@@ -181,9 +195,9 @@ def analysed_scan(
     if left := _form_limit(density, alternatives, measurement.longest):
         upper.append(BandLimit("longest", "form", left))
     if shortest is not None:
-        lower = [BandLimit("shortest", "named", shortest)]
+        lower = [BandLimit("shortest", "named", shortest), *lower[: int(among_others)]]
     if longest is not None:
-        upper = [BandLimit("longest", "named", longest)]
+        upper = [BandLimit("longest", "named", longest), *upper[: int(among_others)]]
     low, high = _ends(measurement, density, lower, upper)
     noise_limit = instrument.noise_wavelength(seen, _FITTED_NOISE)
     least = max(cliff, noise_limit, measurement.shortest)
@@ -196,14 +210,14 @@ def analysed_scan(
     elif low.cause in ("resolution", "noise"):
         shortest_fitted = max(least, instrument.loss_wavelength(_FITTED_LOSS))
         last = max(last, behind or shortest_fitted)
-    elif low.cause == "named":
+    elif shortest is not None:
         instrument = Instrument()
     band = Band(
         shortest=low,
         longest=high,
         limits=(lower[0], upper[0], *lower[1:], *upper[1:]),
         stripes=striped,
-        anisotropy=1.0 if measurement.is_line else anisotropy(waves, low.wavelength),
+        anisotropy=(1.0, 0.0) if measurement.is_line else anisotropy(waves, low.wavelength),
         periodic=periodic,
         instrument=instrument,
         noise_limit=noise_limit,
@@ -307,7 +321,7 @@ def _abrupt_fall(density: Density) -> tuple[float, float]:
 
 def _form_limit(density: Density, alternatives: Sequence[Density], longest: float) -> float:
     """Wavelength down from which a density does not depend on window and levelling; 0 if all do."""
-    here = np.flatnonzero(density.wavevector >= 2 * math.pi / longest)[:_FORM_BINS]
+    here = np.flatnonzero(density.wavevector >= 2 * math.pi / longest * (1 - 1e-9))[:_FORM_BINS]
     apart = [np.abs(np.log(other.value[here] / density.value[here])) for other in alternatives]
     if not apart:
         return 0.0

@@ -38,6 +38,9 @@ _PARTS, _EDGE = 4, 24
 _ROUNDING = 1e-12
 """Noise of heights in parts of the highest one, below which a density is that of computers."""
 
+_ROUND_OFF = 1e-9
+"""Relative rounding of wavevectors: half of a side, up to which scans are trusted, is a wave."""
+
 _UNEVEN = (1.5, 2.5)
 """Variance between parts over that of a Gaussian surface: below the first ratio the excess does not
 count, above the second it counts in full."""
@@ -59,7 +62,7 @@ class Density:
     def within(self, shortest: float, longest: float) -> Density:
         """Part of the density between two wavelengths (Units: m)."""
         low, high = 2 * np.pi / longest, 2 * np.pi / shortest
-        chosen = (self.wavevector >= low) & (self.wavevector <= high * (1 + 1e-9))
+        chosen = _between(self.wavevector, low, high)
         return Density(
             self.wavevector[chosen], self.value[chosen], self.modes[chosen], self.is_profile
         )
@@ -112,6 +115,11 @@ class Periodogram:
             modes=modes[known] / (2 * self.dependence),
             is_profile=len(self.along) == 1,
         )
+
+
+def _between(wavevector: Array, low: float, high: float) -> NDArray[np.bool_]:
+    """Whether wavevectors lie between two, which may be theirs but for round-off."""
+    return (wavevector >= low * (1 - _ROUND_OFF)) & (wavevector <= high * (1 + _ROUND_OFF))
 
 
 def bin_numbers(wavevector: Array) -> NDArray[np.int64]:
@@ -215,7 +223,7 @@ def stripes(waves: Periodogram, shortest: float) -> tuple[int, ...]:
 def periodic_part(waves: Periodogram, shortest: float, longest: float) -> tuple[float, float]:
     """Part of e_el in the wave within bounds that stands out most, and its wavelength; else 0."""
     wavevector = waves.wavevector
-    inside = (wavevector >= 2 * np.pi / longest) & (wavevector <= 2 * np.pi / shortest)
+    inside = _between(wavevector, 2 * np.pi / longest, 2 * np.pi / shortest)
     energy = np.where(inside, waves.count * waves.power * wavevector, 0.0)
     index = np.unravel_index(np.argmax(energy), energy.shape)
     apart = [
@@ -230,11 +238,20 @@ def periodic_part(waves: Periodogram, shortest: float, longest: float) -> tuple[
     return float(energy[near].sum() / energy.sum()), float(2 * np.pi / wavevector[index])
 
 
-def anisotropy(waves: Periodogram, shortest: float) -> float:
-    """Rms slope along x over that along y, from the trusted wavelengths of a map."""
+def anisotropy(waves: Periodogram, shortest: float) -> tuple[float, float]:
+    """Largest rms slope over that across it, of the trusted waves of a map, and its direction.
+
+    The direction is an angle from x to y, -90 to 90. (Units: degree)
+    """
     weight = waves.count * waves.power * (waves.wavevector <= 2 * np.pi / shortest)
-    along_x, along_y = (float(np.sum(weight * one**2)) for one in waves.along)
-    return math.sqrt(along_x / along_y)
+    along_x, along_y = waves.along
+    square_x, product, square_y = (
+        float(np.sum(weight * one)) for one in (along_x**2, along_x * along_y, along_y**2)
+    )
+    squares, directions = np.linalg.eigh([[square_x, product], [product, square_y]])
+    x, y = directions[:, 1]
+    angle = math.degrees(math.atan(y / x)) if x else 90.0
+    return math.sqrt(squares[1] / squares[0]) if squares[0] > 0 else math.inf, angle
 
 
 def unevenness(measurement: Measurement) -> float:

@@ -213,13 +213,14 @@ def spectrum_remarks(surface: Surface) -> Iterator[Remark]:
         return
     yield from disagreements(surface)
     for one in surface.scans:
-        if max(ratio := one.band.anisotropy, 1 / ratio) > _MOST_ANISOTROPY:
+        ratio, angle = one.band.anisotropy
+        if ratio > _MOST_ANISOTROPY:
             path = str(one.measurement.path)
             yield Remark(
                 path,
                 "reservation",
-                f"{path}: the rms slope along x is {ratio:.2g} times that along y; the theory is "
-                "for isotropic surfaces.",
+                f"{path}: the rms slope at {angle:.0f} degrees from x is {ratio:.2g} times that "
+                "across it; the theory is for isotropic surfaces.",
             )
     for sentence in _spectrum_doubts(surface.joint):
         yield Remark("spectrum", "reservation", sentence)

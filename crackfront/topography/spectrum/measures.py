@@ -102,7 +102,10 @@ def measured_surface(
     Ends of the trusted wavelengths (Units: m) stand in place of those that are found in each.
     ValueError if the densities do not determine a spectrum.
     """
-    scans = tuple(analysed_scan(item, shortest, longest) for item in measurements)
+    several = len(measurements) > 1
+    scans = tuple(
+        analysed_scan(item, shortest, longest, among_others=several) for item in measurements
+    )
     try:
         joint = joint_spectrum(scans)
     except np.linalg.LinAlgError:

@@ -137,6 +137,25 @@ def test_limits_that_are_named_stand_in_place_of_those_that_are_found(found):
     assert [limit.wavelength for limit in band.ends] == [8 * PIXEL, SIDE / 3]
 
 
+def test_a_shortest_wave_that_no_points_hold_is_refused(found):
+    [one] = found("self-affine, H = 0.8").surface.scans
+    assert analysed_scan(one.measurement, shortest=2 * PIXEL).band.shortest.cause == "named"
+    with pytest.raises(ValueError, match=r"--shortest is .* hold waves from .*; name that or more"):
+        analysed_scan(one.measurement, shortest=1.9 * PIXEL)
+
+
+def test_ends_that_are_named_for_several_scans_do_not_exceed_those_of_each(found):
+    """Of a fine and a coarse scan each has its own part of the named band."""
+    [one] = found("self-affine, H = 0.8").surface.scans
+    coarse, side = one.measurement, SIDE
+    named = {"shortest": PIXEL / 2, "longest": 2 * side, "among_others": True}
+    band = analysed_scan(coarse, **named).band
+    assert [limit.cause for limit in band.ends] == ["pixels", "levelling"]
+    assert band.wavelengths == (coarse.shortest, coarse.longest)
+    inner = analysed_scan(coarse, **named | {"shortest": 8 * PIXEL, "longest": side / 3}).band
+    assert inner.wavelengths == (8 * PIXEL, side / 3)
+
+
 def test_a_band_of_less_than_an_octave_is_refused(found):
     [one] = found("self-affine, H = 0.8").surface.scans
     with pytest.raises(ValueError, match=r"less than an octave; use a better scan, or name"):

@@ -10,6 +10,7 @@ from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.synthesis import gaussian_field
 from crackfront.topography.density.bands import analysed_scan
 from crackfront.topography.options import ReadingOptions
+from crackfront.topography.prediction.surface_remarks import spectrum_remarks
 from crackfront.topography.scan.instruments import surface_library
 from crackfront.topography.scan.reading import read_measurements
 from crackfront.topography.spectrum.measures import measured_surface
@@ -107,8 +108,27 @@ def test_a_surface_without_plateau_says_so(rng, tmp_path):
 def test_anisotropy_is_the_ratio_of_the_slopes(rng, tmp_path, scan):
     stretched = map_heights(rng, n_point=256)[::1, ::2][:128, :128]
     path = write_al3d(tmp_path / "aniso.al3d", stretched)
-    isotropic, anisotropic = (
+    isotropic, (ratio, angle) = (
         analysed_scan(read_measurements([one])[0]).band.anisotropy for one in (scan, path)
     )
-    assert 0.8 < isotropic < 1.25
-    assert anisotropic < 0.7
+    assert 1 <= isotropic[0] < 1.25
+    assert ratio > 1 / 0.7
+    assert abs(angle) == pytest.approx(90, abs=15)
+
+
+@pytest.mark.parametrize("angle", [0, 30, 45, -60])
+def test_anisotropy_is_seen_in_any_direction(rng, tmp_path, angle):
+    """A surface that hardly changes across a direction."""
+    one, other = np.ix_(np.fft.fftfreq(128), np.fft.fftfreq(128))
+    along = np.cos(np.radians(angle)) * one + np.sin(np.radians(angle)) * other
+    across = -np.sin(np.radians(angle)) * one + np.cos(np.radians(angle)) * other
+    size = np.hypot(along, across)
+    filtered = np.exp(-((8 * across) ** 2)) / (0.02 + size) * (size < 0.2)
+    heights = np.fft.ifft2(filtered * np.fft.fft2(rng.standard_normal((128, 128)))).real
+    path = write_al3d(tmp_path / "grooves.al3d", 1e-8 * heights / heights.std())
+    surface = measured_surface(read_measurements([path]))
+    ratio, found = surface.scans[0].band.anisotropy
+    assert ratio > 1.35
+    assert found == pytest.approx(angle, abs=10)
+    [told] = [one.sentence for one in spectrum_remarks(surface) if "isotropic" in one.sentence]
+    assert "degrees from x is" in told

@@ -134,9 +134,7 @@ def test_small_scans_have_intervals(heights, rng):
     assert 0 < energy.low < energy.value < energy.high < 1e4 * energy.low
 
 
-@pytest.mark.parametrize(
-    ("shortest", "longest"), [(1e-5, 4e-5), (1e-9, 3e-9), (1e-7, 2.05e-7), (2.9e-6, 5.9e-6)]
-)
+@pytest.mark.parametrize(("shortest", "longest"), [(1e-5, 4e-5), (2.9e-6, 5.9e-6)])
 def test_named_ends_between_which_there_is_no_wave_are_refused(rng, shortest, longest):
     given = measurement(profile(rng))
     with pytest.raises(ValueError, match=r"scan: its density has [01] values between") as caught:
