@@ -142,6 +142,9 @@ def _refuse_undetermined(scans: Sequence[Scan], joint: JointSpectrum) -> None:
     if any(joint.density.disagrees(index) for index in range(len(scans))):
         advice = "they disagree where they overlap, so predict from each alone, and leave out the "
         advice += "one that does not resolve the surface"
+    elif any(one.band.stripes for one in scans):
+        advice = "waves along an axis are left out, as of rows that the instrument has shifted; if "
+        advice += "they are grooves, the surface is not isotropic, as the theory needs it"
     else:
         advice = "use a finer or larger scan, or name --shortest and --longest about the waves of "
         advice += "its roughness"

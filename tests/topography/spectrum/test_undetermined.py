@@ -142,6 +142,14 @@ def test_named_ends_between_which_there_is_no_wave_are_refused(rng, shortest, lo
     assert "--shortest and --longest" in str(caught.value)
 
 
+def test_random_grooves_along_an_axis_are_refused_for_what_they_are(rng):
+    """Waves along an axis are left out, so that nothing is left of them."""
+    grooves = np.repeat(profile(rng, 256)[:, None], 256, axis=1)
+    grooves += 1e-13 * rng.standard_normal(grooves.shape)
+    with pytest.raises(ValueError, match=r"if they are grooves, the surface is not isotropic"):
+        measured_surface([measurement(grooves)])
+
+
 def test_ends_that_are_named_one_for_the_other_are_refused(rng):
     with pytest.raises(ValueError, match=r"less than an octave"):
         analysed_scan(measurement(profile(rng)), 2e-6, 1e-6)
