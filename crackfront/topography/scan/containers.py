@@ -6,13 +6,14 @@ A container is a ZIP file of data files, beside `index.json` or `meta.yml` with 
 from __future__ import annotations
 
 import json
+import math
 import tempfile
 import zipfile
 import zlib
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from ruamel.yaml import YAML
@@ -20,7 +21,11 @@ from ruamel.yaml.constructor import SafeConstructor
 from ruamel.yaml.error import YAMLError
 
 from crackfront.data.bounds import in_bytes, memory_at_hand
+from crackfront.data.written_units import unit_value
 from crackfront.topography.scan.files import LARGEST_FILE
+
+InstrumentLength = Literal["tip_radius", "resolution"]
+"""Parameters of instruments that limit the trusted waves."""
 
 _METADATA = ("index.json", "meta.yml")
 """Files that say what a container holds; the first of them counts."""
@@ -52,11 +57,18 @@ class ContainedMeasurement(_Entry):
     data_source: int | None = None
     """Number of the channel."""
     is_periodic: bool = False
+    instrument: Any = None
+    """Name and kind of the instrument, and its parameters, of which :func:`stated_length` reads."""
 
     @property
     def is_original(self) -> bool:
         """Whether the data file is as it was measured, and needs the scale of its heights."""
         return bool(self.datafile.get(_DATA[0]))
+
+    @property
+    def scale(self) -> float:
+        """What heights are multiplied by as they stand in the data file."""
+        return self.height_scale if self.is_original else 1.0
 
     @property
     def file(self) -> str:
@@ -145,6 +157,30 @@ def surface_of(
         many = "several surfaces" if named else "no surface"
         raise ValueError(f"{path} has {many} {wanted!r}; choose by number with --surface: {listed}")
     return named[0]
+
+
+def stated_length(path: Path, member: ContainedMeasurement, name: InstrumentLength) -> float | None:
+    """A length that a container states of an instrument, None where it states none (Units: m).
+
+    ValueError, of one sentence that begins with the path, where its value is no length.
+    """
+    found = member.instrument
+    for key in ("parameters", name):
+        found = found.get(key) if isinstance(found, dict) else None
+    stated = found if isinstance(found, dict) else {"value": found}
+    value, unit = stated.get("value"), stated.get("unit")
+    if not value:
+        return None
+    try:
+        metres = float(value) * unit_value(str(unit), "m")
+    except (TypeError, ValueError):
+        metres = math.nan
+    if not 0 < metres < math.inf:
+        raise ValueError(
+            f"{path}: its container states the {name.replace('_', ' ')} of the instrument as "
+            f"{value!r} in {unit!r}, which is no length; correct it there, and download it again"
+        )
+    return metres
 
 
 @contextmanager

@@ -17,7 +17,9 @@ from crackfront.data.written_units import prefixed
 from crackfront.topography.options import ReadingOptions, Region
 from crackfront.topography.scan.containers import (
     ContainedMeasurement,
+    InstrumentLength,
     contained_surfaces,
+    stated_length,
     surface_of,
     unpacked,
 )
@@ -175,8 +177,7 @@ def _measurements(path: Path, options: ReadingOptions) -> Iterator[Measurement]:
         for member, file in zip(members, files, strict=True):
             shown = path / member.shown
             try:
-                scale = member.height_scale if member.is_original else 1.0
-                one = _measurement(file, _member_options(file, member, options), scale)
+                one = _measurement(file, _member_options(file, member, options), member)
             except ValueError as error:
                 unusable.append(str(error).replace(str(file), str(shown)))
             else:
@@ -207,9 +208,11 @@ def _member_options(
     return options.model_copy(update=changes)
 
 
-def _measurement(path: Path, options: ReadingOptions, height_scale: float = 1.0) -> Measurement:
-    """Measurement of one file."""
-    scan = raw_scan(path, options, height_scale)
+def _measurement(
+    path: Path, options: ReadingOptions, member: ContainedMeasurement | None = None
+) -> Measurement:
+    """Measurement of one file, completed by what its container states of it."""
+    scan = raw_scan(path, options, member.scale if member else 1.0)
     raw = scan.topography
     heights, fitted, size, sentences = _used_part(path, raw, options)
     gaps = np.ma.getmaskarray(heights)
@@ -227,12 +230,13 @@ def _measurement(path: Path, options: ReadingOptions, height_scale: float = 1.0)
     if options.mask:
         left_out = 1 - np.count_nonzero(fitted) / np.ma.count(heights)
         levelling += f" of all but {left_out:.2%} of the points"
-    radius, is_assumed = _tip(scan, options)
+    radius, is_assumed = _tip(path, scan, options, member)
     tip = 0.0
     if radius:
         surface_library()
         tip = float(level.scanning_probe_reliability_cutoff(radius) or 0.0)
-    shortest, longest = _trusted_wavelengths(path, level, size)
+    resolution = _instrument_length(path, raw, "resolution", member) or 0.0
+    shortest, longest = _trusted_wavelengths(path, level, size, resolution)
     return Measurement(
         path=path,
         format=scan.format,
@@ -300,26 +304,35 @@ def _used_part(
     return heights, fitted, size, sentences
 
 
-def _tip(scan: RawScan, options: ReadingOptions) -> tuple[float, bool]:
+def _tip(
+    path: Path, scan: RawScan, options: ReadingOptions, member: ContainedMeasurement | None
+) -> tuple[float, bool]:
     """Radius of the tip of a scan, 0 where it has none, and whether it is assumed (Units: m)."""
     if options.tip_radius is not None:
         return options.tip_radius, False
-    if (stated := _stated(scan.topography, "tip_radius")) is not None:
+    stated = _instrument_length(path, scan.topography, "tip_radius", member)
+    if stated is not None:
         return stated, False
     is_assumed = scan.format in _SCANNING_PROBES
     return (_TIP if is_assumed else 0.0), is_assumed
 
 
-def _stated(level: Any, name: str) -> float | None:
-    """A length that a file states of its instrument (Units: m)."""
-    found = level.info.get("instrument", {}).get("parameters", {}).get(name)
-    return in_metres(found["unit"], found["value"])[0] if found else None
+def _instrument_length(
+    path: Path, raw: Any, name: InstrumentLength, member: ContainedMeasurement | None
+) -> float | None:
+    """A length that a file states of its instrument, or else its container (Units: m)."""
+    found = raw.info.get("instrument", {}).get("parameters", {}).get(name)
+    if found:
+        return in_metres(found["unit"], found["value"])[0]
+    return None if member is None else stated_length(path, member, name)
 
 
-def _trusted_wavelengths(path: Path, level: Any, size: tuple[float, ...]) -> tuple[float, float]:
+def _trusted_wavelengths(
+    path: Path, level: Any, size: tuple[float, ...], resolution: float
+) -> tuple[float, float]:
     """Wavelengths that points, resolution and sides allow to trust, refused where they are few."""
     shortest = _PIXELS_PER_WAVE * max(np.divide(size, level.nb_grid_pts).tolist())
-    shortest = max(shortest, _stated(level, "resolution") or 0.0)
+    shortest = max(shortest, resolution)
     longest = min(size) / _WAVES_PER_SIDE
     if longest < 2**_FEWEST_OCTAVES * shortest:
         raise ValueError(

@@ -88,6 +88,67 @@ def test_a_container_of_the_library_is_read(tmp_path, rng):
         np.testing.assert_allclose(one.heights, expected - expected.mean(), atol=1e-17)
 
 
+def instrument(**lengths):
+    """Metadata of an instrument, each of whose lengths is a value and a unit."""
+    parameters = {name: {"value": value, "unit": unit} for name, (value, unit) in lengths.items()}
+    return {"name": "stylus", "type": "contact-based", "parameters": parameters}
+
+
+@pytest.mark.parametrize("metadata", ["meta.yml", "index.json"])
+def test_the_instrument_of_a_container_counts_as_if_the_file_stated_it(tmp_path, rng, metadata):
+    [heights] = maps(rng, 1)
+    stated = instrument(tip_radius=(5, "µm"), resolution=(1, "µm"))
+    entries = [entry("a", instrument=stated), entry("b", instrument=None)]
+    files = dict.fromkeys(("a.txt", "b.txt"), texts(heights, 1e9))
+    files["b.txt"] = texts(heights[::-1], 1e9)
+    path = container(tmp_path / "film.zip", {"film": entries}, files, metadata)
+    found, bare = read_measurements([path], CENTER)
+    assert (found.tip_radius, found.shortest) == pytest.approx((5e-6, 1e-6))
+    assert found.tip_wavelength > 1e-6
+    assert (bare.tip_radius, bare.tip_wavelength) == (0, 0)
+    assert bare.shortest == pytest.approx(4 * SIDE / 48)
+    named, _ = read_measurements([path], ReadingOptions(tip_radius="1um"))
+    assert named.tip_radius == pytest.approx(1e-6)
+
+
+def test_the_instrument_of_a_data_file_counts_before_that_of_its_container(tmp_path, rng):
+    [heights] = maps(rng, 1)
+    own = instrument(tip_radius=(20, "nm"))
+    scan = Topography(heights, (SIDE, SIDE), unit="m", info={"instrument": own})
+    scan.to_netcdf(str(tmp_path / "a.nc"))
+    stated = instrument(tip_radius=(5, "µm"), resolution=(1, "µm"))
+    one = entry("a", datafile={"squeezed-netcdf": "a.nc"}, instrument=stated)
+    content = {"a.nc": (tmp_path / "a.nc").read_bytes()}
+    [found] = read_measurements([container(tmp_path / "a.zip", {"film": [one]}, content)], CENTER)
+    assert (found.tip_radius, found.shortest) == pytest.approx((20e-9, 1e-6))
+
+
+@pytest.mark.parametrize("length", [(5, "V"), (5, None), (-5, "nm"), ("five", "nm")])
+def test_a_length_of_an_instrument_that_is_none_is_a_sentence(tmp_path, rng, length):
+    [heights] = maps(rng, 1)
+    entries = [entry("a", instrument=instrument(tip_radius=length))]
+    path = container(tmp_path / "film.zip", {"film": entries}, {"a.txt": texts(heights, 1e9)})
+    with pytest.raises(ValueError, match=r"film.zip/a: its container states the tip radius of"):
+        read_measurements([path])
+    [found] = read_measurements([path], ReadingOptions(tip_radius="5nm"))
+    assert found.tip_radius == pytest.approx(5e-9)
+
+
+@pytest.mark.parametrize(
+    "nothing",
+    [
+        *({}, "stylus", {"parameters": None}, {"parameters": {"tip_radius": None}}),
+        *(instrument(tip_radius=(0, "nm")), instrument(tip_radius=(None, "nm"))),
+    ],
+)
+def test_an_instrument_without_lengths_is_none(tmp_path, rng, nothing):
+    [heights] = maps(rng, 1)
+    entries = [entry("a", instrument=nothing)]
+    path = container(tmp_path / "film.zip", {"film": entries}, {"a.txt": texts(heights, 1e9)})
+    [found] = read_measurements([path])
+    assert (found.tip_radius, found.shortest) == pytest.approx((0, 4 * SIDE / 48))
+
+
 def test_one_of_several_surfaces_is_chosen_by_name_or_number(tmp_path, rng):
     heights = maps(rng)
     files = {f"{name}.txt": texts(one, 1e9) for name, one in zip("ab", heights, strict=True)}
