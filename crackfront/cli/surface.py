@@ -34,6 +34,7 @@ from crackfront.topography.options import (
     SphereOptions,
     checked_options,
     for_files,
+    named_options,
     reading_options,
     sphere_scales,
 )
@@ -197,7 +198,7 @@ def predict(
 
 def _origin(scans: tuple[Path, ...], psd: Path | None, options: Mapping[str, Any]) -> str:
     """Name for the figure of a surface, which is refused unless it is given in one way."""
-    stated = [name for name in SelfAffineOptions.model_fields if options[name] is not None]
+    stated = named_options(SelfAffineOptions, options)
     number = f"--{stated[0].replace('_', '-')}" if stated else "--rms"
     ways = {"SCANS": bool(scans), "--psd": psd is not None, number: bool(stated)}
     named = [way for way, is_named in ways.items() if is_named]
@@ -206,14 +207,10 @@ def _origin(scans: tuple[Path, ...], psd: Path | None, options: Mapping[str, Any
             f"the surface is given {'by ' + ' and '.join(named) if named else 'in no way'}; name "
             "scans, or a spectral density with --psd, or numbers with --rms"
         )
-    further = [name for name in PsdOptions.model_fields if options[name] is not None]
+    further = named_options(PsdOptions, options)
     if psd is None and further:
         raise ValueError(f"--{further[0].replace('_', '-')} is of a density; name it with --psd")
-    reading = [
-        name
-        for name, field in ReadingOptions.model_fields.items()
-        if options[name] and options[name] != field.default
-    ]
+    reading = named_options(ReadingOptions, options)
     if not scans and reading:
         raise ValueError(f"--{reading[0].replace('_', '-')} is of scans; leave it out")
     return scans[0].stem if scans else "numbers" if psd is None else psd.stem

@@ -73,6 +73,15 @@ def checked_options(record: type[Record], given: Mapping[str, Any], prefix: str 
         raise ValueError(_sentence(first, prefix)) from None
 
 
+def named_options(record: type[Options], given: Mapping[str, Any]) -> list[str]:
+    """Names of the options of a record that a user gives, and not by their defaults."""
+    return [
+        name
+        for name, field in record.model_fields.items()
+        if given.get(name) not in (None, (), [], field.default)
+    ]
+
+
 def reading_options(
     given: Mapping[str, Any], n_scan: int, prefix: str = ""
 ) -> list[ReadingOptions]:

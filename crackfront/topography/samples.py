@@ -29,6 +29,7 @@ from crackfront.topography.options import (
     SphereOptions,
     Text,
     checked_options,
+    named_options,
     reading_options,
     sphere_scales,
 )
@@ -263,13 +264,17 @@ def _sample(folder: Path, row: Mapping[str, Any], common: Mapping[str, Any]) -> 
     if own.sample is None:
         raise ValueError("there is no name; write it in the column 'sample'")
     numbers = checked_options(SelfAffineOptions, row)
-    is_stated = any(value is not None for value in dict(numbers).values())
+    is_stated = bool(named_options(SelfAffineOptions, row))
     ways = {"scans": bool(own.scans), "psd": own.psd is not None, "rms": is_stated}
     if sum(ways.values()) != 1:
         named = " and ".join(name for name, is_named in ways.items() if is_named) or "nothing"
         raise ValueError(f"the surface is given by {named}; name its scans, or its psd, or its rms")
     if is_stated:
         self_affine_surface_of(numbers)
+    if not own.scans:
+        _refuse_without_effect(ReadingOptions, "scans", row, common)
+    if own.psd is None:
+        _refuse_without_effect(PsdOptions, "psd", row, common)
     scans = tuple(file for name in own.scans for file in _files(folder, name))
     psd = None if own.psd is None else _files(folder, own.psd)[0]
     fields = [name for name in PREDICTED if name != "e_el"]
@@ -289,6 +294,15 @@ def _sample(folder: Path, row: Mapping[str, Any], common: Mapping[str, Any]) -> 
             if (value := getattr(own, f"measured_{name}")) is not None
         },
     )
+
+
+def _refuse_without_effect(
+    record: type[Options], way: str, row: Mapping[str, Any], common: Mapping[str, Any]
+) -> None:
+    """Raise at an option of scans, or of a density, of a sample that is given in another way."""
+    for name in named_options(record, {**common, **row}):
+        advice = "leave it out" if name in row else f"write it in a column, for rows with {way}"
+        raise ValueError(f"{name} is an option of {way}, and the sample has none; {advice}")
 
 
 def _reading(given: Mapping[str, Any]) -> dict[str, Any]:

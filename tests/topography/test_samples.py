@@ -67,10 +67,10 @@ def test_a_sample_may_have_several_scans_psds_and_units(tmp_path):
         (tmp_path / name).write_text("1 2\n")
     path = tmp_path / "samples.csv"
     path.write_text(
-        "sample,scans,psd,unit,psd_sides,tip radius (nm)\n"
-        "A,a-*.txt,,um,,20\nB,b.txt | a-1.txt,,,,\nC,,psd.csv,,one,\n"
+        "sample,scans,psd,unit,psd_sides,tip radius (nm),detrend\n"
+        "A,a-*.txt,,um,,20,slope\nB,b.txt | a-1.txt,,,,,slope\nC,,psd.csv,,one,,\n"
     )
-    one, two, three = read_samples(path, SPHERE | {"detrend": "slope"})
+    one, two, three = read_samples(path, SPHERE)
     assert [file.name for file in one.scans] == ["a-1.txt", "a-2.txt"]
     assert [file.name for file in two.scans] == ["b.txt", "a-1.txt"]
     assert {by.unit for by in one.reading} == {"um"}
@@ -129,6 +129,30 @@ def test_numbers_with_both_decimal_signs_are_refused(tmp_path, between):
     path.write_text(text.replace(f"{between}40{between}", f"{between}40.000{between}"))
     with pytest.raises(ValueError, match="line 4: the table has numbers with decimal points and"):
         read_samples(path, SPHERE)
+
+
+@pytest.mark.parametrize(
+    ("row", "common", "sentence"),
+    [
+        ("C,,psd.csv,,1,", {}, "shortest is an option of scans, and the sample has none; leave"),
+        ("C,,,20,1,", {}, "shortest is an option of scans, and the sample has none; leave it out"),
+        ("C,,psd.csv,,,", {"shortest": "1um"}, "has none; write it in a column, for rows"),
+        ("C,,,20,,", {"mask": ("mask.txt",)}, "mask is an option of scans, and the sample has"),
+        ("C,a.txt,,,,one", {}, "psd_sides is an option of psd, and the sample has none; leave it"),
+        ("C,,,20,,one", {}, "psd_sides is an option of psd, and the sample has none; leave it out"),
+    ],
+)
+def test_an_option_without_effect_on_a_sample_is_refused(tmp_path, row, common, sentence):
+    for name in ("a.txt", "psd.csv"):
+        (tmp_path / name).write_text("1 2\n")
+    path, head = tmp_path / "samples.csv", "sample,scans,psd,rms (nm),shortest (um),psd_sides"
+    numbers = "2um,0.8,20nm" if ",20," in row else ",,"
+    path.write_text(f"{head},roll_off,hurst,short_cutoff\n{row},{numbers}\n")
+    with pytest.raises(ValueError, match=rf"line 2: .*{sentence}"):
+        read_samples(path, SPHERE | common)
+    path.write_text("sample,psd\nC,psd.csv\n")
+    [found] = read_samples(path, SPHERE | {"detrend": "curvature", "mask": ()})
+    assert found.psd == tmp_path / "psd.csv"
 
 
 @pytest.mark.parametrize(
