@@ -276,7 +276,7 @@ def _sample(folder: Path, row: Mapping[str, Any], common: Mapping[str, Any]) -> 
     if own.psd is None:
         _refuse_without_effect(PsdOptions, "psd", row, common)
     scans = tuple(file for name in own.scans for file in _files(folder, name))
-    psd = None if own.psd is None else _files(folder, own.psd)[0]
+    psd = None if own.psd is None else _file(folder, own.psd)
     fields = [name for name in PREDICTED if name != "e_el"]
     return Sample(
         name=own.sample,
@@ -326,6 +326,15 @@ def _files(folder: Path, name: str) -> list[Path]:
     if not found:
         raise ValueError(f"there is no file {path}; correct its name, relative to the table")
     return found
+
+
+def _file(folder: Path, name: str) -> Path:
+    """File of a name, or the only one of a pattern; ValueError where there are none or several."""
+    found = _files(folder, name)
+    if len(found) > 1:
+        listed = ", ".join(one.name for one in found[:3]) + ", ..." * (len(found) > 3)
+        raise ValueError(f"{name} stands for {len(found)} files, {listed}; name one of them")
+    return found[0]
 
 
 def _table_rows(path: Path) -> Iterator[tuple[int, dict[str, Any]]]:

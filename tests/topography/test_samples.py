@@ -79,6 +79,18 @@ def test_a_sample_may_have_several_scans_psds_and_units(tmp_path):
     assert (three.psd, three.density.psd_sides) == (tmp_path / "psd.csv", "one")
 
 
+def test_a_pattern_of_a_psd_stands_for_one_file(tmp_path):
+    path = tmp_path / "samples.csv"
+    path.write_text("sample,psd\nA,psd-*.csv\n")
+    (tmp_path / "psd-1.csv").write_text("1 2\n")
+    [found] = read_samples(path, SPHERE)
+    assert found.psd == tmp_path / "psd-1.csv"
+    (tmp_path / "psd-2.csv").write_text("1 3\n")
+    several = r"line 2: psd-\*.csv stands for 2 files, psd-1.csv, psd-2.csv; name one of them"
+    with pytest.raises(ValueError, match=several):
+        read_samples(path, SPHERE)
+
+
 def test_the_page_shows_the_table_of_the_example_and_its_scans_are_there():
     path = ROOT / "examples/samples.csv"
     assert path.read_text("utf-8") in (ROOT / "docs/surfaces.md").read_text("utf-8")
