@@ -259,6 +259,8 @@ def _sample(folder: Path, row: Mapping[str, Any], common: Mapping[str, Any]) -> 
         if name not in known:
             hint = nearest_name(name, known, "the columns are")
             raise ValueError(f"there is no column {name!r}; {hint}")
+    if "mask" in row:
+        row = {**row, "mask": _masks(folder, row["mask"])}
     given = {**common, **row}
     own = checked_options(SampleOptions, given)
     if own.sample is None:
@@ -335,6 +337,12 @@ def _file(folder: Path, name: str) -> Path:
         listed = ", ".join(one.name for one in found[:3]) + ", ..." * (len(found) > 3)
         raise ValueError(f"{name} stands for {len(found)} files, {listed}; name one of them")
     return found[0]
+
+
+def _masks(folder: Path, given: Any) -> list[Any]:
+    """Parts of a scan as they are, which have colons, and files relative to the table."""
+    masks = given if isinstance(given, list) else [given]
+    return [_file(folder, one) if isinstance(one, str) and ":" not in one else one for one in masks]
 
 
 def _table_rows(path: Path) -> Iterator[tuple[int, dict[str, Any]]]:

@@ -91,6 +91,30 @@ def test_a_pattern_of_a_psd_stands_for_one_file(tmp_path):
         read_samples(path, SPHERE)
 
 
+def test_a_mask_of_a_row_is_relative_to_the_table_and_one_of_the_command_is_not(
+    tmp_path, monkeypatch
+):
+    folder = tmp_path / "films"
+    folder.mkdir()
+    monkeypatch.chdir(tmp_path)
+    for name in ("a.txt", "mask.txt"):
+        (folder / name).write_text("1 2\n")
+    table, listed = folder / "samples.csv", folder / "samples.yaml"
+    table.write_text('sample,scans,mask\nA,a.txt,mask.txt\nB,a.txt,"0:1um,0:1um"\n')
+    one, two = read_samples(table, SPHERE)
+    assert one.reading[0].mask == (folder / "mask.txt",)
+    assert two.reading[0].mask == (((0, 1e-6), (0, 1e-6)),)
+    listed.write_text("samples:\n - {sample: A, scans: a.txt, mask: [mask.txt, '0:1um,0:1um']}\n")
+    [three] = read_samples(listed, SPHERE)
+    assert three.reading[0].mask == (folder / "mask.txt", *two.reading[0].mask)
+    table.write_text("sample,scans\nA,a.txt\n")
+    [four] = read_samples(table, SPHERE | {"mask": ("mask.txt",)})
+    assert four.reading[0].mask == (Path("mask.txt"),)
+    table.write_text("sample,scans,mask\nA,a.txt,absent.txt\n")
+    with pytest.raises(ValueError, match=r"line 2: there is no file .*absent.txt; correct its"):
+        read_samples(table, SPHERE)
+
+
 def test_the_page_shows_the_table_of_the_example_and_its_scans_are_there():
     path = ROOT / "examples/samples.csv"
     assert path.read_text("utf-8") in (ROOT / "docs/surfaces.md").read_text("utf-8")
