@@ -59,6 +59,12 @@ _NO_UNIT = {"", "1", "-"}
 _TWO_SIDES = re.compile(r"\d+,\d+")
 """Sides of a scan that are as well one with a decimal comma."""
 
+_THOUSANDS = re.compile(r"[-+]?[1-9]\d{0,2},\d{3}")
+"""A number whose comma may separate thousands as well as decimals."""
+
+_Row = tuple[int, dict[str, tuple[str, str]]]
+"""Line of a row, and its cells with the units of their heads, by the names of their columns."""
+
 _BETWEEN_FILES = re.compile(r"\s*[|;\n]\s*")
 
 _FIRST = (
@@ -353,9 +359,24 @@ def _table_rows(path: Path) -> Iterator[tuple[int, dict[str, Any]]]:
     lines = text.split("\n")
     first = next((line for line in lines if line.strip() and not line.startswith("#")), "")
     between = max("\t;,", key=first.count)
+    rows = list(_cells(path, lines, between))
+    if between != ",":
+        _refuse_other_numbers(path, rows)
+    for line, row in rows:
+        yield (
+            line,
+            {
+                name: cell if name in _NAMES else _with_unit(cell, unit, between)
+                for name, (cell, unit) in row.items()
+                if cell
+            },
+        )
+
+
+def _cells(path: Path, lines: Sequence[str], between: str) -> Iterator[_Row]:
+    """Line of every row, and its cells with the units of their heads."""
     reader = csv.reader(lines, delimiter=between)
     heads: list[tuple[str, str]] = []
-    signs: set[str] = set()
     for cells in reader:
         cells = [cell.strip() for cell in cells]
         if not any(cells) or cells[0].startswith("#"):
@@ -372,38 +393,45 @@ def _table_rows(path: Path) -> Iterator[tuple[int, dict[str, Any]]]:
                 f"{where}: the row has {len(cells)} cells and the heads are "
                 f"{len(heads)}; write {between!r} between cells alone, or quotes around them"
             )
-        row = {name: (cell, unit) for (name, unit), cell in zip(heads, cells, strict=False) if name}
-        if between != ",":
-            signs |= _decimal_signs({name: cell for name, (cell, _) in row.items()}, where)
-            if len(signs) > 1:
-                raise ValueError(
-                    f"{where}: the table has numbers with decimal points and with decimal commas; "
-                    "write one of them"
-                )
         yield (
             reader.line_num,
-            {
-                name: cell if name in _NAMES else _with_unit(cell, unit, between)
-                for name, (cell, unit) in row.items()
-                if cell
-            },
+            {name: (cell, unit) for (name, unit), cell in zip(heads, cells, strict=False) if name},
         )
 
 
-def _decimal_signs(row: Mapping[str, str], where: str) -> set[str]:
-    """Decimal signs of the numbers in a row, without those of names and of sides."""
-    size = row.get("size", "")
-    if _TWO_SIDES.fullmatch(size):
+def _refuse_other_numbers(path: Path, rows: Sequence[_Row]) -> None:
+    """Raise where numbers have two decimal signs, or commas that may all separate thousands."""
+    numbers = list(_numbers(path, rows))
+    signs: set[str] = set()
+    for where, _, cell in numbers:
+        signs |= {sign for sign in ",." if sign in cell}
+        if len(signs) > 1:
+            raise ValueError(
+                f"{where}: the table has numbers with decimal points and with decimal commas; "
+                "write one of them"
+            )
+    with_comma = [one for one in numbers if "," in one[-1]]
+    if with_comma and all(_THOUSANDS.fullmatch(cell) for *_, cell in with_comma):
+        where, name, cell = with_comma[0]
         raise ValueError(
-            f"{where}: size is {size!r}, one side or two; write {size.replace(',', ', ')!r} for "
-            f"two sides, or {size.replace(',', '.')!r} for one"
+            f"{where}: {name} is {cell!r}, whose comma may separate thousands or decimals; write "
+            f"{cell.replace(',', '')!r}, or '{cell}0' if it separates decimals"
         )
-    numbers = (
-        cell
-        for name, cell in row.items()
-        if name not in (*_NAMES, "size") and _BARE.fullmatch(cell)
-    )
-    return {sign for cell in numbers for sign in ",." if sign in cell}
+
+
+def _numbers(path: Path, rows: Sequence[_Row]) -> Iterator[tuple[str, str, str]]:
+    """Place, name of the column and cell of all numbers but those of names and of sides."""
+    for line, row in rows:
+        where = f"{path}, line {line}"
+        size, _ = row.get("size", ("", ""))
+        if _TWO_SIDES.fullmatch(size):
+            raise ValueError(
+                f"{where}: size is {size!r}, one side or two; write {size.replace(',', ', ')!r} "
+                f"for two sides, or {size.replace(',', '.')!r} for one"
+            )
+        for name, (cell, _) in row.items():
+            if name not in (*_NAMES, "size") and _BARE.fullmatch(cell):
+                yield where, name, cell
 
 
 def _head(cell: str, where: str) -> tuple[str, str]:

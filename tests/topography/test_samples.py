@@ -167,6 +167,31 @@ def test_numbers_with_both_decimal_signs_are_refused(tmp_path, between):
         read_samples(path, SPHERE)
 
 
+@pytest.mark.parametrize("between", [";", "\t"])
+def test_a_comma_that_may_separate_thousands_is_refused_unless_another_number_settles_it(
+    tmp_path, between
+):
+    path = tmp_path / "samples.tsv"
+
+    def write(radius, cutoff):
+        head = "sample,rms (nm),roll_off (nm),hurst,short_cutoff (nm),radius (um)"
+        row = between.join(["A", "20", "9000", "1", cutoff, radius])
+        path.write_text(f"{head.replace(',', between)}\n{row}\n")
+        return read_samples(path, SPHERE)
+
+    for radius, plain in (("1,250", "1250"), ("12,000", "12000"), ("125,500", "125500")):
+        sentence = rf"line 2: radius is '{radius}', .* write '{plain}', or '{radius}0' if"
+        with pytest.raises(ValueError, match=sentence):
+            write(radius, "20")
+    for radius, cutoff in (("1,250", "20,5"), ("1,250", "0,250"), ("1,2500", "20")):
+        [found] = write(radius, cutoff)
+        assert found.scales.radius == pytest.approx(1.25e-6)
+    [found] = write("1250", "20.5")
+    assert found.scales.radius == pytest.approx(1.25e-3)
+    with pytest.raises(ValueError, match="line 2: the table has numbers with decimal points and"):
+        write("1,250", "20.5")
+
+
 @pytest.mark.parametrize(
     ("row", "common", "sentence"),
     [
