@@ -118,15 +118,14 @@ def read_psd_file(path: Path, options: PsdOptions) -> Psd:
     density_unit = _density_unit(path, written)
     kind, scale = _kind(path, one, density_unit, options)
     assumptions: list[str] = []
-    factor, words = 1.0, ""
-    if kind in ("1d", "2d"):
-        is_per_radian = re.search(_PER_LENGTH["wavevector"], written, re.IGNORECASE) is not None
-        if is_per_radian and abscissa != "wavevector":
-            raise ValueError(
-                f"{path}: the density has the unit {written!r}, per radian, and the first column "
-                f"is a {abscissa}; name both units, as in --psd-units 1/um,um^3"
-            )
-        factor, words = _norm(one, abscissa, options, 1 if kind == "1d" else 2, is_per_radian)
+    is_per_radian = re.search(_PER_LENGTH["wavevector"], written, re.IGNORECASE) is not None
+    if is_per_radian and abscissa != "wavevector" and kind in ("1d", "2d"):
+        raise ValueError(
+            f"{path}: the density has the unit {written!r}, per radian, and the first column "
+            f"is a {abscissa}; name both units, as in --psd-units 1/um,um^3"
+        )
+    _refuse_other_norm(path, kind, abscissa, options)
+    factor, words = _norm(one, kind, abscissa, options, is_per_radian=is_per_radian)
     if kind == "1d":
         sides = options.psd_sides or _stated_sides(one)
         if sides is None:
@@ -141,9 +140,7 @@ def read_psd_file(path: Path, options: PsdOptions) -> Psd:
     q = {"wavevector": waves, "frequency": 2 * np.pi * waves}.get(abscissa, 2 * np.pi / waves)
     value = scale * factor * value
     if kind in ("radial", "q2d"):
-        # Of the mean square, the integral over q or half of it: q C = 2 pi dh^2/dq, or pi times.
-        per_wavevector = 1.0 if abscissa == "wavevector" or kind == "q2d" else 1 / (2 * np.pi)
-        value = value * per_wavevector * (2 * np.pi if kind == "radial" else np.pi) / q
+        value = value / q
     q, value = _binned(path, q, value)
     name = {"1d": "C_1D of profiles", "2d": "isotropic C", "radial": "radial density"}
     shown = name.get(kind, "q/pi times the isotropic C")
@@ -396,20 +393,45 @@ def _kind(path: Path, one: _Series, unit: str, options: PsdOptions) -> tuple[Psd
     return found, unit_value(unit, f"m^{power}")
 
 
+def _refuse_other_norm(
+    path: Path, kind: PsdKind, abscissa: PsdAbscissa, options: PsdOptions
+) -> None:
+    """Raise where the named norm contradicts the kind of the density or its first column."""
+    norm = options.psd_norm
+    if norm is not None and kind == "q2d":
+        raise ValueError(
+            f"{path}: half of the integral of a density of kind q2d over wavevectors is the mean "
+            f"square; leave --psd-norm {norm} out, or give another --psd-kind"
+        )
+    if norm == "1" and abscissa == "frequency":
+        raise ValueError(
+            f"{path}: the first column is a frequency, and --psd-norm 1 makes the mean square the "
+            "integral over wavevectors; give --psd-norm 2pi if it is the integral over "
+            "frequencies, or convert the first column to wavevectors"
+        )
+
+
 def _norm(
     one: _Series,
+    kind: PsdKind,
     abscissa: PsdAbscissa,
     options: PsdOptions,
-    n_dimension: int,
+    *,
     is_per_radian: bool,
 ) -> tuple[float, str]:
-    """Factor of a density for its norm over wavevectors, and the norm in words."""
+    """Factor of C, or of q C, over a density by the norm of this, and the norm in words."""
+    if kind == "q2d":
+        return math.pi, ""
     if abscissa == "frequency":
         return 1.0, "mean square its integral over frequencies"
-    is_over_wavevectors = is_per_radian or re.search(_GWYDDION, one.text)
+    if kind == "radial":
+        is_over_wavevectors = abscissa == "wavevector"
+    else:
+        is_over_wavevectors = is_per_radian or re.search(_GWYDDION, one.text) is not None
     norm = options.psd_norm or ("1" if is_over_wavevectors else "2pi")
     if norm == "1":
-        return (2 * math.pi) ** n_dimension, "mean square its integral over wavevectors"
+        factor = (2 * math.pi) ** (2 if kind == "2d" else 1)
+        return factor, "mean square its integral over wavevectors"
     return 1.0, "mean square its integral over wavevectors / 2 pi"
 
 

@@ -124,6 +124,52 @@ def test_a_density_per_radian_is_one_over_wavevectors(tmp_path):
     np.testing.assert_allclose(read_psd_file(path, PsdOptions()).value, profile(), rtol=1e-6)
 
 
+F = Q / (2 * np.pi)
+RADIAL = Q * isotropic() / (2 * np.pi)
+"""Density of which the integral over wavevectors is the mean square."""
+
+
+@pytest.mark.parametrize(
+    ("head", "first", "density", "norm"),
+    [
+        ("q (1/m),radial PSD (m^3)", Q, RADIAL, "1"),
+        ("q (1/m),radial PSD (m^3)", Q, 2 * np.pi * RADIAL, "2pi"),
+        ("k (1/m),W_r (m^3)", Q, 2 * np.pi * RADIAL, "2pi"),
+        ("wavelength (m),radial PSD (m^3)", 1 / F, RADIAL, "1"),
+        ("f (1/m),radial PSD (m^3)", F, 2 * np.pi * RADIAL, "2pi"),
+        ("f (1/m),C2D (m^4)", F, isotropic(), "2pi"),
+        ("wavelength (m),C2D (m^4)", 1 / F, isotropic() / (2 * np.pi) ** 2, "1"),
+        ("k (1/m),W (m^4)", Q, isotropic() / (2 * np.pi) ** 2, "1"),
+    ],
+)
+def test_a_named_norm_counts_for_every_kind_and_first_column(tmp_path, head, first, density, norm):
+    path = tmp_path / "psd.csv"
+    path.write_text(f"{head}\n" + columns(first, density))
+    found = read_psd_file(path, PsdOptions(psd_norm=norm))
+    np.testing.assert_allclose(np.sort(found.wavevector), Q, rtol=1e-6)
+    np.testing.assert_allclose(found.value, isotropic(), rtol=1e-6)
+    assert "mean square its integral over" in found.convention
+
+
+@pytest.mark.parametrize(
+    ("head", "options", "sentence"),
+    [
+        ("f (1/m),PSD (m^3)", {}, "frequency, and --psd-norm 1 makes .*; give --psd-norm 2pi if"),
+        ("f (1/m),C2D (m^4)", {}, "frequency, and --psd-norm 1 makes .*; give --psd-norm 2pi if"),
+        ("f (1/m),radial PSD (m^3)", {}, "or convert the first column to wavevectors"),
+        ("q (1/m),PSD (m^3)", {"psd_kind": "q2d"}, "kind q2d over .* leave --psd-norm 1 out, or"),
+        ("q (1/m),q/pi x 2D PSD (m^3)", {"psd_norm": "2pi"}, "q2d .* leave --psd-norm 2pi out"),
+    ],
+)
+def test_a_norm_that_contradicts_the_kind_or_the_first_column_is_refused(
+    tmp_path, head, options, sentence
+):
+    path = tmp_path / "psd.csv"
+    path.write_text(f"{head}\n" + columns(Q, profile()))
+    with pytest.raises(ValueError, match=sentence):
+        read_psd_file(path, PsdOptions(**{"psd_norm": "1", **options}))
+
+
 def test_a_density_that_does_not_say_its_sides_is_taken_as_two_sided_with_a_sentence(tmp_path):
     path = tmp_path / "psd.csv"
     path.write_text("q (1/m),PSD (m^3)\n" + columns(Q, profile()))
