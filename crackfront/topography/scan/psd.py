@@ -135,6 +135,11 @@ def read_psd_file(path: Path, options: PsdOptions) -> Psd:
             )
         factor /= 2 if sides == "one" else 1
         words = f"{'one' if sides == 'one' else 'two'}-sided, {words}"
+    elif options.psd_sides is not None:
+        raise ValueError(
+            f"{path}: its density is of kind {kind}, and only one of kind 1d is one-sided or "
+            f"two-sided; leave --psd-sides {options.psd_sides} out"
+        )
     place, value = _columns(path, one)
     waves = place * unit_value(abscissa_unit, "m" if abscissa == "wavelength" else "1/m")
     q = {"wavevector": waves, "frequency": 2 * np.pi * waves}.get(abscissa, 2 * np.pi / waves)

@@ -180,6 +180,15 @@ def test_a_density_that_does_not_say_its_sides_is_taken_as_two_sided_with_a_sent
     np.testing.assert_allclose(half.value, found.value / 2)
 
 
+@pytest.mark.parametrize("head", ["q (1/m),C2D (m^4)", "q (1/m),radial PSD (m^3)"])
+@pytest.mark.parametrize("sides", ["one", "two"])
+def test_sides_of_a_density_that_is_none_of_profiles_are_refused(tmp_path, head, sides):
+    path = tmp_path / "psd.csv"
+    path.write_text(f"{head}\n" + columns(Q, isotropic()))
+    with pytest.raises(ValueError, match=rf"kind (2d|radial), .* leave --psd-sides {sides} out"):
+        read_psd_file(path, PsdOptions(psd_sides=sides))
+
+
 @pytest.mark.parametrize(
     ("text", "options", "sentence"),
     [
