@@ -47,6 +47,9 @@ ATOMS = 1e-9
 _SHOWN_OVER_CUTOFF = 100.0
 """Waves up to this many short cutoffs have their share of e_el stated if no cutoff is named."""
 
+_MOST_ROLL_OFF = 100.0
+"""Longest roll-off over the correlation length, or over the short cutoff if this is longer."""
+
 _LAST_WAVE, _POINTS = 300.0, 20_001
 """Wavevector times distance where the integral of an autocorrelation ends, and its points."""
 
@@ -244,11 +247,19 @@ def _roll_off(length: float, hurst: float, cutoff: float) -> float:
         roll_off = max(cutoff, math.exp(logarithm))  # shorter by round-off alone
         return _autocorrelation(length, roll_off, hurst, cutoff) - math.exp(-1)
 
-    ends = math.log(max(cutoff, length / 2)), math.log(100 * max(cutoff, length))
+    longest = _MOST_ROLL_OFF * max(cutoff, length)
+    ends = math.log(max(cutoff, length / 2)), math.log(longest)
     if excess(ends[0]) > 0:
         raise ValueError(
             f"waves longer than a cutoff of {prefixed('m', cutoff)} have no correlation length of "
             f"{prefixed('m', length)}; name a shorter short cutoff"
+        )
+    if excess(ends[1]) < 0:
+        raise ValueError(
+            f"with a Hurst exponent of {hurst:g} and a short cutoff of {prefixed('m', cutoff)}, a "
+            f"correlation length of {prefixed('m', length)} needs a roll-off above "
+            f"{prefixed('m', longest)}; name the roll-off in its place, a larger Hurst exponent or "
+            "a longer short cutoff"
         )
     return max(cutoff, math.exp(scipy.optimize.brentq(excess, *ends, xtol=1e-10)))
 

@@ -108,6 +108,10 @@ def test_an_unnamed_cutoff_is_assumed_or_asked_for():
             )
             for cutoff in ("10um", "20um")
         ),
+        (
+            {"rms": "60nm", "correlation_length": "1um", "short_cutoff": "1nm", "hurst": 0.02},
+            "exponent of 0.02 .* 1 um needs a roll-off above 100 um; name the roll-off",
+        ),
         ({"rms": "60", "roll_off": "1um", "hurst": 0.8}, "rms is '60', without a unit"),
     ],
 )
