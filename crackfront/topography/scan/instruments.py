@@ -72,6 +72,9 @@ _REASONS = (
 _SIDES = (1e-9, 1.0)
 """Sides of a scan within which instruments measure (Units: m): beyond, the unit is wrong."""
 
+_SAME_SIDE = 0.01
+"""Relative difference of sides that are rounded, and the same."""
+
 _LEAST_HEIGHT, _MOST_HEIGHT = 1e-12, 10.0
 """Least rms of heights (Units: m), and most span over the side, that instruments measure."""
 
@@ -186,8 +189,7 @@ def raw_scan(path: Path, options: ReadingOptions, height_scale: float = 1.0) -> 
 def is_stated(path: Path, channel: str | None) -> tuple[bool, bool]:
     """Whether a file states the unit and the sides of a channel."""
     found, _ = _channel(path, _reader(path), channel)
-    size = found.physical_sizes
-    return found.unit is not None, size is not None and None not in size
+    return found.unit is not None, _is_sized(found)
 
 
 @_silenced()
@@ -529,7 +531,7 @@ def _units_and_sides(
 ) -> tuple[dict[str, Any], tuple[float, ...] | None]:
     """Unit and sides that options add to a file; sides in metres if those of the file are wrong."""
     unit, size = channel.unit, channel.physical_sizes
-    is_sized = size is not None and None not in size
+    is_sized = _is_sized(channel)
     if unit is not None and is_sized and not _are_possible(stated := in_metres(unit, *size)):
         if options.size is None or options.unit is None:
             raise ValueError(
@@ -550,6 +552,8 @@ def _units_and_sides(
         "", unit
     ):
         raise ValueError(f"{path} states its own unit, {unit}; leave --unit {options.unit} out")
+    if not is_sized and size is not None and None not in size:
+        return given, _sides_with_one(path, channel, options, unit)
     if not is_sized:
         if options.size is None:
             raise ValueError(f"{path} states no size of the scan; name it, as in --size 50,50")
@@ -559,6 +563,35 @@ def _units_and_sides(
         raise ValueError(f"{path} states its own size, {known} {unit}; leave --size out")
     _named_sides(path, size, unit)
     return given, None
+
+
+def _is_sized(channel: Any) -> bool:
+    """Whether a file states a side of a channel for each of its directions."""
+    size = channel.physical_sizes
+    return size is not None and None not in size and len(size) == channel.dim
+
+
+def _sides_with_one(
+    path: Path, channel: Any, options: ReadingOptions, unit: str
+) -> tuple[float, ...]:
+    """Sides that options name of a map of which the file states one alone (Units: m).
+
+    ValueError, of one sentence, where no sides are named, or others than the one that is stated.
+    """
+    stated, *others = channel.physical_sizes
+    if others:
+        raise ValueError(
+            f"{path} holds a line and states the sides of a map; write one side in its head"
+        )
+    known = f"{path} states one side of its map, {stated:g} {unit}"
+    advice = f"name both in {unit}, as in --size {stated:g},{stated:g}"
+    if options.size is None:
+        raise ValueError(f"{known}, and not the other; {advice}")
+    named = _sides(path, options.size, channel.dim)
+    is_same = math.isclose(named[0], stated, rel_tol=_SAME_SIDE)
+    if not is_same and _are_possible(in_metres(unit, stated)):
+        raise ValueError(f"{known}, and --size names {named[0]:g} {unit} for it; {advice}")
+    return _named_sides(path, named, unit)
 
 
 def _length_unit(option: str, given: str) -> str:

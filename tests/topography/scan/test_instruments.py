@@ -196,6 +196,23 @@ def test_units_and_sizes_that_a_file_lacks_must_be_named(tmp_path, heights, scan
     )
 
 
+@pytest.mark.parametrize("width", ["20 um", "20 km"])
+def test_a_map_of_which_one_side_is_stated_needs_both_by_name(tmp_path, heights, width):
+    path = write_text(tmp_path / "scan.txt", heights)
+    text = path.read_text().replace("# Height: 20 um\n", "")
+    path.write_text(text.replace("20 um", width))
+    assert "states one side of its map, 2" in refusal(path)
+    for size, expected in (("20", (20e-6, 20e-6)), ("20,40", (20e-6, 40e-6))):
+        assert read(path, size=size).size == pytest.approx(expected)
+    if width == "20 um":
+        message = "states one side of its map, 20 um, and not the other; name both in um, as in --"
+        assert message in refusal(path)
+        message = "20 um, and --size names 0.02 um for it; name both in um, as in --size 20,20"
+        assert message in refusal(path, size="0.02")
+    path.write_text("# Width: 20 um\n# Height: 20 um\n# Value units: um\n" + "1\n2\n4\n3\n" * 99)
+    assert "holds a line and states the sides of a map; write one side" in refusal(path)
+
+
 def test_units_and_sizes_that_a_file_states_are_not_overruled(scan):
     assert "states its own unit, m" in refusal(scan, unit="nm")
     assert "states its own size" in refusal(scan, size=(1.0, 1.0))
