@@ -15,6 +15,7 @@ from crackfront.topography.density.densities import (
     Density,
     Periodogram,
     anisotropy,
+    energy_share,
     periodic_part,
     stripes,
     unevenness,
@@ -95,6 +96,8 @@ class Band:
     """All limits that were found, both ends among them."""
     stripes: tuple[int, ...]
     """Axes along which the map is shifted or levelled row by row; these waves are left out."""
+    stripes_share: float
+    """Part of e_el within the band that these waves would hold; 0 if none are left out."""
     anisotropy: tuple[float, float]
     """Of a map the largest rms slope over that across it, and its angle from x; 1 and 0 for lines.
     (Units: 1, degree)"""
@@ -217,6 +220,9 @@ def analysed_scan(
         longest=high,
         limits=(lower[0], upper[0], *lower[1:], *upper[1:]),
         stripes=striped,
+        stripes_share=0.0
+        if without is None
+        else energy_share(waves, without, low.wavelength, high.wavelength),
         anisotropy=(1.0, 0.0) if measurement.is_line else anisotropy(waves, low.wavelength),
         periodic=periodic,
         instrument=instrument,

@@ -238,6 +238,15 @@ def periodic_part(waves: Periodogram, shortest: float, longest: float) -> tuple[
     return float(energy[near].sum() / energy.sum()), float(2 * np.pi / wavevector[index])
 
 
+def energy_share(
+    waves: Periodogram, chosen: NDArray[np.bool_], shortest: float, longest: float
+) -> float:
+    """Part of e_el within bounds that some waves hold."""
+    inside = _between(waves.wavevector, 2 * np.pi / longest, 2 * np.pi / shortest)
+    energy = np.where(inside, waves.count * waves.power * waves.wavevector, 0.0)
+    return float(np.sum(energy, where=chosen) / np.sum(energy))
+
+
 def anisotropy(waves: Periodogram, shortest: float) -> tuple[float, float]:
     """Largest rms slope over that across it, of the trusted waves of a map, and its direction.
 

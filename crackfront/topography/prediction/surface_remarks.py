@@ -16,7 +16,10 @@ from crackfront.topography.spectrum.measures import MeasuredSurface
 from crackfront.topography.spectrum.stated import StatedSurface, Surface
 
 _MOST_ANISOTROPY = 1.25
-"""Largest ratio of the rms slopes along x and y without a reservation."""
+"""Largest ratio of the rms slope in a direction to that across it without a reservation."""
+
+_MOST_STRIPES = 0.5
+"""Largest part of e_el that may be left out as that of shifted rows without a reservation."""
 
 _MOST_UNMEASURED = 0.1
 """Largest part of e_el that shorter waves may add without a reservation."""
@@ -221,6 +224,16 @@ def spectrum_remarks(surface: Surface) -> Iterator[Remark]:
                 "reservation",
                 f"{path}: the rms slope at {angle:.0f} degrees from x is {ratio:.2g} times that "
                 "across it; the theory is for isotropic surfaces.",
+            )
+        if one.band.stripes_share > _MOST_STRIPES:
+            path = str(one.measurement.path)
+            axes = " and ".join("xy"[axis] for axis in one.band.stripes)
+            yield Remark(
+                path,
+                "reservation",
+                f"{path}: {one.band.stripes_share:.0%} of e_el would be in waves along {axes} "
+                "alone, which are left out as rows that the instrument has shifted; if they are "
+                "grooves of the surface, e_el is far too low and the theory does not apply.",
             )
     for sentence in _spectrum_doubts(surface.joint):
         yield Remark("spectrum", "reservation", sentence)

@@ -8,6 +8,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from crackfront.topography.density.bands import analysed_scan
+from crackfront.topography.prediction.surface_remarks import spectrum_remarks
 from crackfront.topography.scan.reading import Measurement
 from crackfront.topography.spectrum import draws
 from crackfront.topography.spectrum.joining import joint_spectrum
@@ -148,6 +149,18 @@ def test_random_grooves_along_an_axis_are_refused_for_what_they_are(rng):
     grooves += 1e-13 * rng.standard_normal(grooves.shape)
     with pytest.raises(ValueError, match=r"if they are grooves, the surface is not isotropic"):
         measured_surface([measurement(grooves)])
+
+
+@pytest.mark.parametrize("deep", [False, True])
+def test_grooves_among_other_roughness_are_a_reservation_if_they_hold_most_of_e_el(rng, deep):
+    """Rows that an instrument has shifted by a little are none."""
+    grooves = np.repeat(profile(rng, 256)[:, None], 256, axis=1)
+    other = waves_up_to(60, rng, (256, 256))
+    other *= (0.1 if deep else 1.0) * 1e-8 / other.std()
+    surface = measured_surface([measurement(other + grooves)])
+    assert surface.scans[0].band.stripes == (0,)
+    told = [one for one in spectrum_remarks(surface) if "waves along x alone" in one.sentence]
+    assert [one.severity for one in told] == ["reservation"] * deep
 
 
 def test_ends_that_are_named_one_for_the_other_are_refused(rng):
