@@ -442,6 +442,16 @@ def test_an_array_is_the_same_surface_in_all_units():
             {"units": "w_int"},
             "side is 4.0, but the coordinate x of the array spans 32",
         ),
+        (
+            xr.DataArray(1 + WAVE, {"x": np.arange(32) / 8, "y": np.arange(32) / 4}, ("x", "y")),
+            {"units": "w_int"},
+            "the coordinate y of the array spans 8, where a side of 4.0 along x makes pixels squ",
+        ),
+        (
+            xr.DataArray(1 + WAVE, {"x": np.arange(32) / 8, "y": -np.arange(32) / 8}, ("x", "y")),
+            {"units": "w_int"},
+            "y advances by -0.125 to -0.125; it must increase in equal steps",
+        ),
     ],
 )
 def test_an_array_that_is_no_surface_is_refused_with_the_likely_cause(values, given, sentence):

@@ -111,17 +111,31 @@ _SITES = 3.0
 2 it is a third too large, with 1 two to four times, on straight fronts at w_rms 0.6 and 0.8."""
 
 
-def remark_on_sites(numerics: LoopNumerics, length: float, measures: TileMeasures) -> str:
-    """Sentence on a front of a length whose given sites are too few for a tile; else empty."""
-    if numerics.sites is None or measures.w_rms == 0:
-        return ""
-    density = numerics.sites * measures.correlation_length / length
-    if density >= _SITES:
+def remark_on_sites(n_site: int, length: float, measures: TileMeasures) -> str:
+    """Sentence on a front of a length whose sites are too few for a tile; else empty."""
+    density = n_site * measures.correlation_length / length
+    if measures.w_rms == 0 or density >= _SITES:
         return ""
     return (
-        f"sites is {numerics.sites}, {density:.2g} per correlation length of w_loc, with which "
-        f"the hysteresis comes out too large; use {math.ceil(_SITES * numerics.sites / density)} "
-        "or more"
+        f"the front has {n_site} sites, {density:.2g} per correlation length of w_loc, with which "
+        f"the hysteresis comes out too large; use {math.ceil(_SITES * n_site / density)} or more"
+    )
+
+
+_LARGEST_MEAN = 0.05
+"""Difference of the mean work of adhesion from that of the theory, beyond which the stiffness of
+the line, which is that at w_int, makes hysteresis wrong. (Units: w_int)"""
+
+
+def remark_on_mean(measures: TileMeasures) -> str:
+    """Sentence on a tile whose mean work of adhesion is not w_int; else empty."""
+    expected = 1 - measures.e_el if measures.kind == "roughness" else 1.0
+    if abs(measures.mean - expected) <= _LARGEST_MEAN:
+        return ""
+    return (
+        f"the mean work of adhesion is {measures.mean:.3g} w_int, but the line is as stiff as at "
+        "w_int, so that the hysteresis is wrong; divide the values by their mean, and take the "
+        "mean for the work of adhesion of the sphere"
     )
 
 

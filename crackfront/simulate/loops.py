@@ -157,8 +157,9 @@ def loop_dataset(record: CycleRecord, setup: LoopSetup) -> Dataset:
     """Labelled curves of a run, and measures of the whole."""
     measures, simulation = setup.measures, setup.simulation
     curves = cycle_dataset(record, setup.field.geometry)
-    if record.dissipated_energy is not None and setup.load_stiffness is not None:
-        comment = _comment_on_steps(record.states, record.dissipated_energy, setup.load_stiffness)
+    lost = record.dissipated_energy
+    if lost is not None and setup.load_stiffness is not None and np.nansum(lost) > 0:
+        comment = _comment_on_steps(record.states, lost, setup.load_stiffness)
         curves["dissipated_energy"] = curves.dissipated_energy.assign_attrs(comment=comment)
     values = {name: getattr(measures, name) for name in ("e_el", "w_rms", "correlation_length")}
     length = measures.correlation_length

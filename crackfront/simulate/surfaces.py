@@ -245,6 +245,10 @@ def tile_modes(values: Array, pixel: float) -> Modes:
     return Modes(*(part[used][rising] for part in (wavevector, count * power, count)))
 
 
+_MEAN_ERROR = 0.1
+"""Largest difference of the mean work of adhesion from w_int - e_el of a rough tile, over e_el."""
+
+
 @dataclass(frozen=True, slots=True)
 class TileMeasures:
     """Measures of the tile of a loop."""
@@ -267,7 +271,9 @@ def tile_measures(adhesion: AdhesionMap) -> TileMeasures:
     values, energy = adhesion.work_of_adhesion, adhesion.e_el
     mean, period = float(np.mean(values)) / WORK_OF_ADHESION, adhesion.pixel * len(values)
     lacking = 1 - mean
-    kind: FieldKind = "chemical" if abs(lacking) < abs(lacking - energy) else "roughness"
+    kind: FieldKind = "chemical"
+    if abs(lacking - energy) < _MEAN_ERROR * energy:
+        kind = "roughness"
     modes = tile_modes(values, adhesion.pixel)
     length = modes.mean_wavelength if modes.power.size else adhesion.pixel
     return TileMeasures(kind, energy, adhesion.w_rms, mean, period, length)

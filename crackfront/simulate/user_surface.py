@@ -148,25 +148,30 @@ def _stated(values: xr.DataArray, units: str | None) -> tuple[xr.DataArray, str 
 
 
 def _refuse_other_side(values: xr.DataArray, side: float | str, sphere: Scales | None) -> None:
-    """Raise if the coordinate x of an array spans another side than is given."""
-    if "x" not in values.coords or values.sizes.get("x", 0) < 2:
-        return
-    unit = str(stated_unit(values.x.attrs) or "1")
-    if sphere is None or (unit == "1" and not isinstance(side, str)):
-        factor = 1.0
-    elif unit in ("reduced", LATERAL):
-        factor = sphere.lateral
-    elif is_unit(unit, "m"):
-        factor = unit_value(unit, "m")
-    else:
-        return
-    spans = values.sizes["x"] * float(values.x[1] - values.x[0])
+    """Raise if coordinates of an array span another side than is given, or are not of a tile."""
     wanted = float(side) if sphere is None else in_si("side", side, "m")
-    if abs(factor * spans / wanted - 1) > _UNEQUAL:
-        raise ValueError(
-            f"side is {side}, but the coordinate x of the array spans "
-            f"{spans:.6g}{'' if unit == '1' else f' {unit}'}; give this side, or the values alone"
-        )
+    for name in ("x", "y"):
+        if name not in values.coords or values.sizes.get(name, 0) < 2:
+            continue
+        unit = str(stated_unit(values[name].attrs) or "1")
+        if sphere is None or (unit == "1" and not isinstance(side, str)):
+            factor = 1.0
+        elif unit in ("reduced", LATERAL):
+            factor = sphere.lateral
+        elif is_unit(unit, "m"):
+            factor = unit_value(unit, "m")
+        else:
+            continue
+        spans = values.sizes[name] * _spacing(values, name)
+        # Pixels are square: the side is that along x.
+        along = wanted * values.sizes[name] / values.sizes["x"]
+        if abs(factor * spans / along - 1) > _UNEQUAL:
+            other = "" if name == "x" else f", where a side of {side} along x makes pixels square"
+            raise ValueError(
+                f"side is {side}, but the coordinate {name} of the array spans "
+                f"{spans:.6g}{'' if unit == '1' else f' {unit}'}{other}; give "
+                f"{'this side' if name == 'x' else 'values on square pixels'}, or the values alone"
+            )
 
 
 def _refuse_complex(values: object) -> None:

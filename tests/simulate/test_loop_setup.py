@@ -92,7 +92,7 @@ def test_too_few_sites_say_that_the_hysteresis_is_too_large_and_how_many_are_eno
 
     front = cf.straight_front(surface, 1.0)
     coarse, usual = run(6), run(None)
-    sentence = r"sites is 6, 1\.\d per .* too large; use (\d+) or"
+    sentence = r"the front has 6 sites, 1\.\d per .* too large; use (\d+) or"
     [needed] = re.findall(sentence, coarse.attrs["result"])
     enough = run(int(needed))
     for one in (usual, enough):
@@ -100,10 +100,46 @@ def test_too_few_sites_say_that_the_hysteresis_is_too_large_and_how_many_are_eno
     assert enough.hysteresis == pytest.approx(float(usual.hysteresis), rel=0.1)
     assert coarse.hysteresis > 1.3 * usual.hysteresis
     pressed = cf.run_loop(surface, loads=[0, 1], sites=8)
-    assert "sites is 8, " in pressed.attrs["result"]
+    assert "the front has 8 sites, " in pressed.attrs["result"]
     assert "sites" not in cf.run_loop(surface, loads=[0, 1], sites=80).attrs["result"]
     plain = cf.surface(np.ones((48, 48)), side=4.8, kind="chemical", units="w_int")
     assert "sites" not in cf.run_loop(plain, loads=[0, 1], sites=8).attrs["result"]
+
+
+def test_a_site_a_pixel_is_too_few_for_a_surface_that_changes_from_pixel_to_pixel(rng):
+    values = 1 + 0.3 * rng.standard_normal((96, 96))
+    surface = cf.surface(values / values.mean(), side=96.0, kind="chemical", units="w_int")
+    front = cf.straight_front(surface, 9.0)
+    usual = cf.run_loop(front, loads=[0, 2], step=1.0).attrs["result"]
+    assert re.search(r"the front has 96 sites, 2\.\d per correlation length of w_loc", usual)
+    fine = cf.run_loop(front, loads=[0, 2], step=1.0, sites=192).attrs["result"]
+    assert "sites" not in fine
+
+
+@pytest.mark.parametrize("mean", [0.6, 1.0, 1.6])
+def test_a_mean_that_is_not_w_int_is_told_since_the_line_has_the_stiffness_of_w_int(patches, mean):
+    surface = patches.copy(data=mean * patches.values)
+    told = f"the mean work of adhesion is {mean:.3g} w_int, but the line is as stiff as at w_int"
+    for contact in (surface, cf.straight_front(surface, 0.2)):
+        loop = cf.run_loop(contact, loads=[0, 0.5])
+        assert (told in loop.attrs["result"]) == (mean != 1.0)
+        assert loop.attrs["kind"] == "chemical"
+
+
+def test_a_rough_surface_is_told_from_its_works_of_adhesion(patches):
+    heights = cf.random_surface(short_cutoff=0.4, elastic_energy=0.05, side=4, error=0.3, seed=3)
+    works = surface_adhesion(heights).work_of_adhesion / WORK_OF_ADHESION
+    works = heights.copy(data=works).rename("work_of_adhesion").assign_attrs(units="w_int")
+    for surface in (heights, works):
+        loop = cf.run_loop(surface, loads=[0, 0.5])
+        assert loop.attrs["kind"] == "roughness"
+        assert "mean work" not in loop.attrs["result"]
+    assert cf.run_loop(0.9 * patches, loads=[0, 0.5]).attrs["kind"] == "chemical"
+
+
+def test_a_load_that_dissipates_nothing_has_no_share_of_steps(patches):
+    found = cf.run_loop(cf.straight_front(patches, 0.2), loads=[0], energy=True)
+    assert "nan" not in found.dissipated_energy.attrs.get("comment", "")
 
 
 def test_given_sites_overrule_the_spectrum_that_a_surface_states():

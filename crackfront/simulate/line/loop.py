@@ -24,6 +24,7 @@ from crackfront.simulate.loop_setup import (
     LoopNumerics,
     LoopSetup,
     refuse_few_samples,
+    remark_on_mean,
     remark_on_sites,
     state_count,
 )
@@ -89,7 +90,7 @@ class StraightFront(LoopContact):
             spacing=adhesion.pixel / samples,
         )
         front = initial_front(field, adhesion, loads[0])
-        few_sites = remark_on_sites(numerics, field.geometry.length, measures)
+        few_sites = remark_on_sites(field.geometry.n_site, field.geometry.length, measures)
         return LoopSetup(
             kind=LineSchedule,
             field=field,
@@ -102,7 +103,7 @@ class StraightFront(LoopContact):
             measures=measures,
             period=measures.period,
             load_stiffness=field.geometry.length * field.geometry.stiffness,
-            remark="; ".join(filter(None, (remark, few_sites))),
+            remark="; ".join(filter(None, (remark, remark_on_mean(measures), few_sites))),
         )
 
     def _refuse_round_off(self, adhesion: AdhesionMap, furthest: float, n_site: int) -> None:

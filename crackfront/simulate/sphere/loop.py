@@ -20,6 +20,7 @@ from crackfront.simulate.loop_setup import (
     LoopNumerics,
     LoopSetup,
     refuse_few_samples,
+    remark_on_mean,
     remark_on_sites,
     state_count,
 )
@@ -108,6 +109,10 @@ class PressedSphere(LoopContact):
                 )
             field = simulation_field(simulation, adhesion)
             tolerance = chosen.solver.tolerance
+        remarks = [remark_on_mean(measures)]
+        if simulation is None:
+            length = 2 * math.pi * radius
+            remarks.append(remark_on_sites(field.geometry.n_site, length, measures))
         return LoopSetup(
             kind=FullCycle,
             field=field,
@@ -118,5 +123,5 @@ class PressedSphere(LoopContact):
             tolerance=tolerance,
             measures=measures,
             simulation=simulation,
-            remark=remark_on_sites(numerics, 2 * math.pi * radius, measures),
+            remark="; ".join(filter(None, remarks)),
         )
