@@ -123,17 +123,18 @@ def loop(
         if work_of_adhesion is not None and not scans:
             raise ValueError("--work-of-adhesion is of a prediction; name --scans too")
         found = _measured(path, radius, contact_modulus, of_rig)
+    if not as_json:
+        # Also where nothing can be predicted.
+        click.echo(repr(found))
     predicted = _predicted(scans, found, work_of_adhesion) if scans else None
     if as_json:
         from crackfront.experiment.comparison import machine_readable
 
         echo_json(machine_readable(found, predicted))
-    else:
-        click.echo(repr(found))
-        if predicted is not None:
-            from crackfront.experiment.comparison import comparison_lines
+    elif predicted is not None:
+        from crackfront.experiment.comparison import comparison_lines
 
-            click.echo("\n".join(["", *comparison_lines(found, predicted)]))
+        click.echo("\n".join(["", *comparison_lines(found, predicted)]))
     if figure is not None:
         from crackfront.experiment.drawing import loop_figure
         from crackfront.plots.style import save_figure

@@ -12,13 +12,15 @@ from crackfront.data.jsonable import to_jsonable
 from crackfront.data.written_units import prefixed
 from crackfront.experiment.loop import MeasuredLoop
 from crackfront.topography.prediction.prediction import Prediction
+from crackfront.topography.prediction.remarks import remark_text
 
 _WHAT_IS_LEFT = (
     "The predicted loop is quasi-static: no viscoelasticity, no ageing, and the preload does not "
-    "enter. Neither interval covers what the model leaves out: roughness that is finer than the "
-    "scans or outside of them, dissipation at the moving edge (viscoelasticity: repeat at a tenth "
-    "of the speed), changes with time in contact (ageing, chemistry: repeat with a longer rest), "
-    "and a w_int other than the given one (measure it on a smooth surface)."
+    "enter. Neither interval covers the errors of modulus and radius in the prediction, nor what "
+    "the model leaves out: roughness that is finer than the scans or outside of them, dissipation "
+    "at the moving edge (viscoelasticity: repeat at a tenth of the speed), changes with time in "
+    "contact (ageing, chemistry: repeat with a longer rest), and a w_int other than the given one "
+    "(measure it on a smooth surface)."
 )
 
 _FAR = 2.0
@@ -59,6 +61,8 @@ def comparison_lines(found: MeasuredLoop, predicted: Prediction) -> Iterator[str
             "the page Questions of an experiment of the documentation (docs/questions.md) says "
             "which measurements distinguish the causes."
         )
+    yield f"{predicted.verdict.heading}."
+    yield from map(remark_text, predicted.verdict.of("undecided", "reservation"))
     yield _WHAT_IS_LEFT
 
 
@@ -75,6 +79,10 @@ def machine_readable(found: MeasuredLoop, predicted: Prediction | None) -> dict[
         return numbers
     names = ("e_el", "w_appr", "w_retr", "hysteresis")
     return numbers | {
-        "predicted": {name: to_jsonable(getattr(predicted, name)) for name in names},
+        "predicted": {name: to_jsonable(getattr(predicted, name)) for name in names}
+        | {
+            "outcome": predicted.verdict.outcome,
+            "remarks": [*map(remark_text, predicted.verdict.of("undecided", "reservation"))],
+        },
         "ratio": to_jsonable(hysteresis_ratio(found, predicted)),
     }

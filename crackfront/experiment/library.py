@@ -86,12 +86,15 @@ def measured_loop(
     }
     if isinstance(loop, (str, PathLike)) and is_netcdf(Path(loop)):
         loop = read_dataset(Path(loop))
-    if isinstance(loop, Dataset) and set(map(str, loop.data_vars)) <= set(UNITS):
-        loop = {str(name): _in_si(part) for name, part in loop.data_vars.items()}
+    if isinstance(loop, Dataset) and "penetration" not in loop:
+        # Simulated cycles have one. Other columns, as a time, are left out.
+        named = {name: loop[name] for name in UNITS if name in loop}
+        loop = named if len(named) > 1 else loop
     if isinstance(loop, Dataset):
-        if named := [name for name, value in given.items() if value is not None]:
+        if without := [name for name, value in given.items() if value is not None]:
+            leave_out = ", ".join(without)
             raise ValueError(
-                f"a simulated cycle states its sphere and has no rig; leave out {', '.join(named)} "
+                f"a simulated cycle states its sphere and has no rig; leave out {leave_out} "
                 "(crackfront.in_si_units gives a cycle in reduced units a sphere)"
             )
         return simulated_loop(loop)
@@ -127,16 +130,15 @@ def measured_loop(
     return analyse_loop(read_recording(Path(loop), {}, {}), rig)
 
 
-def _in_si(part: DataArray) -> ArrayLike:
-    """Values of a column of a dataset, converted where it states its unit."""
-    given = part.attrs.get("units")
-    return part.values if given is None else part.values * unit_value(given, UNITS[str(part.name)])
-
-
 def _column(name: str, values: ArrayLike) -> Array:
-    """A column as numbers, NaN where it is masked; refused where no row has one."""
+    """A column in SI units, NaN where it is masked; refused where no row has a number.
+
+    An array that states its unit is converted.
+    """
+    given = values.attrs.get("units") if isinstance(values, DataArray) else None
+    factor = 1.0 if given is None else unit_value(given, UNITS[name])
     try:
-        found: Array = np.ma.array(values, dtype=float).filled(np.nan)
+        found: Array = factor * np.ma.array(values, dtype=float).filled(np.nan)
     except (TypeError, ValueError) as error:
         raise TypeError(f"the values of {name} are no array of numbers: {error}") from error
     if not np.any(np.isfinite(found)):

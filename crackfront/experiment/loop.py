@@ -67,6 +67,12 @@ _TINY = np.finfo(float).tiny
 _APART = 1.5
 """Ratio of a pull-off force to that of the work of adhesion, beyond which the loop says so."""
 
+_MOST_LOST = 0.05
+"""Part of the rows in contact that noise may leave without a work of adhesion."""
+
+_LARGE = 0.3
+"""Contact radius over that of the sphere, whose profile a paraboloid misses by 3%."""
+
 _RETURN = 0.2
 """Part of the largest travel by which mount or edge may come back within a branch."""
 
@@ -181,14 +187,17 @@ def analyse_loop(recording: Recording, rig: Rig) -> MeasuredLoop:
     fit = _fit(recording, rig, branches) if is_fitted else math.nan
     known, fitted = rig.contact_modulus or fit, _NO_ESTIMATE
     zero = _zero_displacement(recording, rig, known, branches)
+    touching = branches
     first, branches, averaged, window = _placed(recording, rig, known, zero, branches)
     if zero != 0.0:
         # What precedes the steady parts has no part in the zero.
         zero = _zero_displacement(recording, rig, known, averaged, near=zero)
         first, branches, averaged, window = _placed(recording, rig, known, zero, branches)
         remarks.append(
-            "The zero of the displacement was fitted, with one work of adhesion for each branch."
+            "The zero of the displacement was fitted, with one work of adhesion for each branch. "
+            "Its drift is not known, and no interval includes it."
         )
+    remarks += _size_remark(first.radius, rig)
 
     def found(rows: Branches, rig: Rig, recording: Recording = recording) -> Array:
         """Both works, the hysteresis and the modulus from some rows of each branch."""
@@ -233,6 +242,7 @@ def analyse_loop(recording: Recording, rig: Rig) -> MeasuredLoop:
     pull_off, noise = _pull_off(first.force, branches[1], errors)
     if recording.radius is None:
         _refuse_hidden(pull_off.value, noise)
+        _refuse_lost_rows(first.work[np.concatenate(touching)])
     remarks += _pull_off_remark(rig, pull_off, estimates[1].value, lost)
     return MeasuredLoop(
         force=first.force,
@@ -438,7 +448,11 @@ def _touches(recording: Recording) -> NDArray[np.bool_]:
         before = _rows_apart(recording, force, known[: turn + 1])
         inside = known[before : known.size - after]
         if inside.size and np.ptp(force[known]) > 0:
-            touches[inside[0] : inside[-1] + 1] = True
+            last = inside[-1]
+            # The last row before a sharp pull-off is far from those around it, as a spike is.
+            if last + 1 < force.size and force[last + 1] < force[last]:
+                last += 0 if np.isin(last + 1, known) else 1
+            touches[inside[0] : last + 1] = True
     if not np.any(touches):
         raise ValueError(
             "no row is in contact: no contact radius is above zero, or no force beyond its noise; "
@@ -781,6 +795,28 @@ def _pull_off(
     return Estimate(value, math.sqrt(variance), value - reach, value + reach), math.sqrt(noise)
 
 
+def _refuse_lost_rows(work: Array) -> None:
+    """Raise if many rows in contact have no work of adhesion, of which others are no fair part."""
+    lost = float(np.mean(~np.isfinite(work)))
+    if lost > _MOST_LOST:
+        raise ValueError(
+            f"{lost:.0%} of the rows in contact have no work of adhesion, as noise presses more "
+            "than the contact of Hertz; average rows, use a stiffer machine, check --stiffness, or "
+            "record the contact radius"
+        )
+
+
+def _size_remark(radius: Array, rig: Rig) -> list[str]:
+    """A sentence where a contact is not small against the sphere."""
+    ratio = float(np.nanmax(radius)) / rig.radius
+    if ratio <= _LARGE:
+        return []
+    return [
+        f"The contact radius reaches {ratio:.2g} of that of the sphere, whose profile a paraboloid "
+        "misses there; the works of adhesion and the modulus are those of a paraboloid."
+    ]
+
+
 def _refuse_no_interval(works: Sequence[Estimate[float]]) -> None:
     """Raise if works of adhesion have no interval."""
     if not all(math.isfinite(one.high) for one in works):
@@ -859,9 +895,13 @@ def _lost_energy(recording: Recording, contact: _Contact, branches: Branches) ->
     moved = recording.displacement
     if moved is None:
         moved = contact.penetration
-    if _touches(recording)[-1]:
-        return math.nan, "The energy lost is not known: the retraction does not end out of contact."
-    return work_per_area(moved[rows], contact.force[rows], contact.radius[rows]), ""
+    touches = _touches(recording)
+    if touches[0] or touches[-1]:
+        which = "approach does not begin" if touches[0] else "retraction does not end"
+        return math.nan, f"The energy lost is not known: the {which} out of contact."
+    # The largest of noisy radii would be too large.
+    radius = scipy.ndimage.median_filter(contact.radius[rows], 5, mode="nearest")
+    return work_per_area(moved[rows], contact.force[rows], radius), ""
 
 
 def work_per_area(displacement: Array, force: Array, radius: Array) -> float:

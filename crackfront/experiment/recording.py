@@ -130,15 +130,15 @@ def _in_si(values: Array, name: str, head: str, unit: str) -> Array:
     if _is_area(name, head, unit):
         return np.sqrt(np.maximum(values * unit_value(unit, "m^2"), 0.0) / np.pi)
     found = values * unit_value(unit, UNITS[name])
-    return found / 2 if name == "radius" and _name(head).endswith("diameter") else found
+    return found / 2 if name == "radius" and "diameter" in _name(head) else found
 
 
 def _is_area(name: str, head: str, unit: str) -> bool:
     """Whether a column of radii has areas, by its head, or by its unit where the head says none."""
     named = _name(head)
-    if name != "radius" or named.endswith(("radius", "diameter")):
+    if name != "radius" or "radius" in named or "diameter" in named:
         return False
-    return named.endswith("area") or is_unit(unit, "m^2")
+    return "area" in named or is_unit(unit, "m^2")
 
 
 def _layout(path: Path, lines: Sequence[str]) -> tuple[str | None, int]:

@@ -74,6 +74,7 @@ def test_a_scan_beside_the_loop_gives_their_ratio(table):
     )
     assert done.exit_code == 0, done.output
     found = json.loads(done.stdout)
+    assert found["predicted"]["outcome"] == "applies with reservations"
     ratio = found["ratio"]
     expected = found["hysteresis"]["value"] / found["predicted"]["hysteresis"]["value"]
     assert np.isclose(ratio["value"], expected)

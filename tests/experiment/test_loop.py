@@ -10,7 +10,7 @@ from crackfront import measured_loop
 from crackfront.core import jkr
 from crackfront.core.units import Scales
 from crackfront.experiment.contact import penetration_at, radius_at
-from crackfront.experiment.loop import Rig, analyse_loop
+from crackfront.experiment.loop import Rig, _refuse_lost_rows, _touches, analyse_loop
 from crackfront.experiment.recording import Recording
 from tests.experiment.made import MODULUS, RADIUS, W_APPR, W_RETR, loop
 
@@ -138,6 +138,52 @@ def test_what_gives_no_works_is_refused(made, rig, sentence):
 def test_the_energy_lost_is_the_hysteresis_times_the_area_that_was_swept():
     found = analyse_loop(loop(0), Rig(RADIUS, MODULUS))
     assert found.lost_energy == pytest.approx(W_RETR - W_APPR, rel=0.1)
+
+
+def test_a_loop_that_begins_in_contact_has_no_lost_energy_and_says_so():
+    whole = loop(0)
+    first = int(np.flatnonzero(whole.radius > 0)[5])
+    cut = Recording(*(one[first:] for one in (whole.force, whole.radius, whole.displacement)))
+    found = analyse_loop(cut, Rig(RADIUS, MODULUS))
+    assert np.isnan(found.lost_energy)
+    assert any("the approach does not begin out of contact" in one for one in found.remarks)
+
+
+def test_one_radius_that_is_too_large_does_not_lower_the_lost_energy():
+    whole = loop(0)
+    radius = whole.radius.copy()
+    radius[int(np.argmax(radius)) - 20] *= 1.3
+    rig = Rig(RADIUS, MODULUS)
+    one, other = (analyse_loop(replace(whole, radius=each), rig) for each in (whole.radius, radius))
+    assert other.lost_energy == pytest.approx(one.lost_energy, rel=0.05)
+
+
+def test_rows_that_noise_leaves_without_a_work_are_no_small_matter():
+    """The others are no fair part of them."""
+    work = np.where(np.arange(100) < 6, np.nan, 1.0)
+    with pytest.raises(ValueError, match=r"6% of the rows in contact have no work of adhesion, as"):
+        _refuse_lost_rows(work)
+    _refuse_lost_rows(work[2:])
+
+
+def test_the_last_row_before_a_sharp_pull_off_is_no_spike():
+    whole = loop(0, without="radius", force_noise=2e-4)
+    last = int(np.flatnonzero(np.abs(whole.force) > 0.05 * np.max(whole.force))[-1])
+    force = np.array(whole.force)
+    force[last + 1] = 1.5 * force[last]
+    sharp = replace(whole, force=force)
+    touches = _touches(sharp)
+    assert touches[last + 1]
+    assert not touches[last + 2]
+
+
+def test_a_contact_that_is_large_against_the_sphere_is_told():
+    found = analyse_loop(loop(0), Rig(RADIUS, MODULUS))
+    assert not any("paraboloid" in one for one in found.remarks)
+    ratio = float(np.nanmax(found.contact_radius)) / RADIUS
+    small = Rig(RADIUS * ratio / 0.5, MODULUS)
+    told = [one for one in analyse_loop(loop(0), small).remarks if "paraboloid" in one]
+    assert "reaches 0.5 of that of the sphere" in told[0]
 
 
 def test_an_unclosed_loop_has_no_lost_energy_and_says_so():
@@ -303,7 +349,9 @@ def test_masked_rows_are_left_out_and_texts_have_units():
     labelled = xr.Dataset(
         {"force": ("t", 1e3 * columns["force"], {"units": "mN"}), "radius": ("t", given["radius"])}
     )
-    assert measured_loop(labelled, radius=RADIUS).w_retr.value == pytest.approx(W_RETR, rel=1e-9)
+    timed = labelled.assign(time=("t", np.arange(labelled.sizes["t"])))
+    for one in (labelled, timed, dict(labelled)):
+        assert measured_loop(one, radius=RADIUS).w_retr.value == pytest.approx(W_RETR, rel=1e-9)
 
 
 @pytest.mark.parametrize(

@@ -73,6 +73,8 @@ def test_a_radius_may_be_absent_out_of_contact(separator, absent, tmp_path):
         ("Contact area (um^2)", np.pi * (1e6 * RADIUS) ** 2),
         ("area / mm2", np.pi * (1e3 * RADIUS) ** 2),
         ("Contact diameter [um]", 2e6 * RADIUS),
+        ("Contact diameter x (um)", 2e6 * RADIUS),
+        ("Area of contact (um^2)", np.pi * (1e6 * RADIUS) ** 2),
         ("Area-equivalent radius (um)", 1e6 * RADIUS),
     ],
 )
