@@ -716,8 +716,6 @@ def test_fit_and_figures_of_another_table_do_not_stand_in_a_summary(whole, tmp_p
     assert list(mixture_sentences(whole)) == []
     code, output = command("summary", wider, "--output", whole.folder)
     assert (code, ".png was drawn with another configuration" in output) == (2, True)
-    assert command("figures", wider, "--output", whole.folder)[0] == 0
-    assert command("summary", wider, "--output", whole.folder)[0] == 0
 
 
 def test_the_loop_that_is_drawn_is_one_with_a_value(whole, tmp_path):

@@ -168,8 +168,8 @@ def test_a_pull_off_force_gives_the_work_of_adhesion_that_it_implies(surface, pr
 
 
 def test_a_work_of_adhesion_with_which_the_theory_does_not_apply_is_implied_by_nothing(surface):
-    for measured in np.geomspace(5e-6, 500e-6, 9):
-        found = predicted(surface, SCENE, pull_off=float(measured)).implied_work_of_adhesion.value
+    for measured in (5e-6, 30e-6, 100e-6):
+        found = predicted(surface, SCENE, pull_off=measured).implied_work_of_adhesion.value
         if math.isfinite(found):
             scene = replace(SCENE, work_of_adhesion=found)
             assert predicted(surface, scene).verdict.outcome != "does not apply"
