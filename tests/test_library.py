@@ -388,6 +388,9 @@ def test_an_array_is_the_same_surface_in_all_units():
         1e9 * SPHERE.vertical * WAVE / 10, 4 * SPHERE.lateral, units="nm", sphere=SPHERE
     )
     xr.testing.assert_allclose(nanometres, cf.surface(WAVE / 10, 4.0), rtol=1e-13)
+    downwards = {"x": np.arange(32) / 8, "y": -np.arange(32) / 8}
+    picture = xr.DataArray(1 + WAVE, downwards, ("x", "y"), attrs={"units": "w_int"})
+    assert cf.surface(picture, side=4.0, kind="chemical").shape == (32, 32)
     labelled = xr.DataArray((1 + WAVE).T, dims=("y", "x"), attrs={"units": "w_int"})
     xr.testing.assert_identical(cf.surface(labelled, 4.0, kind="chemical"), expected)
     in_metres = cf.in_si_units(nanometres, SPHERE)
@@ -448,9 +451,9 @@ def test_an_array_is_the_same_surface_in_all_units():
             "the coordinate y of the array spans 8, where a side of 4.0 along x makes pixels squ",
         ),
         (
-            xr.DataArray(1 + WAVE, {"x": np.arange(32) / 8, "y": -np.arange(32) / 8}, ("x", "y")),
+            xr.DataArray(1 + WAVE, {"x": np.arange(32) / 8, "y": np.arange(32) ** 2}, ("x", "y")),
             {"units": "w_int"},
-            "y advances by -0.125 to -0.125; it must increase in equal steps",
+            "y advances by 1 to 61; it must increase in equal steps",
         ),
     ],
 )

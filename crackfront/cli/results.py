@@ -120,8 +120,8 @@ def summary(configuration: Path, output: Path | None) -> None:
     kept = store.folder / "fit.nc"
     if kept.is_file() and fit_range(kept) != (sweep.fit, sweep.table_fingerprint):
         raise ValueError(
-            f"{kept} is the fit of another range or table than those of the configuration given; "
-            "run crackfront fit with it, or make"
+            f"{kept} is the fit of another range or table than those of the configuration given, "
+            "or of an older version; run crackfront fit with it, or make"
         )
     pictures = {text: store.folder / "figures" / f"{name}.png" for name, text in _CAPTIONS.items()}
     if absent := [path for path in pictures.values() if not path.is_file()]:
@@ -130,8 +130,8 @@ def summary(configuration: Path, output: Path | None) -> None:
         )
     if other := [path for path in pictures.values() if picture_subject(path) != sweep.fingerprint]:
         raise ValueError(
-            f"{other[0]} was drawn with another configuration than the one given; run crackfront "
-            "figures with this one, or make"
+            f"{other[0]} was drawn with another configuration than the one given, or by an older "
+            "version; run crackfront figures with this one, or make"
         )
     page = summary_page(
         f"Adhesion hysteresis: {configuration.stem}",

@@ -67,7 +67,7 @@ _TINY = np.finfo(float).tiny
 _APART = 1.5
 """Ratio of a pull-off force to that of the work of adhesion, beyond which the loop says so."""
 
-_MOST_LOST = 0.05
+_MOST_LOST = 0.1
 """Part of the rows in contact that noise may leave without a work of adhesion."""
 
 _LARGE = 0.3
@@ -242,7 +242,10 @@ def analyse_loop(recording: Recording, rig: Rig) -> MeasuredLoop:
     pull_off, noise = _pull_off(first.force, branches[1], errors)
     if recording.radius is None:
         _refuse_hidden(pull_off.value, noise)
-        _refuse_lost_rows(first.work[np.concatenate(touching)])
+        in_contact = np.concatenate(touching)
+        measured = in_contact[np.isfinite((first.force + first.penetration)[in_contact])]
+        if rig.window is None:
+            _refuse_lost_rows(first.work[measured])
     remarks += _pull_off_remark(rig, pull_off, estimates[1].value, lost)
     return MeasuredLoop(
         force=first.force,

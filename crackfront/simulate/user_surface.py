@@ -151,8 +151,11 @@ def _refuse_other_side(values: xr.DataArray, side: float | str, sphere: Scales |
     """Raise if coordinates of an array span another side than is given, or are not of a tile."""
     wanted = float(side) if sphere is None else in_si("side", side, "m")
     for name in ("x", "y"):
-        if name not in values.coords or values.sizes.get(name, 0) < 2:
+        if name not in values.coords or "x" not in values.dims or values.sizes[name] < 2:
             continue
+        if name == "y" and values.y[0] > values.y[-1]:
+            # As in pictures, whose rows are counted downwards.
+            values = values.isel(y=slice(None, None, -1))
         unit = str(stated_unit(values[name].attrs) or "1")
         if sphere is None or (unit == "1" and not isinstance(side, str)):
             factor = 1.0

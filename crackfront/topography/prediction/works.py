@@ -146,12 +146,18 @@ def implied_work_of_adhesion(surface: Surface, scales: Scales, measured: float) 
             return float(getattr(found.w_retr, end)) - measured
 
         most = 10 * max(measured, least)
-        if excess_adhesion(least) * excess_adhesion(most) > 0:
+        if excess_adhesion(most) < 0:
             return math.nan
+        if excess_adhesion(least) > 0:
+            # With a lower one the theory does not apply: an interval ends there.
+            return math.nan if end == "value" else least
         return float(scipy.optimize.brentq(excess_adhesion, least, most, rtol=1e-4))
 
+    value = solved("value")
+    if not math.isfinite(value):
+        return Estimate(*[math.nan] * 4)
     # Its interval ends where those of predictions do.
-    return Estimate(solved("value"), math.nan, solved("high"), solved("low"))
+    return Estimate(value, math.nan, solved("high"), solved("low"))
 
 
 def _inverse(number: Estimate[float]) -> Estimate[float]:

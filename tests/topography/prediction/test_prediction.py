@@ -168,11 +168,12 @@ def test_a_pull_off_force_gives_the_work_of_adhesion_that_it_implies(surface, pr
 
 
 def test_a_work_of_adhesion_with_which_the_theory_does_not_apply_is_implied_by_nothing(surface):
-    for measured in (5e-6, 30e-6, 100e-6):
-        found = predicted(surface, SCENE, pull_off=measured).implied_work_of_adhesion.value
-        if math.isfinite(found):
-            scene = replace(SCENE, work_of_adhesion=found)
+    for measured in (5e-6, 30e-6, 100e-6, 315e-6):
+        found = predicted(surface, SCENE, pull_off=measured).implied_work_of_adhesion
+        if math.isfinite(found.value):
+            scene = replace(SCENE, work_of_adhesion=found.value)
             assert predicted(surface, scene).verdict.outcome != "does not apply"
+            assert found.low <= found.value <= found.high
 
 
 def test_scans_smaller_than_the_contact_are_told(surface, prediction):
