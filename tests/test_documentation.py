@@ -3,6 +3,7 @@
 import doctest
 import json
 import re
+import shlex
 import tarfile
 from pathlib import Path
 
@@ -69,6 +70,22 @@ def test_the_page_of_sweeps_computes_the_fit_and_puts_curves_together():
         found = joined.force.sel(realisation=number)
         assert (found.spectrum, found.amplitude) == ("flat", 0.1)
         assert found.dropna("step").values.tolist() == curve.force.values.tolist()
+
+
+@pytest.mark.usefixtures("_elsewhere")
+@pytest.mark.parametrize(("page", "command"), [("surfaces.md", "predict"), ("loops.md", "loop")])
+def test_the_first_command_of_a_page_prints_what_the_page_shows(page, command, capsys):
+    text = (DOCS / page).read_text()
+    typed = re.search(rf"```sh\n(?:\.venv/bin/)?crackfront ({command} (?:.*\\\n)*.*)\n", text)[1]
+    arguments = [
+        name
+        for word in shlex.split(typed.replace("\\\n", " "))
+        for name in (sorted(map(str, Path().glob(word))) if "*" in word else [word])
+    ]
+    main(arguments, standalone_mode=False)
+    shown = re.search(r"```text\n(.*?)```", text, re.DOTALL)[1]
+    found = [line for line in capsys.readouterr().out.splitlines() if "figure:" not in line]
+    assert found == shown.splitlines()
 
 
 @pytest.mark.usefixtures("_elsewhere")

@@ -109,12 +109,13 @@ _EPILOG = """\b
 Exit codes:
   0   done
   1   computed, but not as requested: too many simulations without a value, a cycle
-      that ended early, ranks that failed, results that are damaged or do not agree
+      that ended early, ranks that failed, memory that ran out, results that are
+      damaged or do not agree
   2   the input cannot be used; one sentence says why, and nothing was computed
   3   predict, samples with --strict: the theory applies with reservations
   4   predict, samples: the theory does not apply; the output says which modulus,
       radius, roughness or w_int would meet the condition
-  75  interrupted (Ctrl-C or SIGTERM); run the same command again
+  75  interrupted (Ctrl-C, SIGTERM, a closed terminal); run the same command again
 
 \b
 Examples:

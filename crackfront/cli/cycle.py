@@ -127,7 +127,7 @@ def _loads(_: click.Context, __: click.Parameter, given: str | None) -> tuple[fl
     "--record",
     type=click.Choice(["fronts", "energy"]),
     multiple=True,
-    help="Record the fronts, the dissipated energy too; may be repeated.",
+    help="Also record the fronts, or the dissipated energy; may be repeated.",
 )
 @click.option("--output", type=FILE, required=True, help="netCDF file of the cycle.")
 @click.option("--figure", type=FILE, help="Figure: talk.svg, or without suffix PDF and PNG.")

@@ -72,7 +72,8 @@ def samples(
     TABLE is CSV, TSV or YAML with a row for each sample: `sample`, `scans` (with | between several)
     or `psd` or `rms`, and if they are known `group`, `radius (mm)`, `modulus (MPa)`,
     `work_of_adhesion (mJ/m2)`, `measured_hysteresis (mJ/m2)` and any other option of
-    `crackfront predict`. Options of the command apply to rows that do not give a value.
+    `crackfront predict` for scans, sphere and theory. Options of the command apply to rows that do
+    not give a value.
 
     If a row cannot be used, the table is refused with the number of its line before anything is
     computed. A sample whose files fail later has the outcome `refused` in its row. The exit code is

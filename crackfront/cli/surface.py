@@ -148,7 +148,7 @@ def predict(
     Exit code 0: a prediction, with reservations where there are any or where it cannot be decided
     whether the theory applies (3 with --strict). 4: the theory does not apply; nothing is
     predicted, and the output says which modulus, radius, roughness or w_int would meet it. With
-    --csv the largest of all samples; an unusable scan counts as 4.
+    --csv it is the largest of all samples; a scan that cannot be used counts as 4.
     """
     from crackfront.topography.page.report import machine_readable, report_text
     from crackfront.topography.prediction.prediction import check_and_predict
