@@ -48,7 +48,8 @@ RANKS = tuple(2**power for power in range(13))
 SUBMIT_SECONDS = 1.0
 """Between two submissions of Snakemake."""
 
-RANKS_OF_A_JOB = 32
+JOBS = ((1000, 16), (250, 32), (160, 32))
+"""Shards of a million simulations, and the ranks of a job: fewer where jobs are short."""
 
 REALISATIONS_OF_A_SHARD = 2000
 """Of a synthetic sweep: its two amplitudes make shards of 4000 simulations, 250 of a million."""
@@ -87,14 +88,14 @@ def job_seconds(tasks: Sequence[float] | Array, n_worker: int, losses: Losses) -
 
 
 def played(
-    shards: Sequence[Array], losses: Losses, rank_numbers: Sequence[int] = RANKS
+    shards: Sequence[Array], losses: Losses, job_ranks: int, rank_numbers: Sequence[int] = RANKS
 ) -> list[Played]:
     """Play a sweep, given as seconds of the tasks of its shards, through on numbers of ranks.
 
-    Up to :data:`RANKS_OF_A_JOB` ranks are those of one job, more those of several.
+    Up to `job_ranks` ranks are those of one job, more those of several.
     """
     useful = float(sum(np.sum(shard) for shard in shards))
-    sizes = {n_rank: min(n_rank, RANKS_OF_A_JOB) for n_rank in rank_numbers}
+    sizes = {n_rank: min(n_rank, job_ranks) for n_rank in rank_numbers}
     jobs = {
         size: [job_seconds(shard, max(1, size - 1), losses) for shard in shards]
         for size in set(sizes.values())
@@ -278,19 +279,18 @@ def _late_cells(path: Path, command: str, cost: Cost | None) -> list[str]:
 def parts() -> dict[str, str]:
     """Parts of the page, measured and played."""
     losses, slower = Losses(hand_out_seconds(), start_seconds()), slowness()
-    sweeps = [million(slower, n_shard=n_shard) for n_shard in (1000, 250, 160)]
-    useful = sum(float(np.sum(shard)) for shard in sweeps[0]) / 3600
-    header = " | ".join(
-        ["ranks", *(f"hours, {len(shards)} shards | efficiency" for shards in sweeps)]
-    )
+    sweeps = [(million(slower, n_shard=n_shard), job_ranks) for n_shard, job_ranks in JOBS]
+    useful = sum(float(np.sum(shard)) for shard in sweeps[0][0]) / 3600
+    heads = [f"hours, {n_shard} shards of {job_ranks} ranks" for n_shard, job_ranks in JOBS]
+    header = " | ".join(["ranks", *(f"{head} | efficiency" for head in heads)])
     cells = [
         [f"{rows[0].n_rank}"]
         + [text for row in rows for text in (f"{row.hours:.3g}", f"{row.efficiency:.1%}")]
-        for rows in zip(*(played(shards, losses) for shards in sweeps), strict=True)
+        for rows in zip(*(played(shards, losses, size) for shards, size in sweeps), strict=True)
     ]
     return {
         "late": late_table((10**4, 10**5, 10**6)),
-        "efficiency": f"{sum(map(len, sweeps[0]))} simulations of {useful:.0f} core hours; "
+        "efficiency": f"{sum(map(len, sweeps[0][0]))} simulations of {useful:.0f} core hours; "
         f"{1e3 * losses.hand_out:.2f} ms to hand out and store one, {losses.start:.1f} s to start "
         f"a job. A simulation takes {slower:.2f} times what the cost model expects, and "
         f"{disk_of_simulation() / 1e3:.0f} kB of a pack."

@@ -26,7 +26,7 @@ def test_a_manager_hands_out_no_faster_than_it_can():
 
 def test_more_ranks_are_never_slower_and_never_more_efficient_than_a_full_job(rng):
     shards = [rng.lognormal(0, 1, 60) for _ in range(100)]
-    rows = scaling.played(shards, LOSSES, (32, 64, 128, 1024))
+    rows = scaling.played(shards, LOSSES, 32, (32, 64, 128, 1024))
     hours = [row.hours for row in rows]
     assert np.all(np.diff(hours) <= 0)
     assert all(0 < row.efficiency <= 31 / 32 for row in rows)
