@@ -24,6 +24,8 @@ table = xr.concat([loop[names] for loop in loops], dim="amplitude")
 table
 
 # %%
+# Bars are standard errors; those that reach zero end at the lower edge of the logarithmic axis.
+
 figure, axes = pyplot.subplots(layout="constrained")
 error = np.hypot(table.w_appr_error, table.w_retr_error)
 axes.errorbar(table.e_el, table.hysteresis, yerr=error, fmt="o", label="one surface")

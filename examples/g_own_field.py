@@ -11,8 +11,8 @@ import numpy as np
 
 import crackfront as cf
 
-wave = np.cos(2 * np.pi * 5 * np.arange(96) / 96)
-surface = cf.surface(1 + 0.4 * np.outer(wave, wave), side=4, kind="chemical", units="w_int")
+wave = np.cos(2 * np.pi * 12 * np.arange(96) / 96)
+surface = cf.surface(1 + 0.8 * np.outer(wave, wave), side=4, kind="chemical", units="w_int")
 loop = cf.run_loop(surface, loads=[0, 1, 0.3, 1, -2], step=0.05)
 print(loop.attrs["result"])
 axes = cf.plot_loop(loop)

@@ -12,6 +12,7 @@ from pathlib import Path
 
 import numpy as np
 import pandas as pd
+from matplotlib import pyplot
 
 import crackfront as cf
 
@@ -46,6 +47,22 @@ cycle[["w_appr", "w_retr", "hysteresis"]]
 
 predicted = cf.predict(scan, sphere)
 predicted
+
+# %%
+# The works of adhesion of the rig and of the prediction, with their 95% intervals.
+
+figure, axes = pyplot.subplots(layout="constrained")
+names = ["w_appr", "w_retr", "hysteresis"]
+for label, found, marker in (("measured", loop, "o"), ("predicted", predicted, "s")):
+    works = [getattr(found, name) for name in names]
+    values, low, high = (
+        1e3 * np.array([getattr(work, part) for work in works]) for part in ("value", "low", "high")
+    )
+    place = np.arange(3) + (0.1 if label == "predicted" else 0)
+    axes.errorbar(place, values, yerr=[values - low, high - values], fmt=marker, label=label)
+axes.set_xticks(np.arange(3), names)
+axes.set_ylabel("work of adhesion (mJ/m²)")
+legend = axes.legend()
 
 # %%
 # A table of the spectral density serves as well as the scan, but has no interval of e_el.

@@ -112,7 +112,7 @@ def _add_bars(axes: Axes, names: Sequence[str], lowest: Array, highest: Array) -
             textcoords="offset points",
             ha=("left" if on_right else "right") if are_beside else "center",
             va="center" if are_beside else "bottom",
-            bbox={"facecolor": "white", "linewidth": 0, "pad": 1} if are_beside else None,
+            bbox={"facecolor": "white", "linewidth": 0, "pad": 1},
         )
     axes.set_ylim(top=top * 10.0 ** (stretch * (6.6 if are_beside else 7.4)))
 

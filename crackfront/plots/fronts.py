@@ -14,12 +14,18 @@ from numpy.typing import NDArray
 
 from crackfront.core.arrays import Array
 from crackfront.core.variables import ADHESION, LATERAL, VERTICAL
-from crackfront.plots.parts import field_colours
+from crackfront.plots.parts import ON_WHITE, field_colours
 from crackfront.plots.style import BLUE, VERMILION
 from crackfront.plots.units import REDUCED, AxisUnits
 
 _MOST_GREYS = 10
 """Shades of the field; few, so that frames of an animation compress well."""
+
+RETRACTION = (0, (6, 1, 1, 1))
+"""Style of the line of a front in retraction, which grey print tells from one in approach."""
+
+_FORWARD: dict[str, Any] = {"color": BLUE, "linewidth": 0.7}
+_BACK: dict[str, Any] = {"color": VERMILION, "linewidth": 0.7, "linestyle": RETRACTION}
 
 _MARGIN = 1.15
 """How far the axes reach, over the largest radius."""
@@ -64,8 +70,9 @@ def _draw_image(axes: Axes, x: Array, y: Array, values: Array, units: AxisUnits)
         for end, side in ((0, -1), (-1, 1))
     )
     look: dict[str, Any] = {"origin": "lower", "interpolation": "nearest", "cmap": "cividis"}
+    image = axes.imshow(values, extent=(left, right, bottom, top), **look)
     label_plane(axes, units)
-    return axes.imshow(values, extent=(left, right, bottom, top), **look)
+    return image
 
 
 def draw_fronts(
@@ -81,13 +88,12 @@ def draw_fronts(
     Radii (units: reduced lateral length) at n_angle angles (units: rad) have the shape
     (n_step, n_angle); n_step directions are +1 in approach, -1 in retraction.
     """
-    for sign, colour, label in ((1, BLUE, "approach"), (-1, VERMILION, "retraction")):
+    for sign, look, label in ((1, _FORWARD, "approach"), (-1, _BACK, "retraction")):
         for count, front in enumerate(_few(radius[direction == sign], most)):
             name = label if count == 0 else None
-            curve = closed_front(angle, units.scale(LATERAL) * front)
-            axes.plot(*curve, color=colour, linewidth=0.7, label=name)
+            axes.plot(*closed_front(angle, units.scale(LATERAL) * front), label=name, **look)
     frame_plane(axes, _MARGIN * float(np.max(radius)), units)
-    axes.legend(loc="upper left", frameon=True, facecolor="white", framealpha=1, edgecolor="none")
+    axes.legend(loc="upper left", **ON_WHITE)
 
 
 def draw_straight_fronts(
@@ -98,10 +104,10 @@ def draw_straight_fronts(
     Positions at n_site ordinates (units: length of the tile) have the shape (n_step, n_site);
     n_step directions are +1 where the load advances, -1 where it recedes.
     """
-    for sign, colour, label in ((1, BLUE, "forward"), (-1, VERMILION, "back")):
+    for sign, look, label in ((1, _FORWARD, "forward"), (-1, _BACK, "back")):
         for count, front in enumerate(_few(position[direction == sign], most)):
             name = label if count == 0 else None
-            axes.plot(front, y, color=colour, linewidth=0.7, label=name)
+            axes.plot(front, y, label=name, **look)
     axes.set_xlabel("$x$, along the motion (unit of the tile)")
     axes.set_ylabel("$y$, along the front (unit of the tile)")
     axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2)

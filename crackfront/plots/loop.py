@@ -19,7 +19,7 @@ from crackfront.core.geometry.line import LineState
 from crackfront.core.geometry.sphere import ContactState
 from crackfront.core.outcome import Status
 from crackfront.core.variables import FORCE, LATERAL
-from crackfront.plots.parts import PointStyle, draw_arrow
+from crackfront.plots.parts import PointStyle, draw_arrow, name_without_spring
 from crackfront.plots.style import BLUE, COLUMN, PAGE, VERMILION, blank_figure, house_style
 from crackfront.plots.units import REDUCED, AxisUnits
 
@@ -67,9 +67,13 @@ def simulation_figure(result: SimulationResult) -> Figure:
     """Loop of one simulation: force of a sphere, pinning force of a straight front."""
     simulation, states = result.simulation, result.record.states
     energy, kind = result.measures.e_el, simulation.kind
+    name = simulation.spectrum_name
+    if isinstance(states, LineState):
+        spring = simulation.schedule.spring / simulation.correlation_length
+        name = rf"{name_without_spring(name)}, $L_\kappa = {spring:.3g}\,\xi$"
     title = (
-        rf"{simulation.spectrum_name}, $e_\mathrm{{el}} = {simulation.elastic_energy:g}\,"
-        rf"w_\mathrm{{int}}$, realisation {simulation.realisation}"
+        rf"{name}, $e_\mathrm{{el}} = {simulation.elastic_energy:.3g}\,w_\mathrm{{int}}$, "
+        f"realisation {simulation.realisation}"
     )
     if isinstance(states, LineState):
         with house_style():

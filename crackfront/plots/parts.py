@@ -11,7 +11,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from crackfront.analysis.estimate import Estimate, with_error
 from crackfront.analysis.finding import PAPER_FACTOR, PERTURBATION_FACTOR
-from crackfront.analysis.report import pooled_limits
 from crackfront.analysis.result import SweepFit
 from crackfront.analysis.sweep_law import SweepLaw
 from crackfront.analysis.table import SweepTable
@@ -32,6 +31,14 @@ FORCE_LABEL = f"normal force / ${FORCE.tex}$"
 ADHESION_LABEL = r"work of adhesion / $w_\mathrm{int}$"
 LENGTH_LABEL = r"{} / $(3\pi w_\mathrm{{int}}R^2/4E')^{{1/3}}$"
 HEIGHT_LABEL = r"{} / $(9\pi^2 w_\mathrm{{int}}^2 R/16E'^2)^{{1/3}}$"
+
+ON_WHITE: dict[str, Any] = {
+    "frameon": True,
+    "facecolor": "white",
+    "framealpha": 1,
+    "edgecolor": "none",
+}
+"""Of a legend that covers lines."""
 
 
 def field_colours() -> Colormap:
@@ -87,10 +94,23 @@ def spectrum_families(table: SweepTable) -> list[int]:
 
 def spring_label(fit: SweepFit, index: int) -> str:
     """Length of the springs in correlation lengths, or g where that is what amplitudes share."""
-    ratio = fit.table.spring[index] / fit.table.correlation_length[index]
-    if np.ptp(ratio) < 1e-6 * np.max(ratio):
-        return rf"$L_\kappa={ratio[0]:.3g}\,\xi$"
+    if _share_length(fit):
+        length = fit.table.spring[index, 0] / fit.table.correlation_length[index]
+        return rf"$L_\kappa={length:.3g}\,\xi$"
     return rf"$g={np.nanmean(fit.cells.size[index]):.2g}$"
+
+
+def springs_explained(fit: SweepFit) -> str:
+    """What the symbols of :func:`spring_label` are."""
+    if _share_length(fit):
+        return r"$L_\kappa$: length of the springs, $\xi$: correlation length of the field"
+    return "$g$: length of the springs over the Larkin length"
+
+
+def _share_length(fit: SweepFit) -> bool:
+    """Whether the springs of a spectrum have one length at all amplitudes."""
+    springs = fit.table.spring
+    return bool(np.all(np.ptp(springs, axis=1) < 1e-6 * np.max(springs, axis=1)))
 
 
 def draw_estimates(
@@ -108,7 +128,8 @@ def draw_estimates(
         axes.errorbar(
             abscissa[chosen],
             estimate.value[chosen],
-            yerr=reach[chosen],
+            # Without a bar among the points, there is none in the legend.
+            yerr=reach[chosen] if np.any(reach) else None,
             linestyle="none",
             marker=style.marker,
             color=colour,
@@ -131,13 +152,13 @@ def draw_below(axes: Axes, index: int, colour: str, abscissa: Array) -> None:
 
 
 def draw_fit(axes: Axes, fit: SweepFit) -> None:
-    """Line of the pooled k over the range of the fit."""
+    """Line of the pooled k over the range of the fit, with its interval in the legend."""
     ends = fit.lowest_elastic_energy, fit.highest_elastic_energy
     value, reach = float(fit.pooled.factor.value), float(fit.pooled.factor.high)
     text = f"{value:.2f}"
     if np.isfinite(reach):
         text = with_error(value, reach - value).replace("±", r"\pm")
-    label = ", ".join([f"pooled $k = {text}$", *pooled_limits(fit, fit.spectra.factor)])
+    label = f"pooled $k = {text}$"
     axes.plot(ends, [value, value], color=BLACK, linewidth=1.2, label=label)
 
 
@@ -189,11 +210,17 @@ def spectrum_label(table: SweepTable, index: int) -> str:
     """Parameters of a spectrum."""
     cutoff = rf"$\lambda_\mathrm{{s}}={table.short_cutoff[index]:g}$"
     if np.isnan(table.hurst[index]):
-        return f"{table.spectrum[index]}, {cutoff}"
+        name = str(table.spectrum[index])
+        return f"{name_without_spring(name) if table.on_springs else name}, {cutoff}"
     if table.roll_off[index] == table.short_cutoff[index]:
         return f"flat, {cutoff}"
     roll_off = rf"$\lambda_\mathrm{{r}}={table.roll_off[index]:g}$"
     return f"{cutoff}, {roll_off}, $H={table.hurst[index]:g}$"
+
+
+def name_without_spring(name: str) -> str:
+    """Name that the configuration gives to a spectrum, of one that a sweep of springs gives."""
+    return name.rpartition("-L")[0] or name
 
 
 def spectrum_colour(index: int) -> str:

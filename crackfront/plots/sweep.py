@@ -15,8 +15,8 @@ from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 from matplotlib.ticker import LogLocator, NullFormatter
+from numpy.typing import NDArray
 
 from crackfront.analysis.finding import PAPER_FACTOR, PERTURBATION_FACTOR
 from crackfront.analysis.law import (
@@ -26,6 +26,7 @@ from crackfront.analysis.law import (
     shipped_law,
     spectral_breadth,
 )
+from crackfront.analysis.report import pooled_limits
 from crackfront.analysis.result import SweepFit
 from crackfront.analysis.sweep_law import LARGE
 from crackfront.core.arrays import Array
@@ -44,26 +45,55 @@ from crackfront.plots.parts import (
     spectrum_marker,
     spectrum_styles,
     spring_label,
+    springs_explained,
 )
-from crackfront.plots.style import BLACK, COLUMN, PAGE, blank_figure, explain, house_style
+from crackfront.plots.style import BLACK, PAGE, blank_figure, explain, house_style
 
-POINTS_EXPLAINED = (
-    "bars: 95% intervals over realisations; open symbols: amplitudes outside the range of the fit"
-)
 SHIFTS_EXPLAINED = "points of one amplitude are set off sideways by up to 6%"
-SHAPES_EXPLAINED = "grey line: spectra of one shape"
-"""What figures say of their points below themselves."""
+"""What figures of k against disorder say of their points below themselves."""
+
+
+def points_explained(fit: SweepFit) -> list[str]:
+    """What bars and open symbols are, where the points of a sweep have them."""
+    hysteresis, found = fit.cells.hysteresis, []
+    if np.any(np.isfinite(hysteresis.high)):
+        found.append("bars: 95% intervals over realisations")
+    if np.any(np.isfinite(hysteresis.value[:, ~fit.in_range])):
+        found.append("open symbols: amplitudes outside the range of the fit")
+    return found
+
+
+def arrows_explained(fit: SweepFit) -> list[str]:
+    """What the arrows of :func:`draw_hysteresis` are, where it draws any."""
+    return ["arrows: means below the lower edge"] if np.any(_below(fit)) else []
+
+
+def pooled_explained(fit: SweepFit) -> list[str]:
+    """What the interval of the pooled k leaves out."""
+    limits = pooled_limits(fit, fit.spectra.factor)
+    return [f"pooled $k$: {', '.join(limits)}"] if limits else []
+
+
+def shapes_explained(fit: SweepFit) -> list[str]:
+    """What the lines of :func:`draw_factor_by_length` are, where spectra share a shape."""
+    shared = np.unique(fit.table.shape).size < fit.table.shape.size
+    return ["grey line: spectra of one shape"] if shared else []
 
 
 def hysteresis_figure(fit: SweepFit) -> Figure:
-    """Hysteresis against the variance of w_loc, with the spectra in an inset (SI Fig. S-5)."""
+    """Hysteresis against the variance of w_loc, beside the spectra (SI Fig. S-5)."""
     with house_style():
-        figure = blank_figure(COLUMN, 1.04 * COLUMN)
-        axes = figure.add_subplot()
-        draw_hysteresis(axes, fit)
-        inset = axes.inset_axes((0.685, 0.135, 0.29, 0.25))
-        draw_spectra(inset, fit)
-        explain(figure, f"{POINTS_EXPLAINED}; arrows: means below the edge; inset: spectra")
+        figure = blank_figure(PAGE, 0.5 * PAGE)
+        left, right = figure.subplots(1, 2, width_ratios=(1.5, 1))
+        draw_hysteresis(left, fit)
+        draw_spectra(right, fit)
+        figure.legend(*legend_entries(left), loc="outside upper center", ncols=4)
+        for axes, letter in ((left, "a"), (right, "b")):
+            axes.set_title(letter, loc="left", fontweight="bold")
+        texts = [*points_explained(fit), *arrows_explained(fit)]
+        if fit.table.on_springs:
+            texts.append(springs_explained(fit))
+        explain(figure, "; ".join(texts))
         return figure
 
 
@@ -76,30 +106,34 @@ def factor_figure(fit: SweepFit) -> Figure:
     with house_style():
         figure = blank_figure(PAGE, 0.45 * PAGE)
         left, right = figure.subplots(1, 2, sharey=True, width_ratios=(1.35, 1))
-        text = POINTS_EXPLAINED
+        texts = points_explained(fit)
         if fit.table.on_springs:
             _draw_line_factors(left, right, fit)
+            texts += ["colours: amplitudes (a), spectra (b, with the symbols of a)"]
         else:
             draw_factor_by_disorder(left, fit)
             draw_factor_by_length(right, fit)
             set_factor_limits(left, fit)
             figure.legend(*legend_entries(left), loc="outside upper center", ncols=3)
-            text += f"; {SHIFTS_EXPLAINED} (a); {SHAPES_EXPLAINED} (b)"
+            texts += [f"{SHIFTS_EXPLAINED} (a)", *pooled_explained(fit)]
+            texts += [f"{text} (b)" for text in shapes_explained(fit)]
         for axes, letter in ((left, "a"), (right, "b")):
             axes.set_title(letter, loc="left", fontweight="bold")
-        explain(figure, text)
+        explain(figure, "; ".join(texts))
         return figure
 
 
 def _draw_line_factors(left: Axes, right: Axes, fit: SweepFit) -> None:
-    """Draw k of straight fronts against size, and its limit against disorder."""
+    """Draw k of straight fronts against size, and its limit against disorder.
+
+    Markers, which both panels share, are named in the first one alone.
+    """
     draw_factor_by_size(left, fit)
     draw_infinite_law(right)
     table, cells = fit.table, fit.cells
     families = spectrum_families(table)
     for index, family in enumerate(families):
-        label = "" if family in families[:index] else spectrum_label(table, index)
-        style = PointStyle(spectrum_colour(family), spectrum_marker(family), label)
+        style = PointStyle(spectrum_colour(family), spectrum_marker(family), "")
         s = np.zeros_like(cells.w_rms[index]) if fit.uncorrelated else cells.w_rms[index]
         shown = np.nan_to_num(cells.size[index]) > LARGE
         row = cells.infinite_factor.at(index).only(shown)
@@ -118,18 +152,26 @@ def draw_factor_by_size(axes: Axes, fit: SweepFit) -> None:
     ends = _ends(size, 1.5)
     abscissa = np.geomspace(max(law.size[0], ends[0]), ends[1], 100)
     shades = colormaps["viridis"](np.linspace(0, 0.88, table.amplitude.size))
+
+    def draw_curve(s: float, colour: str) -> None:
+        curve, label = law_value(law.coefficients, s, abscissa, breadth), rf"law, $s={s:.3g}$"
+        axes.plot(abscissa, curve, color=colour, linewidth=0.8, label=label)
+
     for amplitude, energy in enumerate(table.amplitude):
-        s = 0.0 if fit.uncorrelated else 2 * np.sqrt(energy)
         colour = to_hex(shades[amplitude])
         for index, family in enumerate(families):
             style = PointStyle(colour, spectrum_marker(family), "")
             cell = fit.cells.factor.at(([index], amplitude))
             here = fit.in_range[[amplitude]]
             draw_estimates(axes, style, size[[index], amplitude], cell, here)
-        curve, label = law_value(law.coefficients, s, abscissa, breadth), rf"law, $s={s:.3g}$"
         if fit.uncorrelated:
-            label = rf"law, $s=0$ ($e_\mathrm{{el}}={energy:.3g}$)"
-        axes.plot(abscissa, curve, color=colour, linewidth=0.8, label=label)
+            label = rf"$e_\mathrm{{el}}={energy:.3g}\,w_\mathrm{{int}}$"
+            axes.plot([], [], color=colour, linewidth=3.0, label=label)
+        else:
+            draw_curve(2 * math.sqrt(energy), colour)
+    if fit.uncorrelated:
+        # The law of weak disorder is the same at all amplitudes.
+        draw_curve(0.0, BLACK)
     for family in dict.fromkeys(families):
         label = spectrum_label(table, families.index(family))
         axes.plot([], [], spectrum_marker(family), color="0.4", label=label)
@@ -147,7 +189,7 @@ def set_factor_limits(axes: Axes, fit: SweepFit) -> None:
 
 
 _DECIMALS = 100.0
-"""Ratio of the ends of an abscissa up to which its labels are decimal numbers."""
+"""Ratio of the ends of a logarithmic axis up to which its labels are decimal numbers."""
 
 _VARIANCE = r"(w_\mathrm{rms}/w_\mathrm{int})^2"
 _FACTOR_LABEL = r"$k = (w_\mathrm{retr}-w_\mathrm{appr})\,/\,2e_\mathrm{el}$"
@@ -160,37 +202,48 @@ def _ends(values: Array, margin: float) -> Array:
 
 def draw_hysteresis(axes: Axes, fit: SweepFit) -> None:
     """Draw mean hysteresis against (w_rms / w_int)^2 on log-log axes, the law and the theory."""
-    # The rms of uncorrelated sites is that of their pixels; the law and the theory have e_el.
-    variance = 4 * fit.cells.e_el if fit.uncorrelated else fit.cells.w_rms**2
-    hysteresis = fit.cells.hysteresis
+    variance, hysteresis, below = _variance(fit), fit.cells.hysteresis, _below(fit)
     ends = _ends(variance, 1.8)
-    # Below its onset hysteresis falls to nothing; such points must not stretch the axes.
-    floor = 0.05 * PAPER_FACTOR / 2 * ends[0]
-    above = np.nan_to_num(hysteresis.value) > floor
-    reach = np.fmax(hysteresis.low[above], floor)
-    lowest = min(float(np.min(reach, initial=np.inf)), PAPER_FACTOR / 2 * ends[0]) / 1.6
+    # Without an interval, that of one realisation, a point reaches down to its mean.
+    lows = np.fmax(np.fmin(hysteresis.low, hysteresis.value), _floor(variance))
+    least = float(np.min(lows, where=~below, initial=np.inf))
+    lowest = min(least, PAPER_FACTOR / 2 * float(ends[0])) / 1.6
     for index, style in enumerate(spectrum_styles(fit.table)):
-        row = hysteresis.at(index)
-        below = np.nan_to_num(row.value, nan=np.inf) <= floor
-        draw_below(axes, index, style.colour, variance[index, below])
-        shown = row.only(~below)
+        draw_below(axes, index, style.colour, variance[index, below[index]])
+        shown = hysteresis.at(index).only(~below[index])
         draw_estimates(axes, style, variance[index], shown, fit.in_range)
     draw_law(axes, fit, lambda energy, factor: (4 * energy, 2 * factor * energy))
     draw_theory(axes, ends, ends / 2)
     axes.set(xscale="log", yscale="log", xlim=ends)
-    if ends[1] < _DECIMALS * ends[0]:
-        label_decimals(axes.xaxis)
-    axes.set_ylim(lowest, PERTURBATION_FACTOR / 2 * ends[1] * 4)
+    highest = PERTURBATION_FACTOR / 2 * float(ends[1])
+    axes.set_ylim(lowest, highest)
+    for axis, low, high in ((axes.xaxis, *ends), (axes.yaxis, lowest, highest)):
+        if high < _DECIMALS * low:
+            label_decimals(axis)
     disorder = r"4e_\mathrm{el}/w_\mathrm{int}" if fit.uncorrelated else _VARIANCE
     axes.set_xlabel(f"disorder ${disorder}$")
     axes.set_ylabel(r"hysteresis $(w_\mathrm{retr}-w_\mathrm{appr})/w_\mathrm{int}$")
-    handles, labels = legend_entries(axes)
     for index, family in enumerate(spectrum_families(fit.table)):
         if family == 0 and np.all(np.isfinite(fit.table.spring[index])):
             marker = spectrum_styles(fit.table)[index].marker
-            handles.append(Line2D([], [], color="0.4", linestyle="none", marker=marker))
-            labels.append(spring_label(fit, index))
-    axes.legend(handles, labels, loc="upper left")
+            axes.plot([], [], marker, color="0.4", label=spring_label(fit, index))
+
+
+def _variance(fit: SweepFit) -> Array:
+    """Variance of w_loc at every spectrum and amplitude (Units: w_int^2)."""
+    # The rms of uncorrelated sites is that of their pixels; the law and the theory have e_el.
+    return 4 * fit.cells.e_el if fit.uncorrelated else fit.cells.w_rms**2
+
+
+def _floor(variance: Array) -> float:
+    """Hysteresis down to which points are drawn (Units: w_int)."""
+    # Below its onset hysteresis falls to nothing; such points must not stretch the axes.
+    return 0.05 * PAPER_FACTOR / 2 * float(_ends(variance, 1.8)[0])
+
+
+def _below(fit: SweepFit) -> NDArray[np.bool_]:
+    """Spectra and amplitudes whose mean hysteresis is too small for a point."""
+    return np.nan_to_num(fit.cells.hysteresis.value, nan=np.inf) <= _floor(_variance(fit))
 
 
 def draw_spectra(axes: Axes, fit: SweepFit) -> None:
@@ -209,10 +262,9 @@ def draw_spectra(axes: Axes, fit: SweepFit) -> None:
     axes.set(xscale="log", yscale="log")
     axes.set_xlim(lowest, 2.5 * 2 * np.pi / np.min(table.short_cutoff))
     axes.set_ylim(np.min(densities) / 10, np.max(densities) * 5)
-    axes.set_xlabel("$q$ (reduced)", labelpad=0, fontsize=6)
+    axes.set_xlabel("wavevector $q$ (reduced)")
     unit = r"w_\mathrm{int}/e_\mathrm{el}" if kind == "roughness" else r"/ w_\mathrm{rms}^2"
-    axes.set_ylabel(rf"$C(q)\,{unit}$", labelpad=1, fontsize=6)
-    axes.tick_params(labelsize=5.5, pad=1.5)
+    axes.set_ylabel(rf"$C(q)\,{unit}$")
     for axis in (axes.xaxis, axes.yaxis):
         axis.set_major_locator(LogLocator(numticks=4))
         axis.set_minor_formatter(NullFormatter())
@@ -269,9 +321,11 @@ def draw_infinite_law(axes: Axes) -> None:
     disorder = np.linspace(WEAKEST, strongest, 100)
     known = [astuple(pinning_factor(float(s), math.inf).factor) for s in disorder]
     value, _, low, high = np.transpose(known)
-    axes.fill_between(disorder, low, high, color="0.85", lw=0, label="95% interval", zorder=0.5)
+    axes.fill_between(
+        disorder, low, high, color="0.85", lw=0, label="95% interval, all breadths", zorder=0.5
+    )
     axes.plot(disorder, value, color=BLACK, linewidth=1.0, label=r"law, $g\to\infty$", zorder=2)
-    ends = strongest * np.array([-0.05, 1.06])
+    ends = strongest * np.array([-0.05, 1.10])
     draw_theory(axes, ends)
     axes.set(xlim=ends, ylabel=r"$k$ of the infinite contact")
     axes.set_xlabel(r"disorder $s=w_\mathrm{rms}/w_\mathrm{int}$")

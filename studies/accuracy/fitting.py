@@ -14,6 +14,7 @@ from scipy.optimize import minimize_scalar
 
 from crackfront.core.arrays import Array
 from crackfront.plots import style
+from crackfront.plots.parts import label_panel
 from crackfront.simulate.front_sizes import LAW_SIZE
 from crackfront.simulate.laws import SETTINGS, ErrorLaw, SettingName, abscissa
 from studies.accuracy.study import SceneErrors, rms
@@ -144,8 +145,9 @@ def laws_figure(studies: Sequence[SceneErrors], laws: Sequence[ErrorLaw]) -> Fig
     with style.house_style():
         figure = style.blank_figure(style.PAGE, 1.1 * style.COLUMN)
         panels = figure.subplots(2, 3).ravel()
-        for axes, setting in zip(panels, SETTINGS, strict=False):
+        for axes, setting, letter in zip(panels, SETTINGS, "abcde", strict=False):
             _draw_laws(axes, setting, studies, laws)
+            label_panel(axes, letter)
         for axes in panels[::3]:
             axes.set_ylabel(r"rms error of $w_\mathrm{retr}$ / $e_\mathrm{el}$")
         panels[-1].set_axis_off()
@@ -153,7 +155,8 @@ def laws_figure(studies: Sequence[SceneErrors], laws: Sequence[ErrorLaw]) -> Fig
         panels[-1].legend(*entries, loc="center left", title=r"$e_\mathrm{el}/w_\mathrm{int}$")
         style.explain(
             figure,
-            "lines: the fitted laws, of a scatter for both branches; broken line: an error of 0.01",
+            r"lines: the fitted laws, bias of $w_\mathrm{retr}$ and scatter of both branches "
+            "together; broken line: an error of 0.01",
         )
         return figure
 
@@ -162,9 +165,11 @@ def _draw_laws(
     axes: Axes, setting: SettingName, studies: Sequence[SceneErrors], laws: Sequence[ErrorLaw]
 ) -> None:
     """Draw the errors of one setting and their laws, a colour a scene."""
+    tried: set[float] = set()
     for study, colour, marker in zip(studies, style.COLOURS, style.MARKERS, strict=False):
         scene = study.scene
         values, found = _setting_errors(study, setting)
+        tried.update(values.tolist())
         axes.plot(
             values,
             [rms(errors[:, 1]) for errors in found],
@@ -186,6 +191,6 @@ def _draw_laws(
     if setting != "sites":
         axes.set_xscale("log")
     if setting not in ("sites", "tolerance"):
-        axes.set_xticks(values, [f"{value:g}" for value in values])
+        axes.set_xticks(sorted(tried), [f"{value:g}" for value in sorted(tried)])
         axes.xaxis.set_minor_formatter(NullFormatter())
     axes.set_xlabel(_AXES[setting])

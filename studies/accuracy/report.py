@@ -15,7 +15,7 @@ from matplotlib.ticker import LogLocator
 from crackfront.core.arrays import Array
 from crackfront.data.files import write_text
 from crackfront.plots import style
-from crackfront.plots.parts import label_decimals
+from crackfront.plots.parts import label_decimals, label_panel
 from studies.accuracy.averages import Coverage, Sample
 from studies.accuracy.files import read_errors, read_study
 from studies.accuracy.fitting import fit_laws, laws_figure, laws_text
@@ -250,14 +250,15 @@ def _work_precision_figure(studies: Sequence[SceneErrors]) -> Figure:
         figure = style.blank_figure(style.PAGE, 1.25 * style.COLUMN)
         rows = (len(studies) + 1) // 2
         panels = figure.subplots(rows, 2, squeeze=False).ravel()
-        for axes, study in zip(panels, studies, strict=False):
+        for axes, study, letter in zip(panels, studies, "abcd", strict=False):
             _draw_work_precision(axes, study)
+            label_panel(axes, letter)
         for axes in panels[len(studies) :]:
             axes.set_axis_off()
         for axes in panels[len(studies) - 2 : len(studies)]:
-            axes.set_xlabel("CPU time of one realisation / s")
+            axes.set_xlabel("CPU time of one realisation (s)")
         for axes in panels[::2]:
-            axes.set_ylabel("rms error of the hysteresis / %")
+            axes.set_ylabel("rms error of the hysteresis (%)")
         entries = panels[0].get_legend_handles_labels()
         figure.legend(*entries, loc="outside right upper", title="varied")
         style.explain(
@@ -288,5 +289,12 @@ def _draw_work_precision(axes: Axes, study: SceneErrors) -> None:
     label_decimals(axes.yaxis, LogLocator())
     scene = study.scene
     axes.set_title(
-        rf"{scene.shape}, $e_\mathrm{{el}} = {scene.elastic_energy:g}\,w_\mathrm{{int}}$"
+        rf"{_spectrum(scene)}, $e_\mathrm{{el}} = {scene.elastic_energy:g}\,w_\mathrm{{int}}$"
     )
+
+
+def _spectrum(scene: Scene) -> str:
+    """Spectrum of a scene in a title."""
+    if scene.spectrum.roll_off > scene.spectrum.short_cutoff:
+        return rf"$H = {scene.spectrum.hurst:g}$"
+    return "chemical" if scene.kind == "chemical" else "flat spectrum"

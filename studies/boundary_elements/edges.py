@@ -22,8 +22,8 @@ from crackfront.core.field.rays import front_adhesion
 from crackfront.core.geometry.sphere import half_laplacian
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.core.variables import ADHESION, VERTICAL, variable
-from crackfront.plots.parts import label_panel
-from crackfront.plots.style import COLOURS, MARKERS, PAGE, blank_figure, house_style
+from crackfront.plots.parts import HEIGHT_LABEL, label_panel
+from crackfront.plots.style import COLOURS, MARKERS, PAGE, blank_figure, explain, house_style
 from studies.accuracy.study import rms
 from studies.boundary_elements.cases import Case
 from studies.boundary_elements.cycle import BoundaryCycle
@@ -81,21 +81,20 @@ def edge_figure(rows: Sequence[EdgeForces]) -> Figure:
     """What is not balanced against the range, and the force that the line has at the shortest."""
     energies = sorted({round(row.elastic_energy, 2) for row in rows})
     with house_style():
-        figure = blank_figure(PAGE, 0.42 * PAGE)
+        figure = blank_figure(PAGE, 0.46 * PAGE)
         left, forces = figure.subplots(1, 2)
         for energy, colour, marker in zip(energies, COLOURS, MARKERS, strict=False):
             alike = [row for row in rows if round(row.elastic_energy, 2) == energy]
             ranges = [row.interaction_range for row in alike]
-            style = {"color": colour, "marker": marker, "linestyle": "none"}
+            style = {"color": colour, "marker": marker, "linestyle": "none", "label": f"{energy:g}"}
             left.plot(ranges, [row.left / row.pinning for row in alike], **style)
             shortest = min(alike, key=attrgetter("interaction_range"))
-            forces.plot(shortest.line, shortest.needed, **style, label=f"{energy:g}")
+            forces.plot(shortest.line, shortest.needed, **style)
         forces.axline((0.0, 0.0), slope=1.0, color="0.6", linewidth=0.8, zorder=0)
-        forces.legend(loc="upper left", title=r"$e_\mathrm{el}/w_\mathrm{int}$")
         left.set(
             xlim=(0.0, 1.1 * max(row.interaction_range for row in rows)),
             ylim=(0.0, 1.1 * max(row.left / row.pinning for row in rows)),
-            xlabel="range of attraction, reduced",
+            xlabel=HEIGHT_LABEL.format("range of attraction"),
             ylabel="rms force left / rms pinning",
         )
         forces.set(
@@ -103,5 +102,11 @@ def edge_figure(rows: Sequence[EdgeForces]) -> Figure:
             ylabel=r"force that balances the others / $w_\mathrm{int}$",
         )
         for axes, panel in ((left, "a"), (forces, "b")):
+            axes.legend(loc="upper left", title=r"$e_\mathrm{el}/w_\mathrm{int}$")
             label_panel(axes, panel)
+        explain(
+            figure,
+            f"b: means over {_CLASSES} classes of sites, as many in each, by the force of first "
+            "order; grey line: both forces are equal",
+        )
         return figure

@@ -26,6 +26,7 @@ from crackfront.plots.style import (
     PAGE,
     VERMILION,
     blank_figure,
+    explain,
     house_style,
 )
 from studies.boundary_elements.averages import Setting, limit_settings, rough_settings, settings
@@ -38,12 +39,28 @@ from studies.paper.drawing import draw_jump
 _MOST_POINTS, _MARGIN = 320, 0.15
 """Points along a side of the part that is kept, and its margin around the contact."""
 
+_RELIEF = "0.78", "1.0"
+"""Pale greys of the roughness, so that the tension on it is the darkest."""
+
 _TENSION = "#009E7300", "#009E73C0", "#003D2C"
-"""Colours from no tension, which is transparent, to the largest."""
+"""Colours from no tension, which is transparent, to half the largest, which the edge has alone."""
 
 _DASHES = (3, 1.5)
 _DOTS = (0.8, 1.6)
 _BRANCHES = ((1, "approach", BLUE), (-1, "retraction", VERMILION))
+
+_BANDS = ((0.25, "0.93"), (0.10, "0.85"))
+"""Logarithms of the ratio up to which the grey bands reach, and their greys."""
+
+_ASIDE = 0.003
+"""How far ratios of a spectrum, and those at no range, are set off sideways (Units: w_int)."""
+
+_EXPLAINED = (
+    "a: boundary elements at a vanishing range of the attraction (filled), front (open); b: ratios "
+    "at that range (large) and at those that were computed (small), set off sideways by "
+    f"{_ASIDE:g} from each other; grey: within ±{_BANDS[1][0]:.2f} and ±{_BANDS[0][0]:.2f}; bars: "
+    "one standard error over surfaces, none where there is one surface"
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -162,7 +179,11 @@ def _draw_contact(axes: Axes, picture: ValidationPicture) -> None:
     reach = float(picture.position[-1])
     extent = (float(picture.position[0]), reach, float(picture.position[0]), reach)
     relief = axes.imshow(
-        picture.heights.T, extent=extent, origin="lower", cmap="gray", interpolation="bilinear"
+        picture.heights.T,
+        extent=extent,
+        origin="lower",
+        cmap=LinearSegmentedColormap.from_list("relief", _RELIEF),
+        interpolation="bilinear",
     )
     tension = np.maximum(-picture.pressure, 0.0)
     axes.imshow(
@@ -171,7 +192,7 @@ def _draw_contact(axes: Axes, picture: ValidationPicture) -> None:
         origin="lower",
         cmap=LinearSegmentedColormap.from_list("tension", _TENSION),
         vmin=0.0,
-        vmax=float(tension.max()),
+        vmax=float(tension.max()) / 2,
         interpolation="nearest",
     )
     # Where both branches have one contact, that of the approach is seen on both sides of the other.
@@ -201,48 +222,62 @@ def _draw_contact(axes: Axes, picture: ValidationPicture) -> None:
     label_plane(axes)
 
 
-def hysteresis_figure(rows: Sequence[Hysteresis]) -> Figure:
+def hysteresis_figure(rows: Sequence[Hysteresis], short_cutoff: float) -> Figure:
     """Extrapolated hysteresis of both models against e_el, and the ratio of the two.
 
     Ratios at the ranges that were computed are small and open.
     """
     found, limits = (rough_settings(one) for one in (settings(rows), limit_settings(rows)))
     with house_style():
-        figure = blank_figure(PAGE, 0.42 * PAGE)
+        figure = blank_figure(PAGE, 0.48 * PAGE)
         both = figure.subplots(1, 2)
-        for part, grey in ((0.25, "0.93"), (0.10, "0.85")):
+        for part, grey in _BANDS:
             both[1].axhspan(-part, part, color=grey, linewidth=0, zorder=0)
         for number, shape in enumerate(sorted({one.rows[0].scene[:2] for one in limits})):
             near, far = (
                 [one for one in many if one.rows[0].scene[:2] == shape] for many in (found, limits)
             )
-            name = rf"$\lambda_r = {shape[0]:g}$, $H = {shape[1]:g}$"
-            style = {"color": COLOURS[number], "marker": MARKERS[number], "linewidth": 0.8}
-            filled, hollow = {"label": name}, {"markerfacecolor": "white"}
+            look = {"color": COLOURS[number], "marker": MARKERS[number], "linewidth": 0.8}
+            filled: dict[str, Any] = look | {"label": _spectrum(far[0].rows[0], short_cutoff)}
+            hollow: dict[str, Any] = look | {"markerfacecolor": "white"}
             theirs, ours = (
                 [one.mean(attrgetter(f"{model}_difference")) for one in far]
                 for model in ("boundary", "front")
             )
-            _draw_estimates(both[0], far, theirs, **style, **filled)
-            _draw_estimates(both[0], far, ours, **style, **hollow, linestyle="--")
-            for many, look in ((near, hollow | {"markersize": 2.4}), (far, filled)):
+            _draw_estimates(both[0], far, theirs, **filled)
+            _draw_estimates(both[0], far, ours, **hollow, linestyle="--")
+            small = hollow | {"markersize": 2.4}
+            for place, (many, style) in enumerate(((near, small), (far, filled))):
                 ratios = [one.excess(0.0) for one in many]
-                _draw_estimates(both[1], many, ratios, **style, **look, linestyle="none")
+                aside = (2 * number + place) * _ASIDE
+                _draw_estimates(both[1], many, ratios, aside, **style, linestyle="none")
         names = "hysteresis / $w_\\mathrm{int}$", "$\\ln$ (hysteresis, front / boundary elements)"
         for axes, panel, name in zip(both, "ab", names, strict=True):
             axes.set(xlim=(0.0, None), xlabel=r"$e_\mathrm{el}/w_\mathrm{int}$", ylabel=name)
             axes.legend(loc="upper left")
             label_panel(axes, panel)
+        explain(figure, _EXPLAINED)
         return figure
 
 
+def _spectrum(row: Hysteresis, short_cutoff: float) -> str:
+    """Name of the spectrum of a surface in a legend."""
+    if row.roll_off == short_cutoff:
+        return rf"flat, $\lambda_\mathrm{{s}} = {short_cutoff:g}$"
+    return rf"$\lambda_\mathrm{{r}} = {row.roll_off:g}$, $H = {row.hurst:g}$"
+
+
 def _draw_estimates(
-    axes: Axes, found: Sequence[Setting], estimates: Sequence[Estimate], **style: Any
+    axes: Axes,
+    found: Sequence[Setting],
+    estimates: Sequence[Estimate],
+    aside: float = 0.0,
+    **style: Any,
 ) -> None:
-    """Values with their standard errors against e_el."""
+    """Values against e_el with their standard errors, which those of one surface lack."""
     axes.errorbar(
-        [float(one.mean(attrgetter("elastic_energy")).value) for one in found],
+        [float(one.mean(attrgetter("elastic_energy")).value) + aside for one in found],
         [float(one.value) for one in estimates],
-        yerr=[np.nan_to_num(float(one.standard_error)) for one in estimates],
+        yerr=[float(one.standard_error) for one in estimates],
         **style,
     )

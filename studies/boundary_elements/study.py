@@ -93,7 +93,7 @@ def write_validation(
     if edges:
         save_figure(edge_figure(edges), folder / "edges")
     if limit_settings(rows):
-        save_figure(hysteresis_figure(rows), folder / "hysteresis")
+        save_figure(hysteresis_figure(rows, parameters.short_cutoff), folder / "hysteresis")
     progress(f"tables: {folder / 'validation.md'}")
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -24,13 +23,42 @@ from crackfront.analysis.law import (
 )
 from crackfront.core.arrays import Array
 from crackfront.plots.parts import label_decimals
-from crackfront.plots.style import BLACK, COLOURS, MARKERS, PAGE, blank_figure, explain, house_style
+from crackfront.plots.style import (
+    BLACK,
+    BLUE,
+    GREEN,
+    ORANGE,
+    PAGE,
+    PURPLE,
+    SKY,
+    VERMILION,
+    blank_figure,
+    explain,
+    house_style,
+)
 from crackfront.plots.sweep import draw_infinite_law
 from studies.law.cells import LawCell
 from studies.paper.drawing import name_panels, write_beside
 
 _LARGE = 3.0
 """Size g above which points are extrapolated: their gain is small, and its error smaller."""
+
+_LOOKS = {
+    "flat": ("flat", GREEN, "s"),
+    "flat-chemical": ("flat, chemical", GREEN, "D"),
+    "gaussian": ("gaussian", PURPLE, "^"),
+    "gaussian-chemical": ("gaussian, chemical", PURPLE, "v"),
+    "h03": ("$H=0.3$", ORANGE, "X"),
+    "h05": ("$H=0.5$", SKY, "P"),
+    "h08": ("$H=0.8$", BLUE, "o"),
+    "ring": ("ring", VERMILION, "p"),
+    "two-slopes": ("$H=0.9$, then $0.3$", "0.45", "<"),
+    "two-reversed": ("$H=0.3$, then $0.9$", "0.45", ">"),
+}
+"""Name in the legend, colour and marker of every spectrum of straight fronts.
+
+Spectra of two slopes are named from long waves to short ones.
+"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,21 +82,14 @@ def spectra_points(cells: Sequence[LawCell]) -> tuple[LawPoints, ...]:
             np.array([getattr(cell, item) for cell in rows])
             for item in ("disorder", "size", "both", "error", "breadth")
         )
-        # h08-chemical is H = 0.8, chemical.
-        label = ", ".join(re.sub(r"^h(\d)(\d)", r"$H=\1.\2$", name).split("-"))
-        found.append(LawPoints(label, *columns))
+        found.append(LawPoints(name, *columns))
     return tuple(found)
 
 
 def law_figure(fronts: Sequence[LawPoints], spheres: LawPoints) -> Figure:
     """Collapse of straight fronts and spheres on the shipped law, and its infinite contact."""
-    n_colour, n_marker = len(COLOURS), len(MARKERS)
-    # Where colours repeat, markers are others.
-    styles = [
-        _style(COLOURS[index % n_colour], MARKERS[(index + index // n_colour) % n_marker])
-        for index in range(len(fronts))
-    ]
-    drawn = [*zip(fronts, styles, strict=True), (spheres, _style(BLACK, "o", is_open=True))]
+    drawn = [(points, _style(*_LOOKS[points.name])) for points in fronts]
+    drawn.append((spheres, _style(spheres.name, "0.2", "o", is_open=True)))
     with house_style():
         figure = blank_figure(PAGE, 0.56 * PAGE)
         left, right = figure.subplots(1, 2, width_ratios=(1.2, 1))
@@ -78,30 +99,33 @@ def law_figure(fronts: Sequence[LawPoints], spheres: LawPoints) -> Figure:
             _draw_extrapolated(right, points, style)
         right.set_ylim(0.0, 1.12 * PERTURBATION_FACTOR)
         right.legend(loc="lower left")
-        figure.legend(*left.get_legend_handles_labels(), loc="outside upper center", ncols=6)
+        entries = left.get_legend_handles_labels()
+        figure.legend(*entries, loc="outside upper center", ncols=6, columnspacing=1.4)
         name_panels((left, right), "ab")
         explain(
             figure,
             "bars: 95% intervals over surfaces; spheres, to which nothing was adjusted, are open "
-            "circles; a: freed of what depends on s, with the law at s = 0; b: points of g above "
-            f"{_LARGE:g}, which the law extrapolates, in the colours of a",
+            f"circles; a: freed of what depends on s, with the law at s = 0, dashed below g = "
+            f"{LEAST_SIZE:g}, where its fit begins; b: points of g above {_LARGE:g}, which the law "
+            "extrapolates, in the colours of a",
         )
         return figure
 
 
-def _style(colour: str, marker: str, *, is_open: bool = False) -> dict[str, Any]:
-    """Look of small points with thin bars."""
+def _style(label: str, colour: str, marker: str, *, is_open: bool = False) -> dict[str, Any]:
+    """Look of small points with thin bars; open ones are larger and lie below the others."""
     return {
+        "label": label,
         "linestyle": "none",
         "marker": marker,
         "color": colour,
         "markerfacecolor": "none" if is_open else colour,
         "markeredgecolor": colour if is_open else "white",
         "markeredgewidth": 0.6 if is_open else 0.25,
-        "markersize": 3.6 if is_open else 2.8,
+        "markersize": 5.0 if is_open else 3.8,
         "elinewidth": 0.4,
         "capsize": 0,
-        "zorder": 4 if is_open else 3,
+        "zorder": 2.5 if is_open else 3,
     }
 
 
@@ -114,29 +138,25 @@ def _draw_collapse(axes: Axes, drawn: Sequence[tuple[LawPoints, dict[str, Any]]]
         for one, _ in drawn
     }
     largest = max(float(np.max(size)) for size in sizes.values())
-    abscissa = np.geomspace(LEAST_SIZE / 4, 2 * largest, 200)
-    axes.plot(
-        abscissa,
-        law_value(law.coefficients, 0.0, abscissa),
-        color=BLACK,
-        linewidth=1.0,
-        label=f"law (rms departure {100 * law.rms:.2g}% for $g>1$)",
-        zorder=2,
-    )
+    lowest, highest = LEAST_SIZE / 4, 2 * largest
+    line: dict[str, Any] = {"color": BLACK, "linewidth": 1.0, "zorder": 2}
+    label = f"law (rms departure {100 * law.rms:.2g}% for $g>1$)"
+    fitted, below = np.geomspace(LEAST_SIZE, highest, 200), np.geomspace(lowest, LEAST_SIZE, 50)
+    axes.plot(fitted, law_value(law.coefficients, 0.0, fitted), **line, label=label)
+    axes.plot(below, law_value(law.coefficients, 0.0, below), **line, dashes=(3, 1.5))
     for points, style in drawn:
         rise = 1 + a * points.disorder**b * (TYPICAL_BREADTH / points.breadth) ** e
         axes.errorbar(
             sizes[points.name],
             points.factor * rise,
             yerr=REACH * points.error * rise,
-            label=points.name,
             **style,
         )
     axes.axhline(k_0, color="0.5", linewidth=0.5, zorder=1)
     name = rf"$k_0={k_0:.2f}$, weak disorder in the infinite contact"
-    write_beside(axes, name, (abscissa[0] * 1.1, k_0), (0, 2), fontsize=6)
+    write_beside(axes, name, (1.1 * lowest, k_0), (0, 2), fontsize=6)
     axes.set_xscale("log")
-    axes.set_xlim(abscissa[0], abscissa[-1])
+    axes.set_xlim(lowest, highest)
     axes.set_ylim(0.0, 1.12 * PERTURBATION_FACTOR)
     label_decimals(axes.xaxis)
     axes.set_xlabel(r"size $g\,(\beta_0/\beta)^f/\,(1+c\,s^d)$")
@@ -155,4 +175,5 @@ def _draw_extrapolated(axes: Axes, points: LawPoints, style: dict[str, Any]) -> 
     gain = np.array([one.value for one in gains])
     error = np.array([one.standard_error for one in gains]) * points.factor[large]
     reach = REACH * np.hypot(gain * points.error[large], error)
-    axes.errorbar(points.disorder[large], points.factor[large] * gain, yerr=reach, **style)
+    unnamed = style | {"label": None}
+    axes.errorbar(points.disorder[large], points.factor[large] * gain, yerr=reach, **unnamed)

@@ -14,8 +14,8 @@ from crackfront.core.cycle.record import Recorder
 from crackfront.core.cycle.run import run_cycle
 from crackfront.core.variables import ADHESION, ENERGY, FORCE, LATERAL, VERTICAL, variable
 from crackfront.plots.fronts import closed_front, draw_field
-from crackfront.plots.parts import FORCE_LABEL, PENETRATION_LABEL, RADIUS_LABEL
-from crackfront.plots.style import BLACK, BLUE, PAGE, VERMILION, blank_figure, house_style
+from crackfront.plots.parts import FORCE_LABEL, RADIUS_LABEL
+from crackfront.plots.style import BLACK, BLUE, PAGE, VERMILION, blank_figure, explain, house_style
 from crackfront.simulate.run import compile_solver
 from crackfront.simulate.simulation import simulation_adhesion, simulation_field
 from studies.paper.drawing import BRANCHES, Animation
@@ -133,7 +133,7 @@ def motion_figure(shown: AnimatedCycle) -> Drawing:
 def motion_animation(shown: AnimatedCycle) -> Animation:
     """The front over the field beside the loop: one frame a state, and some without contact."""
     with house_style():
-        figure = blank_figure(PAGE, 0.47 * PAGE)
+        figure = blank_figure(PAGE, 0.49 * PAGE)
         left, right = figure.subplots(1, 2)
         mean, reach = 1 - shown.elastic_energy, 4 * np.sqrt(shown.elastic_energy)
         draw_field(left, shown.x, shown.y, shown.patch, mean, reach)
@@ -143,13 +143,14 @@ def motion_animation(shown: AnimatedCycle) -> Animation:
             low, high = values.min(), values.max()
             setter(low - 0.06 * (high - low), high + above * (high - low))
         (line,) = left.plot([], [], linewidth=1.2)
-        title = left.set_title(f"{PENETRATION_LABEL} = $+0.00$")
+        title = left.set_title("penetration $+0.00$")
         branches = {
             direction: right.plot([], [], color=colour, label=name)[0]
             for direction, name, _, colour in BRANCHES
         }
         (point,) = right.plot([], [], "o", color=BLACK, zorder=4, label="state of the front beside")
         right.legend(loc="upper left")
+        explain(figure, f"unit of the penetration: ${VERTICAL.tex}$")
     last = shown.direction.size
 
     def show(frame: int) -> None:
@@ -157,7 +158,7 @@ def motion_animation(shown: AnimatedCycle) -> Animation:
         line.set_color(BLUE if shown.direction[state] > 0 else VERMILION)
         line.set_data(*closed_front(shown.angle, shown.front[state]) if touching else ([], []))
         b = shown.penetration[state] if touching else shown.end_penetration
-        title.set_text(f"{PENETRATION_LABEL} = ${b:+.2f}${'' if touching else ': contact lost'}")
+        title.set_text(f"penetration ${b:+.2f}${'' if touching else ', contact lost'}")
         for direction, drawn in branches.items():
             branch = np.flatnonzero(shown.direction[: state + 1] == direction)
             drawn.set_data(shown.mean_radius[branch], shown.force[branch])

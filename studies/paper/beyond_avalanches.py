@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -13,10 +12,10 @@ from matplotlib.ticker import FixedLocator
 from crackfront.analysis.estimate import with_error
 from crackfront.core.arrays import Array
 from crackfront.plots.parts import label_decimals
-from crackfront.plots.style import BLUE, PAGE, VERMILION, blank_figure, house_style
+from crackfront.plots.style import BLUE, PAGE, VERMILION, blank_figure, explain, house_style
 from studies.paper import event_laws
 from studies.paper.avalanches import AvalancheRecord, avalanche_record, expected_seconds
-from studies.paper.drawing import DASHED, ON_WHITE, THEORY, name_panels
+from studies.paper.drawing import DASHED, THEORY, name_panels
 from studies.paper.figure import Check, Figure
 from studies.paper.power_law import PowerLaw, truncated_power_law
 from studies.paper.rough import (
@@ -95,7 +94,7 @@ _KINDS = ((STRONG, "strong", BLUE, "o"), (WEAK, "weak", VERMILION, "s"))
 def avalanche_figure(record: AvalancheRecord) -> Drawing:
     """Whole events of the line above, and below densities of the sphere."""
     with house_style():
-        figure = blank_figure(PAGE, 0.76 * PAGE)
+        figure = blank_figure(PAGE, 0.82 * PAGE)
         grid = figure.add_gridspec(2, 1)
         above, below = (figure.add_subfigure(grid[row]) for row in range(2))
         lines, panels = above.subplots(1, 3), below.subplots(1, 3)
@@ -121,6 +120,15 @@ def avalanche_figure(record: AvalancheRecord) -> Drawing:
         above.legend(handles, labels, title=title, loc="outside upper center", ncols=len(labels))
         handles, labels = panels[2].get_legend_handles_labels()
         below.legend(handles, labels, title="sphere", loc="outside upper center", ncols=2)
+        explain(
+            figure,
+            "a: areas of whole events, all that one instability sets off; b: cut-off "
+            "$S_m=\\langle S^2\\rangle/2\\langle S\\rangle$ of these areas; c: depth and extent of "
+            "these events; $\\xi_u$: correlation length of the force; d to f: avalanches of the "
+            "sphere, bars: errors of counting; lines through points: fits, with 95% intervals; "
+            "grey broken lines: theory of depinning with $\\zeta=0.388$ (a to d); e: dotted: "
+            "Larkin lengths, grey: correlation length of $w_\\mathrm{loc}$",
+        )
         return figure
 
 
@@ -165,27 +173,19 @@ def _draw_areas(axes: Axes, record: AvalancheRecord) -> None:
     level = 4 * float(size_law(record, STRONG).density(record.smallest_area[STRONG])) * unit
     theory = level * (ends / start) ** -event_laws.SIZE_EXPONENT
     axes.plot(ends, theory, label=rf"$\tau = {event_laws.SIZE_EXPONENT:.2f}$", **THEORY)
-    _legend_of(axes, "tau")
+    entries = zip(*axes.get_legend_handles_labels(), strict=True)
+    handles, labels = zip(*(entry for entry in entries if "tau" in entry[1]), strict=True)
+    axes.legend(handles, labels, loc="lower left")
 
 
 def _draw_extents(axes: Axes, record: AvalancheRecord) -> None:
-    """Extents, with the Larkin lengths below and the length of the circle above."""
+    """Extents, with the Larkin lengths and the correlation length of w_loc."""
     unit, label = record.short_cutoff, r"extent along the perimeter $/\lambda_\mathrm{s}$"
     _draw_densities(axes, record, record.extent / unit, label)
     for index, _, colour, _ in _KINDS:
-        place, first = record.larkin_length[index] / unit, index == STRONG
-        name, dots = r"Larkin length $\ell$" if first else None, (0, (1, 1.5))
-        axes.axvline(place, color=colour, linewidth=0.8, linestyle=dots, zorder=0, label=name)
-    place, label = record.correlation_length / unit, r"correlation length of $w_\mathrm{loc}$"
-    axes.axvline(place, color="0.5", zorder=0, label=label, **DASHED)
-    _legend_of(axes, "length", **ON_WHITE)
-
-
-def _legend_of(axes: Axes, word: str, **style: Any) -> None:
-    """Legend of what bears a word in its label."""
-    entries = zip(*axes.get_legend_handles_labels(), strict=True)
-    handles, labels = zip(*(entry for entry in entries if word in entry[1]), strict=True)
-    axes.legend(handles, labels, loc="lower left", **style)
+        place = record.larkin_length[index] / unit
+        axes.axvline(place, color=colour, linewidth=0.8, linestyle=(0, (1, 1.5)), zorder=0)
+    axes.axvline(record.correlation_length / unit, color="0.5", zorder=0, **DASHED)
 
 
 FIGURE = Figure(

@@ -16,8 +16,17 @@ from matplotlib.ticker import FixedLocator
 from crackfront.analysis.estimate import with_error
 from crackfront.core.arrays import Array
 from crackfront.plots.parts import label_decimals, legend_entries
-from crackfront.plots.style import BLUE, GREEN, PAGE, PURPLE, VERMILION, blank_figure, house_style
-from studies.paper.drawing import ON_WHITE, THEORY, name_panels
+from crackfront.plots.style import (
+    BLUE,
+    GREEN,
+    PAGE,
+    PURPLE,
+    VERMILION,
+    blank_figure,
+    explain,
+    house_style,
+)
+from studies.paper.drawing import THEORY, name_panels
 from studies.paper.figure import Check, Figure
 from studies.paper.front_spectra import (
     RoughnessFit,
@@ -83,6 +92,8 @@ def _exponent_check(record: RoughnessRecord, index: int, fit: RoughnessFit, clai
 
 
 _COLOURS = (BLUE, VERMILION, GREEN, PURPLE)
+_MARKERS = ("o", "s", "^", "D")
+"""Of the fronts in the order of their records."""
 
 _KINDS = ((STRONG, "strong", _COLOURS[STRONG]), (WEAK, "weak", _COLOURS[WEAK]))
 
@@ -90,7 +101,7 @@ _KINDS = ((STRONG, "strong", _COLOURS[STRONG]), (WEAK, "weak", _COLOURS[WEAK]))
 def roughness_figure(record: RoughnessRecord) -> Drawing:
     """Spectra with their fits, over those of perturbation theory, differences, straight fronts."""
     with house_style():
-        figure = blank_figure(PAGE, 0.74 * PAGE)
+        figure = blank_figure(PAGE, 0.81 * PAGE)
         panels = figure.subplots(2, 2).ravel()
         _draw_spectra(panels[0], record)
         _draw_compensated(panels[1], record)
@@ -103,6 +114,16 @@ def roughness_figure(record: RoughnessRecord) -> Drawing:
             label_decimals(axes.yaxis, FixedLocator([0.1, 0.2, 0.3, 0.5, 1.0, 2.0]))
         handles, labels = legend_entries(panels[0])
         figure.legend(handles, labels, loc="outside upper center", ncols=4, columnspacing=1.2)
+        explain(
+            figure,
+            "a to c: fronts of a sphere in retraction; d: straight fronts on springs; "
+            "$\\kappa$: wavevector of a straight line as stiff as the mode of the front; "
+            "b: relative to the fits at their largest $\\kappa$; d: relative to the fit below "
+            "$\\ell$ at its largest $\\kappa$; $\\zeta$: roughness exponent, in grey of "
+            "depinning (broken) and of perturbation theory (full); "
+            "dotted: Larkin length $\\ell$ (c) and $\\kappa=1/\\ell$ (b, d); "
+            "bars: standard errors over surfaces, ±: 95% intervals",
+        )
         return figure
 
 
@@ -129,13 +150,13 @@ def _draw_compensated(axes: Axes, record: RoughnessRecord) -> None:
         level = fit.power[1] * fit.wavevector[1] ** 2
         _draw_points(axes, record, index, level, 2)
         place = cutoff / record.larkin_length[index] / (2 * np.pi)
-        _draw_larkin_length(axes, index, place, r"$\kappa = 1/\ell$")
+        axes.axvline(place, color=_COLOURS[index], **_AT_LENGTH)
     ends = np.array([0.004, 1.0])
     end = fitted_roughness(record, STRONG).wavevector[1] * cutoff / (2 * np.pi)
     for index, exponent in enumerate(_EXPONENTS[:STRONG_LINE]):
         _draw_law(axes, index, ends, (ends / end) ** (1 - 2 * exponent), zorder=0)
     axes.set_ylim(0.3, 2.5)
-    axes.legend(loc="upper left", **ON_WHITE)
+    axes.legend(loc="lower right")
     axes.set_xlabel(r"stiffness $\kappa\lambda_\mathrm{s}/2\pi$")
     axes.set_ylabel(r"$C\,\kappa^2$ (relative)")
 
@@ -151,8 +172,9 @@ def _draw_differences(axes: Axes, record: RoughnessRecord) -> None:
         law = 1.25 * difference[start] * (lag[part] / lag[start]) ** _EXPONENTS[index]
         _draw_law(axes, index, lag[part], law)
         place = record.larkin_length[index] / cutoff
-        _draw_larkin_length(axes, index, place, r"Larkin length $\ell$")
-    axes.legend(loc="lower right", **ON_WHITE)
+        axes.axvline(place, color=_COLOURS[index], **_AT_LENGTH)
+    # On the left of the Larkin length of weak disorder.
+    axes.legend(loc="lower right", bbox_to_anchor=(0.94, 0.0))
     axes.set_xlabel(r"distance along the front $s/\lambda_\mathrm{s}$")
     axes.set_ylabel(r"rms difference of radii $/\lambda_\mathrm{s}$")
 
@@ -191,7 +213,7 @@ def _draw_points(
         yerr=error * middle**exponent / level,
         color=_COLOURS[index],
         linestyle="none",
-        marker="o",
+        marker=_MARKERS[index],
         markersize=2.2,
         elinewidth=0.6,
         label=label,
@@ -206,12 +228,7 @@ def _draw_law(axes: Axes, index: int, abscissa: Array, ordinate: Array, zorder: 
 
 
 _AT_LENGTH: dict[str, Any] = {"linewidth": 0.7, "linestyle": (0, (1, 1.5)), "zorder": 0}
-
-
-def _draw_larkin_length(axes: Axes, index: int, place: float, label: str) -> None:
-    """Where the Larkin length of one disorder lies; the first line has the label of both."""
-    name = label if index == STRONG else None
-    axes.axvline(place, color=_COLOURS[index], label=name, **_AT_LENGTH)
+"""Of lines at a Larkin length."""
 
 
 FIGURE = Figure(

@@ -26,14 +26,6 @@ DOTTED: dict[str, Any] = {"linewidth": 0.6, "dashes": (1.5, 1.5)}
 THEORY: dict[str, Any] = {"color": "0.35", **DASHED}
 """Of lines that a theory gives."""
 
-ON_WHITE: dict[str, Any] = {
-    "frameon": True,
-    "facecolor": "white",
-    "framealpha": 1,
-    "edgecolor": "none",
-}
-"""Of a legend that covers lines."""
-
 
 def write_beside(
     axes: Axes, text: str, place: tuple[float, float], aside: tuple[float, float], **style: Any

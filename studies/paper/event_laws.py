@@ -41,6 +41,11 @@ def _joint(record: EventRecord, values: Array, springs: Integers, key: int) -> J
     return joint_power_law(samples, record.smallest_event, rng)
 
 
+def _reach(law: JointPowerLaw) -> float:
+    """Half of the 95% interval of an exponent: scatter of the events, and where the law begins."""
+    return math.hypot(law.scatter, law.shift)
+
+
 @dataclass(frozen=True, slots=True)
 class Slope:
     """Slope of a logarithm over another, and half of its 95% interval."""
@@ -189,7 +194,7 @@ def draw_events(axes: Axes, record: EventRecord) -> None:
     level /= np.sum(record.event_spring == 0)
     theory = level * (ends / ends[0]) ** -SIZE_EXPONENT
     _draw_theory(axes, ends, theory, rf"\tau = {SIZE_EXPONENT:.2f}", "upper right")
-    _name_fit(axes, rf"$\tau = {law.exponent:.2f}$ ({law.low:.2f} to {law.high:.2f})", 0.06)
+    _name_fit(axes, rf"$\tau =$ {with_error(law.exponent, _reach(law))}", 0.06)
     axes.set(xlabel=r"area of a whole event $S/\ell\xi_u$", ylabel="probability density")
 
 
@@ -202,7 +207,7 @@ def draw_cutoffs(axes: Axes, record: EventRecord) -> None:
     growth = 1 + _ROUGHNESS
     theory = 0.6 * law.scales[0] * (ends / ends[0]) ** growth
     _draw_theory(axes, ends, theory, rf"1 + \zeta = {growth:.3f}", "lower right")
-    _name_fit(axes, rf"slope {slope.exponent:.2f} $\pm$ {slope.reach:.2f}", 0.9)
+    _name_fit(axes, f"slope {with_error(slope.exponent, slope.reach)}", 0.9)
     axes.set(xlabel=r"length of the springs $L_\kappa/\ell$", ylabel=r"cut-off $S_m/\ell\xi_u$")
 
 
@@ -225,7 +230,7 @@ def draw_depths(axes: Axes, record: EventRecord) -> None:
     axes.plot(ends, fit, color=BLACK, linewidth=0.9)
     theory = 0.7 * fit[0] * (ends / ends[0]) ** _ROUGHNESS
     _draw_theory(axes, ends, theory, rf"\zeta = {_ROUGHNESS}", "lower right")
-    _name_fit(axes, rf"slope {slope.exponent:.3f} $\pm$ {slope.reach:.3f}", 0.9)
+    _name_fit(axes, f"slope {with_error(slope.exponent, slope.reach)}", 0.9)
     axes.set(xlabel=r"extent $l/\ell$", ylabel=r"depth $S/l\xi_u$")
 
 

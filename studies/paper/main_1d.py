@@ -147,7 +147,7 @@ def smooth_loop_figure(loop: SmoothLoop) -> Drawing:
         axes.plot([_LEFT, loop.radius[lowest]], [loop.force[lowest]] * 2, color="0.3", **DOTTED)
         axes.plot(loop.radius[lowest], loop.force[lowest], "o", color=VERMILION, ms=3.6, zorder=5)
         label = r"pull-off force, $-\frac{3}{2}\,\pi w_\mathrm{retr}R$"
-        write_beside(axes, label, (0.0, loop.force[lowest]), (0, 2))
+        write_beside(axes, label, (0.0, loop.force[lowest]), (0, 4))
         axes.set(xlim=(_LEFT, None), ylim=(1.12 * float(np.min(loop.force)), None))
         axes.set(xlabel=RADIUS_LABEL, ylabel=FORCE_LABEL)
         axes.legend(loc="upper left")

@@ -252,7 +252,7 @@ def rings_figure(loops: RingLoops) -> Drawing:
         style.explain(
             figure,
             "thick: the edge is pinned; thin: it jumps (b, d with arrows); grey: $w_\\mathrm{loc}$ "
-            "of the rings; A, B: contact at b = 0 in approach and retraction; broken lines: the "
+            "of the rings; A, B: contact at $b=0$ in approach and retraction; broken lines: the "
             "extremes of the rings",
         )
         return figure
@@ -273,7 +273,8 @@ def _draw_contact(axes: Axes, loops: RingLoops) -> None:
     axes.annotate("elastic body", (0.0, -0.4), ha="center")
     axes.set_ylim(-0.6, 1.7)
     axes.set_box_aspect(0.4)
-    axes.set_ylabel(parts.HEIGHT_LABEL.format("height").replace(" / ", " /\n"))
+    # As high as the axes.
+    axes.set_ylabel(parts.HEIGHT_LABEL.format("height").replace(" / ", " /\n"), fontsize=6)
     axes.tick_params(labelbottom=False)
 
 
@@ -285,14 +286,15 @@ def _draw_rings(axes: Axes, loops: RingLoops) -> None:
         contact = loops.radius_at_zero(0, direction)
         axes.plot(contact * np.cos(angle), contact * np.sin(angle), color=colour)
     axes.set_xlabel(parts.LENGTH_LABEL.format("$x$"))
-    axes.set_ylabel(parts.LENGTH_LABEL.format("$y$").replace(" / ", " /\n"))
+    axes.set_ylabel(parts.LENGTH_LABEL.format("$y$").replace(" / ", " /\n"), fontsize=6)
 
 
 def _draw_release(axes: Axes, loops: RingLoops, index: int, limits: tuple[float, float]) -> None:
     """Work of adhesion of the rings, G at b = 0, and what both branches sample of it."""
     radius = np.linspace(*limits, 3000)
     adhesion, label = loops.rings(index).adhesion(radius), r"$w_\mathrm{loc}(a)$"
-    axes.plot(radius, adhesion, color="0.72", label=f"{label}, $d={loops.wavelength[index]:g}$")
+    label = f"{label}, $d={loops.wavelength[index]:g}$"
+    axes.plot(radius, adhesion, color="0.85", linewidth=0.8, label=label)
     release = jkr.apparent_work_of_adhesion(radius, 0.0)
     axes.plot(radius, release, color=style.BLACK, linewidth=0.8, label=r"$G_\mathrm{JKR}(b=0,a)$")
     for direction, name, short, _ in BRANCHES:

@@ -286,8 +286,8 @@ def instability_figure(record: InstabilityRecord) -> Drawing:
         explain(
             figure,
             "a: areas swept by single instabilities, outlined by the fronts before and after; "
-            "white: swept smoothly; orange bars: length on which disorder is as stiff as the line; "
-            "b: strong disorder; A, B: contact at b = 0 in approach and retraction",
+            "white: swept smoothly; orange bars: $\\ell_0$, the reduced length on which disorder "
+            "is as stiff as the line; b: strong disorder; A, B: $b=0$ in approach and retraction",
         )
         return figure
 
@@ -324,15 +324,16 @@ def _draw_shortest(axes: Axes, record: InstabilityRecord, index: int) -> None:
 def _finish_quarters(axes: Axes, record: InstabilityRecord) -> None:
     """Limits, names and a scale."""
     reach = 1.04 * record.before.max() + _GAP
-    axes.set(xlim=(-reach, reach), ylim=(-0.6, 1.28 * reach), aspect="equal")
+    axes.set(xlim=(-reach, reach), ylim=(-0.6, 1.32 * reach), aspect="equal")
     axes.set_axis_off()
     for index, name, side in ((STRONG, "strong", -1), (WEAK, "weak", 1)):
         text = (
             f"{name} disorder\n"
             rf"$w_\mathrm{{rms}} = {record.rms[index]:.2f}\,w_\mathrm{{int}}$" + "\n"
-            rf"shortest jump $\ell_0 = {record.shortest[index]:.3f}$"
+            "as stiff as the line\n"
+            rf"on $\ell_0 = {record.shortest[index]:.3f}$"
         )
-        place = side * reach, 1.28 * reach
+        place = side * reach, 1.32 * reach
         axes.annotate(text, place, ha="left" if side < 0 else "right", va="top")
     axes.plot(
         [-reach, 0.5 - reach], [-0.12, -0.12], color="black", linewidth=1.2, solid_capstyle="butt"
@@ -353,7 +354,7 @@ def _draw_cycle(axes: Axes, record: InstabilityRecord) -> None:
     radius = np.linspace(0.0, 1.6, 200)
     force = jkr.force(radius, 0.0)
     axes.plot(radius, force, color="black", linewidth=0.7, label="$b = 0$", zorder=1)
-    for letter, place, aside in zip("AB", _radii_at_zero(record), ((-9, -7), (4, 1)), strict=True):
+    for letter, place, aside in zip("AB", _radii_at_zero(record), ((-9, -7), (6, -5)), strict=True):
         state = place, float(jkr.force(place, 0.0))
         axes.plot(*state, "o", color="black", markersize=2.8, zorder=5)
         write_beside(axes, letter, state, aside, fontweight="bold")

@@ -24,7 +24,7 @@ from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.core.variables import ADHESION, FORCE, LATERAL, VERTICAL, variable
 from crackfront.data.section import Positive
-from crackfront.plots.fronts import label_plane
+from crackfront.plots.fronts import RETRACTION, label_plane
 from crackfront.plots.loop import draw_loop
 from crackfront.plots.parts import ADHESION_LABEL, field_colours
 from crackfront.plots.style import BLACK, BLUE, PAGE, VERMILION, blank_figure, explain, house_style
@@ -235,7 +235,7 @@ def pinned_loop_figure(loop: PinnedLoop) -> Drawing:
         draw_loop(left, loop, works, window, elastic_energy=loop.elastic_energy)
         _draw_fronts(right, loop)
         name_panels((left, right), "cd")
-        explain(figure, "arrows: the direction of motion; d: the fronts at b = 0")
+        explain(figure, "arrows: the direction of motion; d: the fronts at $b=0$")
         return figure
 
 
@@ -256,12 +256,14 @@ def _draw_fronts(axes: Axes, loop: PinnedLoop) -> None:
     # From -pi to pi, so that the part about the first ray is one line.
     half = loop.angle.size // 2
     angle = np.roll(np.where(loop.angle < np.pi, loop.angle, loop.angle - 2 * np.pi), half)
-    colours, styles = (BLUE, VERMILION, BLACK), ("-", "-", (0, (4, 2)))
+    colours, styles = (BLUE, VERMILION, BLACK), ("-", RETRACTION, (0, (4, 2)))
     for front, colour, style, label in zip(loop.front, colours, styles, FRONTS, strict=True):
         radius = np.roll(front, half)
         near = np.abs(angle) < 2 * loop.y[-1] / loop.x[0]
         x, y = (radius * np.cos(angle))[near], (radius * np.sin(angle))[near]
-        axes.plot(x, y, color=colour, linestyle=style, linewidth=1.0, label=label)
+        axes.plot(x, y, color=colour, linestyle=style, linewidth=1.2, label=label)
+        # A white rim, as fronts and field are of similar greys in print.
+        axes.plot(x, y, color="white", linewidth=3.0, zorder=1.5)
     axes.set(xlim=(loop.x[0], loop.x[-1]), ylim=(loop.y[0], loop.y[-1]))
     label_plane(axes)
     axes.legend(loc="lower center", bbox_to_anchor=(0.55, 1.0), ncols=3, columnspacing=1.0)

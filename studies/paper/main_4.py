@@ -232,7 +232,6 @@ def mapping_figure(record: Mapping) -> Drawing:
         _draw_map(maps[1], record, record.adhesion, "viridis", _ADHESION_LABEL)
         for axes, name in zip(maps, "ab", strict=True):
             label_panel(axes, name)
-            axes.set_title("front along $y$, contact at smaller $x$")
         for column, (place, _, colour) in enumerate(_PLACES):
             parts = grid[1, column].subgridspec(2, 1, hspace=0.0)
             upper = figure.add_subplot(parts[0])
@@ -241,8 +240,9 @@ def mapping_figure(record: Mapping) -> Drawing:
             label_panel(upper, "cd"[column])
         explain(
             figure,
-            "c, d: height and work of adhesion along the white lines of a and b; dotted: the place "
-            "of peak and valley; broken: the mean of $w_\\mathrm{loc}$",
+            "a, b: the front is along $y$, the contact at smaller $x$; c, d: height and work of "
+            "adhesion along the white lines; dotted: places of peak and valley; broken: mean of "
+            "$w_\\mathrm{loc}$ on the tile",
         )
         return figure
 
@@ -287,7 +287,8 @@ def _draw_profile(upper: Axes, lower: Axes, record: Mapping, place: str, colour:
     write_beside(lower, mean, end, (3, 0), va="center", annotation_clip=False)
     lower.xaxis.set_major_locator(MaxNLocator(5))
     upper.tick_params(labelbottom=False)
-    upper.set_ylabel(HEIGHT_LABEL.format("$h$").replace(" / ", " /\n"))
+    # As high as the axes.
+    upper.set_ylabel(HEIGHT_LABEL.format("$h$").replace(" / ", " /\n"), fontsize=6)
     lower.set_ylabel(_ADHESION_LABEL)
     lower.set_xlabel(LENGTH_LABEL.format(f"distance from the {place} along $x$"))
 

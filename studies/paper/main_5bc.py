@@ -22,7 +22,7 @@ from crackfront.core.arrays import Array
 from crackfront.core.cycle.follow import Load
 from crackfront.core.cycle.record import Recorder
 from crackfront.core.outcome import Status
-from crackfront.plots.style import BLACK, ORANGE, PAGE, blank_figure, house_style
+from crackfront.plots.style import BLACK, ORANGE, PAGE, blank_figure, explain, house_style
 from crackfront.simulate.simulation import simulation_adhesion, simulation_field
 from studies.paper.drawing import BRANCHES, name_panels
 from studies.paper.figure import Check, Figure, Progress, close_to, values_of
@@ -274,11 +274,19 @@ _MICRO, _MILLI = 1e6, 1e3
 def nanodiamond_figure(contact: NanodiamondContact) -> Drawing:
     """Perimeters of the approach beside the loop."""
     with house_style():
-        figure = blank_figure(PAGE, 0.5 * PAGE)
+        figure = blank_figure(PAGE, 0.54 * PAGE)
         left, right = figure.subplots(1, 2)
         _draw_perimeters(left, contact)
         _draw_loop(right, contact)
         name_panels((left, right), "bc")
+        own, whole = contact.elastic_energy * _MILLI, contact.whole_elastic_energy * _MILLI
+        explain(
+            figure,
+            "b: the edge of the contact at equal steps of the penetration; c: dotted: JKR with the "
+            "apparent works of adhesion of the branches; broken: JKR with "
+            f"$k={PAPER_FACTOR:g}$ and the $e_\\mathrm{{el}}$ of this surface, {own:.2f} mJ/m$^2$ "
+            f"(all wavelengths: {whole:.2f})",
+        )
         return figure
 
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass, fields
 from typing import NamedTuple
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
 from numpy.typing import NDArray
 
@@ -221,14 +222,15 @@ def _ordered_pairs(length: Array, onset: Array, is_bound: NDArray[np.bool_]) -> 
 def parametric_study_figure(study: ParametricStudy) -> Drawing:
     """Hysteresis against disorder with the spectra, k against disorder, k against size."""
     from crackfront.plots.sweep import (
-        POINTS_EXPLAINED,
-        SHAPES_EXPLAINED,
         SHIFTS_EXPLAINED,
+        arrows_explained,
         draw_factor_by_disorder,
         draw_factor_by_length,
         draw_hysteresis,
-        draw_spectra,
+        points_explained,
+        pooled_explained,
         set_factor_limits,
+        shapes_explained,
     )
 
     fit = study_fit(study)
@@ -236,19 +238,35 @@ def parametric_study_figure(study: ParametricStudy) -> Drawing:
         figure = blank_figure(PAGE, 0.68 * PAGE)
         panels = figure.subplot_mosaic([["a", "b"], ["a", "c"]], width_ratios=(1.2, 1))
         draw_hysteresis(panels["a"], fit)
-        draw_spectra(panels["a"].inset_axes((0.7, 0.12, 0.28, 0.26)), fit)
+        _draw_inset(panels["a"], fit)
         draw_factor_by_disorder(panels["b"], fit)
         draw_factor_by_length(panels["c"], fit)
         for name in ("b", "c"):
             set_factor_limits(panels[name], fit)
         panels["c"].set_ylabel("mean $k$")
         # One legend for all panels: that of b has the pooled k besides.
-        if legend := panels["a"].get_legend():
-            legend.remove()
-        figure.legend(*legend_entries(panels["b"]), loc="outside upper center", ncols=3)
-        explain(figure, f"{POINTS_EXPLAINED}; {SHIFTS_EXPLAINED} (b); {SHAPES_EXPLAINED} (c)")
+        figure.legend(*legend_entries(panels["b"]), loc="outside upper center", ncols=4)
+        texts = [
+            *points_explained(fit),
+            *arrows_explained(fit),
+            "inset: spectra",
+            f"{SHIFTS_EXPLAINED} (b)",
+        ]
+        texts += [*pooled_explained(fit), *(f"{text} (c)" for text in shapes_explained(fit))]
+        explain(figure, "; ".join(texts))
         name_panels(panels.values(), "abc")
         return figure
+
+
+def _draw_inset(axes: Axes, fit: SweepFit) -> None:
+    """Spectra in small print, below the points of hysteresis."""
+    from crackfront.plots.sweep import draw_spectra
+
+    inset = axes.inset_axes((0.68, 0.12, 0.3, 0.27))
+    draw_spectra(inset, fit)
+    inset.tick_params(labelsize=6, pad=1.5)
+    inset.set_xlabel("$q$ (reduced)", labelpad=0, fontsize=6)
+    inset.yaxis.label.set_fontsize(6)
 
 
 FIGURE = Figure(

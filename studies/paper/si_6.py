@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -18,7 +18,15 @@ from crackfront.core.synthesis import gaussian_field
 from crackfront.core.variables import variable
 from crackfront.data.section import Count, Positive, Seed, refusal
 from crackfront.plots import densities
-from crackfront.plots.style import BLACK, BLUE, COLUMN, VERMILION, blank_figure, house_style
+from crackfront.plots.style import (
+    BLACK,
+    BLUE,
+    COLUMN,
+    VERMILION,
+    blank_figure,
+    explain,
+    house_style,
+)
 from studies.paper.drawing import DOTTED, write_beside
 from studies.paper.figure import Check, Figure, Progress, close_to, values_of
 from studies.paper.film import CONVERTED_LABEL, POINTS_PER_DECADE, FilmDensities, FilmParameters
@@ -195,22 +203,29 @@ def _micrometres(low: float, high: float) -> str:
 def synthetic_film_figure(record: SyntheticFilm) -> Drawing:
     """Profile densities of the film and of the synthetic surfaces, with the included scales."""
     with house_style():
-        figure, q = blank_figure(COLUMN, 0.9 * COLUMN), record.wavevector
+        figure, q = blank_figure(COLUMN, COLUMN), record.wavevector
         axes = figure.add_subplot()
         densities.set_density_scales(axes, q)
-        axes.plot(q, record.profile, color=VERMILION, label="nanodiamond, ideal spectrum")
-        axes.plot(q, record.converted, color="0.5", dashes=(4, 2), label=CONVERTED_LABEL)
+        # Wider and paler than what lies on it.
+        wide: dict[str, Any] = {"color": VERMILION, "linewidth": 2.4, "alpha": 0.5, "zorder": 1.5}
+        axes.plot(q, record.profile, label="nanodiamond, ideal spectrum", **wide)
+        axes.plot(q, record.converted, color="0.3", dashes=(4, 2), label=CONVERTED_LABEL)
         if record.measured_wavevector.size:
             points, label = record.measured_wavevector, "nanodiamond, measured"
             axes.plot(points, record.measured_profile, ".", color=BLACK, markersize=2, label=label)
         label = f"synthetic surfaces, mean of {record.realisations}"
         axes.plot(record.mode, record.synthetic, color=BLUE, linewidth=0.8, label=label)
-        _draw_end(axes, f"tile {1e6 * record.side:.3g} µm", record.side, "left")
-        _draw_end(axes, f"cutoff {1e6 * record.shortest:.3g} µm", record.shortest, "right")
+        _draw_end(axes, f"tile {1e6 * record.side:.0f} µm", record.side, "left")
+        _draw_end(axes, f"cutoff {1e9 * record.shortest:.0f} nm", record.shortest, "right")
         axes.set(ylabel=densities.PROFILE_LABEL, xlabel=densities.WAVEVECTOR_LABEL)
         axes.set_ylim(top=20 * float(record.profile.max()))
         densities.add_wavelengths(axes)
         axes.legend(loc="lower left", bbox_to_anchor=(0.07, 0.0))
+        explain(
+            figure,
+            "density of heights along a line; dotted: side of the tile and shortest wavelength of "
+            "the synthetic surfaces",
+        )
         return figure
 
 

@@ -14,6 +14,7 @@ from crackfront.analysis.sweep import fit_sweep
 from crackfront.analysis.table import SweepTable
 from crackfront.core.adhesion import larkin_length
 from crackfront.core.spectrum import SelfAffineSpectrum
+from crackfront.plots.parts import spectrum_label
 from crackfront.plots.style import COLOURS, MARKERS, save_figure
 from crackfront.plots.sweep import factor_figure, hysteresis_figure
 
@@ -136,14 +137,14 @@ def line_table():
 
 def test_straight_fronts_share_the_colour_of_their_spectrum_and_differ_by_marker(line_table):
     fit = fit_sweep(line_table, lowest_elastic_energy=0.01, highest_elastic_energy=0.04)
-    axes = hysteresis_figure(fit).axes[0]
-    points = [container.lines[0] for container in axes.containers]
+    figure = hysteresis_figure(fit)
+    points = [container.lines[0] for container in figure.axes[0].containers]
     assert [to_hex(line.get_color()).upper() for line in points] == [
         *[COLOURS[0]] * 3,
         *[COLOURS[1]] * 3,
     ]
     assert [line.get_marker() for line in points] == list(MARKERS[:3]) * 2
-    told = [text.get_text() for text in axes.get_legend().get_texts()]
+    told = [text.get_text() for text in figure.legends[0].get_texts()]
     assert [text for text in told if "flat" in text] == [
         "flat, $\\lambda_\\mathrm{s}=1$",
         "flat, $\\lambda_\\mathrm{s}=2$",
@@ -182,10 +183,39 @@ def test_uncorrelated_sites_stand_at_their_e_el_beside_a_law_of_no_disorder(line
         np.testing.assert_allclose(container.lines[0].get_xdata(), [0.04, 0.16])
     assert "e_" in axes.get_xlabel()
     left = factor_figure(fit).axes[0]
-    labels = [str(line.get_label()) for line in left.get_lines()]
-    assert [one for one in labels if "law" in one] == [
-        rf"law, $s=0$ ($e_\mathrm{{el}}={energy}$)" for energy in (0.01, 0.04)
+    labels = [text.get_text() for text in left.get_legend().get_texts()]
+    assert [one for one in labels if "law" in one] == ["law, $s=0$"]
+    assert [one for one in labels if "e_" in one] == [
+        rf"$e_\mathrm{{el}}={energy}\,w_\mathrm{{int}}$" for energy in (0.01, 0.04)
     ]
+
+
+def test_a_spectrum_without_a_hurst_exponent_is_named_without_its_springs(line_table):
+    named = np.array([f"ring-L{one:g}" for one in (0.3, 3, 30)] * 2)
+    ring = replace(line_table, spectrum=named, hurst=np.full(6, np.nan))
+    assert spectrum_label(ring, 0) == "ring, $\\lambda_\\mathrm{s}=1$"
+
+
+def explanation(figure):
+    """What a figure says below itself, in one line."""
+    return figure.get_supxlabel().replace("\n", " ")
+
+
+def test_a_figure_explains_only_what_it_shows(table):
+    limits = {"lowest_elastic_energy": 0.002, "highest_elastic_energy": 0.15}
+    whole = fit_sweep(table, **limits)
+    assert "open" not in explanation(hysteresis_figure(whole))
+    assert "grey line" not in explanation(factor_figure(whole))
+    risen = replace(table, w_retr=table.w_appr + 5 * table.e_el)
+    assert "arrows" in explanation(hysteresis_figure(whole))
+    assert "arrows" not in explanation(hysteresis_figure(fit_sweep(risen, **limits)))
+    doubled = {"short_cutoff": 2 * table.short_cutoff[0], "roll_off": 2 * table.roll_off[0]}
+    columns = {name: getattr(table, name).copy() for name in ("short_cutoff", "roll_off", "hurst")}
+    for name, value in doubled.items():
+        columns[name][1] = value
+    columns["hurst"][1] = columns["hurst"][0]
+    alike = fit_sweep(replace(table, **columns), **limits)
+    assert "grey line: spectra of one shape (b)" in explanation(factor_figure(alike))
 
 
 def test_points_are_the_means_over_realisations(table, fit):
@@ -229,9 +259,8 @@ def test_spectra_differ_by_colour_and_marker(table, fit):
     assert [line.get_marker() for line in filled] == list(MARKERS[:4])
 
 
-def test_the_inset_compares_spectra_of_equal_elastic_energy(table, fit):
-    (inset,) = hysteresis_figure(fit).axes[0].child_axes
-    for index, line in enumerate(inset.get_lines()):
+def test_spectra_are_compared_at_equal_elastic_energy(table, fit):
+    for index, line in enumerate(hysteresis_figure(fit).axes[1].get_lines()):
         wavevector, density = (np.asarray(values)[:-1] for values in line.get_data())
         spectrum = SelfAffineSpectrum(
             table.short_cutoff[index], table.roll_off[index], table.hurst[index]

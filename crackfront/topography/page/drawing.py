@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure, FigureBase
-from matplotlib.ticker import EngFormatter
 
 from crackfront.core import jkr
 from crackfront.core.arrays import Array
@@ -22,7 +21,7 @@ from crackfront.plots.densities import (
     draw_dominant_scales,
     set_density_scales,
 )
-from crackfront.plots.parts import label_panel
+from crackfront.plots.parts import ON_WHITE, label_panel
 from crackfront.plots.style import (
     BLACK,
     BLUE,
@@ -33,6 +32,7 @@ from crackfront.plots.style import (
     blank_figure,
     house_style,
 )
+from crackfront.plots.units import scaled_unit
 from crackfront.topography.density.densities import Density
 from crackfront.topography.prediction.prediction import Prediction
 from crackfront.topography.scan.reading import Measurement
@@ -174,7 +174,7 @@ def _draw_isotropic(axes: Axes, surface: MeasuredSurface, _: Prediction) -> None
     _draw_limits(axes, surface, named=False)
     axes.set_ylabel(ISOTROPIC_LABEL)
     add_wavelengths(axes)
-    axes.legend(loc="lower left")
+    axes.legend(loc="lower left", **ON_WHITE)
 
 
 def _draw_limits(axes: Axes, surface: MeasuredSurface, *, named: bool) -> None:
@@ -187,8 +187,8 @@ def _draw_limits(axes: Axes, surface: MeasuredSurface, *, named: bool) -> None:
             is_last = place > _LAST * axes.get_xlim()[1]
             if named:
                 side, aside = ("right", -1.5) if is_last else ("left", 1.5)
-                beside = (aside, -2 - 6 * index), ("data", "axes fraction"), "offset points"
-                look: dict[str, Any] = {"ha": side, "va": "top", "fontsize": 5, "color": colour}
+                beside = (aside, -2 - 7 * index), ("data", "axes fraction"), "offset points"
+                look: dict[str, Any] = {"ha": side, "va": "top", "fontsize": 6, "color": colour}
                 axes.annotate(limit.cause, (place, 1.0), *beside, **look)
 
 
@@ -204,7 +204,7 @@ def _draw_profiles(axes: Axes, surface: MeasuredSurface, _: Prediction) -> None:
     axes.set_ylim(low, high * (high / low) ** (0.12 * len(surface.scans)))
     _draw_limits(axes, surface, named=True)
     axes.set_ylabel(PROFILE_LABEL)
-    axes.legend(loc="lower left")
+    axes.legend(loc="lower left", **ON_WHITE)
 
 
 def _draw_density(axes: Axes, index: int, density: Density, name: str) -> None:
@@ -229,7 +229,7 @@ def _draw_forces(axes: Axes, _: Surface, prediction: Prediction) -> None:
     scales = Scales(prediction.radius, w_int, prediction.contact_modulus)
     strongest = max(prediction.w_retr.high, w_int)
     radius = np.linspace(1e-3, 1.15 * jkr.radius_at_force(0.0, strongest / w_int), 400)
-    unit, newtons = _scaled_unit("N", scales.force)
+    unit, newtons = scaled_unit("N", scales.force)
     place = 1e6 * radius * scales.lateral
 
     def force(adhesion: float) -> Array:
@@ -259,8 +259,8 @@ _DRAWINGS = {"a": _draw_isotropic, "b": _draw_profiles, "c": _draw_forces}
 def draw_scan(axes: Axes, measurement: Measurement, stripes: Sequence[int] = ()) -> None:
     """A map in colours, or heights along a line; its density leaves out waves along `stripes`."""
     low, high = (float(end) for end in np.quantile(measurement.heights, _SHOWN))
-    unit, scale = _scaled_unit("m", max(abs(low), abs(high)))
-    lateral, side = _scaled_unit("m", max(measurement.size))
+    unit, scale = scaled_unit("m", max(abs(low), abs(high)))
+    lateral, side = scaled_unit("m", max(measurement.size))
     channel = f", channel {measurement.channel}" if measurement.channel else ""
     levelling = f"without {measurement.levelling}" if measurement.levelling else "as it is"
     left_out = " and ".join("xy"[axis] for axis in stripes)
@@ -287,9 +287,3 @@ def draw_scan(axes: Axes, measurement: Measurement, stripes: Sequence[int] = ())
     axes.set_ylabel(f"y ({lateral})")
     bar = axes.get_figure().colorbar(image, ax=axes, extend="both", shrink=0.9)  # type: ignore[union-attr]
     bar.set_label(label)
-
-
-def _scaled_unit(unit: str, value: float) -> tuple[str, float]:
-    """Unit with the prefix that a value calls for, and what one of it is without the prefix."""
-    power = min(max(3 * math.floor(math.log10(value * (1 + 1e-9)) / 3), -12), 0)
-    return f"{EngFormatter.ENG_PREFIXES[power]}{unit}", 10.0**power

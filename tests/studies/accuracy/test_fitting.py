@@ -9,7 +9,7 @@ import pytest
 
 from crackfront.simulate.front_sizes import LAW_SIZE
 from crackfront.simulate.laws import read_laws
-from studies.accuracy.fitting import fit_laws, laws_text
+from studies.accuracy.fitting import fit_laws, laws_figure, laws_text
 from studies.accuracy.scenes import HELD_OUT, SCENES
 from studies.accuracy.study import Errors, SceneErrors, scene_errors
 
@@ -28,12 +28,13 @@ def rare(rng, shape):
     return math.sqrt(10) * (rng.uniform(size=shape) < 0.1) * rng.choice([-1, 1], size=shape)
 
 
-def synthetic_study(bias, scatter, noise=gaussian, n_realisation=400, seed=5):
+def synthetic_study(bias, scatter, noise=gaussian, n_realisation=400, seed=5, scene=MODERATE):
     """A study whose errors of k have a given bias and scatter, by setting and value."""
     rng = np.random.default_rng(seed)
     one, signs = np.ones(n_realisation), np.array([-1, 1])
     errors, of_few_sites = [], 0.0
-    for setting, value, numerics in MODERATE.single_trials:
+    few = 5.0 if scene.elastic_energy > 0.2 else 2.2
+    for setting, value, numerics in scene.single_trials:
         if setting == "finer":
             continue
         of_k = scatter(setting, value) * noise(rng, (n_realisation, 2)) + signs * bias(
@@ -41,13 +42,13 @@ def synthetic_study(bias, scatter, noise=gaussian, n_realisation=400, seed=5):
         )
         if setting != "sites":
             of_k += of_few_sites
-        elif value == 2.2:
+        elif value == few:
             of_few_sites = of_k
-        adhesion = MODERATE.elastic_energy * of_k
+        adhesion = scene.elastic_energy * of_k
         settings = {name: of for name, of in asdict(numerics).items() if name != "angles"}
         errors.append(Errors(setting, value, one, adhesion, one, one, one, **settings))
     reference = np.tile([0.9, 1.0], (n_realisation, 1))
-    return SceneErrors(MODERATE, tuple(errors), reference, one)
+    return SceneErrors(scene, tuple(errors), reference, one)
 
 
 def test_rare_avalanches_count_with_their_mean_square():
@@ -73,6 +74,16 @@ def test_the_fit_finds_the_law_behind_the_errors():
     assert laws["cubic", 1].scatter == pytest.approx((math.log(0.3), -3), abs=0.2)
     assert laws["cubic", 1].error(4, LAW_SIZE) == pytest.approx(0.3 / 64, rel=0.1)
     assert laws["cubic", 1].error(4, 4 * LAW_SIZE) == pytest.approx(0.15 / 64, rel=0.1)
+
+
+def test_every_value_that_any_scene_has_tried_has_a_tick():
+    scenes = MODERATE, SCENES["chemical-0.4"]
+    studies = [
+        synthetic_study(lambda *_: 0.01, lambda *_: 0.01, n_realisation=8, scene=scene)
+        for scene in scenes
+    ]
+    cubic = laws_figure(studies, list(fit_laws(studies))).axes[1]
+    assert cubic.get_xticks().tolist() == [2, 3, 4, 5, 6, 8]
 
 
 def test_laws_are_written_in_full(tmp_path):

@@ -22,12 +22,13 @@ from studies.boundary_elements.averages import (
     range_limits,
     rough_settings,
     rows_by_zone,
+    settings,
 )
 from studies.boundary_elements.differences import Differences
 from studies.boundary_elements.hysteresis import Hysteresis
 from studies.boundary_elements.page import kept_validity, page_parts
 from studies.boundary_elements.parameters import load_validation, validation_cases
-from studies.boundary_elements.picture import ValidationPicture
+from studies.boundary_elements.picture import ValidationPicture, hysteresis_figure
 from studies.pages import kept_parts
 
 ROOT = Path(__file__).parents[3]
@@ -113,6 +114,19 @@ def test_surfaces_that_the_law_has_not_seen_lie_inside_its_interval(kept):
             apart = np.mean([value for seed, value in rest.items() if seed in left]) - 0.0018
             inside.append(abs(apart) < math.hypot(by_law, float(by_surface)))
     assert np.mean(inside) >= 0.9
+
+
+def test_a_ratio_of_one_surface_is_drawn_without_a_bar(kept):
+    _, ratios = hysteresis_figure(kept, 0.15).axes
+    names = [text.get_text() for text in ratios.get_legend().get_texts()]
+    assert names[0].startswith("flat, ")
+    assert "H = 0.8" in names[1]
+    near, _, others, _ = ratios.containers
+    shown = rough_settings(settings(kept))
+    assert len(near[0].get_xdata()) + len(others[0].get_xdata()) == len(shown)
+    bars = [bar for one in (near, others) for bar in one[2][0].get_segments() if len(bar)]
+    assert len(bars) == sum(one.surfaces > 1 for one in shown) < len(shown)
+    assert min(np.ptp(bar[:, 1]) for bar in bars) > 0
 
 
 def test_the_pages_show_the_kept_comparisons_with_their_commits(monkeypatch):

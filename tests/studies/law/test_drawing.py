@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 from click.testing import CliRunner
 
-from crackfront.analysis.law import TYPICAL_BREADTH, law_value, shipped_law
+from crackfront.analysis.law import LEAST_SIZE, TYPICAL_BREADTH, law_value, shipped_law
 from studies.__main__ import main
 from studies.law.cells import measured_cells
 from studies.law.drawing import LawPoints, law_figure, spectra_points
@@ -42,7 +42,10 @@ def test_the_figure_collapses_fronts_and_spheres_on_one_curve():
     )
     labels = [text.get_text() for text in figure.legends[0].get_texts()]
     assert len(labels) == len(fronts) + 2
-    assert "$H=0.8$" in labels
+    assert {"$H=0.8$", "flat, chemical", "$H=0.9$, then $0.3$"} <= set(labels)
+    assert (curve[0, 0], left.get_lines()[1].get_xdata()[-1]) == (LEAST_SIZE, LEAST_SIZE)
+    looks = {(one[0].get_color(), one[0].get_marker()) for one in left.containers}
+    assert len(looks) == len(fronts) + 1
     theories = [text.get_text() for text in right.get_legend().get_texts()]
     assert [one[:5] for one in theories if "k = " in one] == ["$k = ", "$k = "]
 
