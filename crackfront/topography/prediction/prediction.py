@@ -19,7 +19,12 @@ from crackfront.topography.prediction.conditions import theory_verdict, zero_loa
 from crackfront.topography.prediction.remarks import Remark, Verdict, remark_text
 from crackfront.topography.prediction.surface_remarks import disagreements, measure_next
 from crackfront.topography.prediction.texts import ENERGY, estimate_text, wavelengths_text
-from crackfront.topography.prediction.works import Works, implied_work_of_adhesion, works
+from crackfront.topography.prediction.works import (
+    Works,
+    implied_work_of_adhesion,
+    least_work_of_adhesion,
+    works,
+)
 from crackfront.topography.spectrum.stated import StatedSurface, Surface
 
 
@@ -189,6 +194,12 @@ def predicted(
                 f"{prefixed('N', pull_off)}: check the force, the radius and the modulus."
             )
             remarks.append(Remark("w_int by pull-off", "reservation", sentence))
+        elif implied.low <= least_work_of_adhesion(surface, scales):
+            sentence = (
+                f"The interval of w_int by pull-off begins at {prefixed('J/m2', implied.low)}, "
+                "below which the theory does not apply: smaller values are not excluded."
+            )
+            remarks.append(Remark("w_int by pull-off", "note", sentence))
     return Prediction(
         surface=surface,
         verdict=theory_verdict(surface, scales, attraction_range, remarks),

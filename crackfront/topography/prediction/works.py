@@ -135,10 +135,18 @@ def works(surface: Surface, scales: Scales) -> Works:
     )
 
 
-def implied_work_of_adhesion(surface: Surface, scales: Scales, measured: float) -> Estimate[float]:
-    """The w_int at which the predicted w_retr is the measured one; NaN if none (Units: J / m^2)."""
+def least_work_of_adhesion(surface: Surface, scales: Scales) -> float:
+    """The w_int below which the theory does not apply (Units: J / m^2)."""
     energy = surface.conformity_energy(scales.contact_modulus)
-    least = 1.001 * max(energy.low, energy.value / LARGEST_ENERGY)
+    return 1.001 * max(energy.low, energy.value / LARGEST_ENERGY)
+
+
+def implied_work_of_adhesion(surface: Surface, scales: Scales, measured: float) -> Estimate[float]:
+    """The w_int at which the predicted w_retr is the measured one; NaN if none (Units: J / m^2).
+
+    Its interval ends at :func:`least_work_of_adhesion`.
+    """
+    least = least_work_of_adhesion(surface, scales)
 
     def solved(end: str) -> float:
         def excess_adhesion(adhesion: float) -> float:
@@ -149,7 +157,6 @@ def implied_work_of_adhesion(surface: Surface, scales: Scales, measured: float) 
         if excess_adhesion(most) < 0:
             return math.nan
         if excess_adhesion(least) > 0:
-            # With a lower one the theory does not apply: an interval ends there.
             return math.nan if end == "value" else least
         return float(scipy.optimize.brentq(excess_adhesion, least, most, rtol=1e-4))
 

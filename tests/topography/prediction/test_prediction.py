@@ -17,7 +17,12 @@ from crackfront.topography.options import reading_options
 from crackfront.topography.page.report import report_text
 from crackfront.topography.prediction.prediction import predicted
 from crackfront.topography.prediction.surface_remarks import spectrum_remarks
-from crackfront.topography.prediction.works import reduced_spectrum, surface_spectrum, works
+from crackfront.topography.prediction.works import (
+    least_work_of_adhesion,
+    reduced_spectrum,
+    surface_spectrum,
+    works,
+)
 from crackfront.topography.spectrum.measures import read_surface
 from tests.topography.made import DETAIL, OVERVIEW, SCENE
 
@@ -174,6 +179,17 @@ def test_a_work_of_adhesion_with_which_the_theory_does_not_apply_is_implied_by_n
             scene = replace(SCENE, work_of_adhesion=found.value)
             assert predicted(surface, scene).verdict.outcome != "does not apply"
             assert found.low <= found.value <= found.high
+
+
+def test_an_implied_interval_that_ends_with_the_theory_says_so(surface):
+    least = least_work_of_adhesion(surface, SCENE)
+    weak = predicted(surface, replace(SCENE, work_of_adhesion=1.01 * least))
+    found = predicted(surface, SCENE, pull_off=weak.pull_off_force.value)
+    assert found.implied_work_of_adhesion.low == least
+    told = "below which the theory does not apply: smaller values are not excluded."
+    assert any(told in one for one in sentences(found, "note"))
+    strong = predicted(surface, SCENE, pull_off=predicted(surface, SCENE).pull_off_force.value)
+    assert not any(told in one for one in sentences(strong, "note"))
 
 
 def test_scans_smaller_than_the_contact_are_told(surface, prediction):
