@@ -19,8 +19,9 @@ from crackfront.cli.report import (
 from crackfront.data.arguments import nearest_name
 from crackfront.data.bounds import Range
 from crackfront.data.digests import forget_sums
-from crackfront.data.files import read_attributes, write_dataset, write_sums
+from crackfront.data.files import read_attributes, write_dataset, write_sums, write_text
 from crackfront.data.provenance import provenance
+from crackfront.plots.style import save_figure
 from crackfront.simulate.run import compile_solver
 from crackfront.topography.scan.reading import read_measurements
 from studies.accuracy import energies as synthetic
@@ -29,8 +30,10 @@ from studies.accuracy import loops as rigs
 from studies.accuracy import movement as settled
 from studies.accuracy import predictions as films
 from studies.accuracy import scans as instrument
+from studies.accuracy.drawing import figures
 from studies.accuracy.files import STUDIES
-from studies.accuracy.report import write_report
+from studies.accuracy.fitting import fit_laws, laws_text
+from studies.accuracy.report import error_tables, measured
 from studies.accuracy.scenes import SCENES
 from studies.pages import keep_option, keep_parts, output_option, tell
 
@@ -79,7 +82,17 @@ def scene(scene: str, output: Path, study: str, realisations: int) -> None:
 def report(output: Path, keep: bool) -> None:
     """Fit the laws, write the tables, and draw the figures of what was measured."""
     forget_sums(output)
-    tables = write_report(output, click.echo)
+    found = measured(output)
+    tables = error_tables(found)
+    parts = [f"## {name}\n\n{table}\n" for name, table in tables.items()]
+    write_text(output / "accuracy.md", "\n".join(["# Measured errors\n", *parts]))
+    click.echo(f"tables: {output / 'accuracy.md'}")
+    if laws := list(fit_laws(found.fitted)):
+        write_text(output / "laws.csv", laws_text(laws))
+        click.echo(f"laws: {output / 'laws.csv'}")
+    for name, figure in figures(found, laws).items():
+        for path in save_figure(figure, output / name):
+            click.echo(f"figure: {path}")
     write_sums(output)
     if keep:
         sources = "studies.accuracy.report", "studies.accuracy.files"

@@ -1,23 +1,17 @@
-"""From measured errors to laws: how they are fitted, written and drawn."""
+"""From measured errors to laws: how they are fitted and written."""
 
 from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
-from matplotlib.ticker import NullFormatter
 from scipy.optimize import minimize_scalar
 
 from crackfront.core.arrays import Array
-from crackfront.plots import style
-from crackfront.plots.parts import label_panel
-from crackfront.simulate.front_sizes import LAW_SIZE
 from crackfront.simulate.laws import SETTINGS, ErrorLaw, SettingName, abscissa
-from studies.accuracy.study import SceneErrors, rms
+from studies.accuracy.study import SceneErrors
 
 _LEAST = 3e-4
 """Least error of k that counts, as nobody asks for less."""
@@ -45,14 +39,6 @@ _STEEPEST = 10.0
 _NO_BIAS = (-99.0, 0.0)
 """Coefficients of a bias that is not seen."""
 
-_AXES: dict[SettingName, str] = {
-    "sites": "sites per short cutoff",
-    "cubic": "cubic samples per short cutoff",
-    "linear": "linear samples per short cutoff",
-    "pixels": "pixels per short cutoff",
-    "tolerance": r"tolerance / $w_\mathrm{int}$",
-}
-
 
 def fit_laws(studies: Iterable[SceneErrors]) -> Iterator[ErrorLaw]:
     """Law of every setting, amplitude and branch, fitted to the errors of scenes.
@@ -69,7 +55,7 @@ def fit_laws(studies: Iterable[SceneErrors]) -> Iterator[ErrorLaw]:
 
 def _avalanche(study: SceneErrors) -> float:
     """Typical size of an avalanche in k, from settings that leave little scatter."""
-    deviations = np.concatenate([_setting_errors(study, setting)[1] for setting in SETTINGS])
+    deviations = np.concatenate([setting_errors(study, setting)[1] for setting in SETTINGS])
     deviations -= deviations.mean(axis=1, keepdims=True)
     few = np.mean(deviations**2, axis=1, keepdims=True) < _FEW**2
     kept = np.where(few, deviations, 0.0)
@@ -78,7 +64,7 @@ def _avalanche(study: SceneErrors) -> float:
     return float(np.sqrt(np.sum(kept**4) / total)) if total > 0 else 0.0
 
 
-def _setting_errors(study: SceneErrors, setting: SettingName) -> tuple[Array, Array]:
+def setting_errors(study: SceneErrors, setting: SettingName) -> tuple[Array, Array]:
     """Values of a setting, and the errors of k that it adds, (value, realisation, branch)."""
     tried = [errors for errors in study.errors if errors.setting == setting]
     without = {
@@ -94,7 +80,7 @@ def _setting_errors(study: SceneErrors, setting: SettingName) -> tuple[Array, Ar
 
 def _laws(study: SceneErrors, setting: SettingName, avalanche: float) -> Iterator[ErrorLaw]:
     """Laws of one setting, the approach before the retraction."""
-    tried, values = _setting_errors(study, setting)
+    tried, values = setting_errors(study, setting)
     x = abscissa(setting, tried)
     n_realisation = values.shape[1]
     bias = np.abs(values.mean(axis=1))
@@ -138,59 +124,3 @@ def laws_text(laws: Iterable[ErrorLaw]) -> str:
         coefficients = [f"{value:.4f}" for value in (*law.bias, *law.scatter, law.avalanche)]
         writer.writerow([*(getattr(law, name) for name in columns), *coefficients])
     return text.getvalue()
-
-
-def laws_figure(studies: Sequence[SceneErrors], laws: Sequence[ErrorLaw]) -> Figure:
-    """Measured errors of k of w_retr of one shape against every setting, and the fitted laws."""
-    with style.house_style():
-        figure = style.blank_figure(style.PAGE, 1.1 * style.COLUMN)
-        panels = figure.subplots(2, 3).ravel()
-        for axes, setting, letter in zip(panels, SETTINGS, "abcde", strict=False):
-            _draw_laws(axes, setting, studies, laws)
-            label_panel(axes, letter)
-        for axes in panels[::3]:
-            axes.set_ylabel(r"rms error of $w_\mathrm{retr}$ / $e_\mathrm{el}$")
-        panels[-1].set_axis_off()
-        entries = panels[0].get_legend_handles_labels()
-        panels[-1].legend(*entries, loc="center left", title=r"$e_\mathrm{el}/w_\mathrm{int}$")
-        style.explain(
-            figure,
-            r"lines: the fitted laws, bias of $w_\mathrm{retr}$ and scatter of both branches "
-            "together; broken line: an error of 0.01",
-        )
-        return figure
-
-
-def _draw_laws(
-    axes: Axes, setting: SettingName, studies: Sequence[SceneErrors], laws: Sequence[ErrorLaw]
-) -> None:
-    """Draw the errors of one setting and their laws, a colour a scene."""
-    tried: set[float] = set()
-    for study, colour, marker in zip(studies, style.COLOURS, style.MARKERS, strict=False):
-        scene = study.scene
-        values, found = _setting_errors(study, setting)
-        tried.update(values.tolist())
-        axes.plot(
-            values,
-            [rms(errors[:, 1]) for errors in found],
-            marker=marker,
-            linestyle="none",
-            color=colour,
-            label=f"{scene.elastic_energy:g}",
-        )
-        law = next(
-            law
-            for law in laws
-            if (law.shape, law.elastic_energy, law.setting, law.direction)
-            == (scene.shape, scene.elastic_energy, setting, -1)
-        )
-        between = np.geomspace(values.min(), values.max(), 60)
-        axes.plot(between, [law.error(x, LAW_SIZE) for x in between], color=colour)
-    axes.axhline(0.01, color=style.BLACK, linewidth=0.4, dashes=(4, 2))
-    axes.set_yscale("log")
-    if setting != "sites":
-        axes.set_xscale("log")
-    if setting not in ("sites", "tolerance"):
-        axes.set_xticks(sorted(tried), [f"{value:g}" for value in sorted(tried)])
-        axes.xaxis.set_minor_formatter(NullFormatter())
-    axes.set_xlabel(_AXES[setting])

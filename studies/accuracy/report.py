@@ -1,25 +1,18 @@
-"""Measured errors as a person reads them: tables, and time against error."""
+"""Measured errors as a person reads them, in tables."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
-from dataclasses import replace
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TypeVar
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
-from matplotlib.ticker import LogLocator
 
 from crackfront.core.arrays import Array
-from crackfront.data.files import write_text
-from crackfront.plots import style
-from crackfront.plots.parts import label_decimals, label_panel
 from studies.accuracy.averages import Coverage, Sample
 from studies.accuracy.files import read_errors, read_study
-from studies.accuracy.fitting import fit_laws, laws_figure, laws_text
-from studies.accuracy.scenes import SCENES, Progress, Scene
+from studies.accuracy.scenes import SCENES, Scene
 from studies.accuracy.study import Errors, SceneErrors, pareto_front, rms
 from studies.pages import markdown_table
 
@@ -28,25 +21,35 @@ Found = TypeVar("Found")
 _TARGETS = (0.1, 0.03, 0.01, 0.003)
 """Relative errors of the hysteresis whose cheapest settings the report names."""
 
-_SHOWN = ("chemical-0.0025", "chemical-0.04", "flat-0.16", "h03-0.04")
-"""Scenes of the figure of time against error."""
 
-_NAMES = {
-    "sites": "sites of the front",
-    "cubic": "samples, cubic pieces",
-    "linear": "samples, linear pieces",
-    "pixels": "pixels of the tile",
-    "tolerance": "tolerance of the force",
-    "requested": "chosen for an error",
-    "finer": "finer than the reference",
-}
+@dataclass(frozen=True, slots=True)
+class Measured:
+    """What a folder holds: every study by the names of its scenes."""
+
+    settings: dict[str, SceneErrors]
+    requested: dict[str, SceneErrors]
+    unseen: dict[str, SceneErrors]
+    samples: dict[str, tuple[Scene, tuple[Sample, ...]]]
+    coverages: dict[str, tuple[Scene, tuple[Coverage, ...]]]
+
+    @property
+    def scenes(self) -> dict[str, SceneErrors]:
+        """Errors of single settings and of requests, by the names of their scenes."""
+        both = self.settings | self.requested
+        found = {name: both[name] for name in SCENES if name in both}
+        for name in self.settings.keys() & self.requested.keys():
+            errors = self.settings[name].errors + self.requested[name].errors
+            found[name] = replace(self.settings[name], errors=errors)
+        return found
+
+    @property
+    def fitted(self) -> list[SceneErrors]:
+        """Those to which laws are fitted."""
+        return [study for study in self.settings.values() if study.scene.varies_single]
 
 
-def write_report(folder: Path, progress: Progress) -> dict[str, str]:
-    """Fit the laws, write the tables and draw the figures of all studies that a folder holds.
-
-    Returns the tables by their names. A ValueError says if the folder holds no study.
-    """
+def measured(folder: Path) -> Measured:
+    """All studies that a folder holds; a ValueError says if it holds none."""
     single, requested, unseen = (
         _stored(folder, study, read_errors) for study in ("settings", "requested", "unseen")
     )
@@ -54,39 +57,27 @@ def write_report(folder: Path, progress: Progress) -> dict[str, str]:
     coverages = _stored(folder, "coverage", lambda path: read_study(path, Coverage))
     if not (single or requested or unseen or samples or coverages):
         raise ValueError(f"{folder} holds no errors; run python -m studies accuracy scene")
-    studies = {name: (single | requested)[name] for name in SCENES if name in single | requested}
-    for name in single.keys() & requested.keys():
-        studies[name] = replace(single[name], errors=single[name].errors + requested[name].errors)
-    tables = {}
-    if studies:
-        tables["Time to an error of the hysteresis"] = _target_table(studies.values())
-    if requested:
-        rows = [_chosen(study, errors) for study in requested.values() for errors in study.errors]
+    return Measured(single, requested, unseen, samples, coverages)
+
+
+def error_tables(found: Measured) -> dict[str, str]:
+    """Tables of all studies by their names."""
+    made, scenes = {}, found.scenes
+    if scenes:
+        made["Time to an error of the hysteresis"] = _target_table(scenes.values())
+    if found.requested:
+        studies = found.requested.values()
+        rows = [_chosen(study, errors) for study in studies for errors in study.errors]
         header = f"{_CHOSEN} | k of w_appr | k of w_retr"
-        tables["Errors that were requested"] = markdown_table(header, rows)
-    if unseen:
-        tables["Errors on unseen surfaces"] = _unseen_table(unseen.values())
-    if coverages:
-        tables["Stated and true errors"] = _coverage_table(coverages.values())
-    tables |= {f"Averages, {scene.name}": _sample_table(kept) for scene, kept in samples.values()}
-    tables |= {f"Settings, {name}": _setting_table(study) for name, study in studies.items()}
-    parts = [f"## {name}\n\n{table}\n" for name, table in tables.items()]
-    write_text(folder / "accuracy.md", "\n".join(["# Measured errors\n", *parts]))
-    progress(f"tables: {folder / 'accuracy.md'}")
-    fitted = [study for study in single.values() if study.scene.varies_single]
-    laws = list(fit_laws(fitted))
-    if laws:
-        write_text(folder / "laws.csv", laws_text(laws))
-        progress(f"laws: {folder / 'laws.csv'}")
-    drawn = {}
-    if shown := [studies[name] for name in _SHOWN if name in studies]:
-        drawn["work-precision"] = _work_precision_figure(shown)
-    if flat := [study for study in fitted if study.scene.shape == "flat"]:
-        drawn["laws"] = laws_figure(flat, laws)
-    for name, figure in drawn.items():
-        for path in style.save_figure(figure, folder / name):
-            progress(f"figure: {path}")
-    return tables
+        made["Errors that were requested"] = markdown_table(header, rows)
+    if found.unseen:
+        made["Errors on unseen surfaces"] = _unseen_table(found.unseen.values())
+    if found.coverages:
+        made["Stated and true errors"] = _coverage_table(found.coverages.values())
+    kept = found.samples.values()
+    made |= {f"Averages, {scene.name}": _sample_table(samples) for scene, samples in kept}
+    made |= {f"Settings, {name}": _setting_table(study) for name, study in scenes.items()}
+    return made
 
 
 def _stored(folder: Path, study: str, read: Callable[[Path], Found]) -> dict[str, Found]:
@@ -242,59 +233,3 @@ def _sample_table(samples: tuple[Sample, ...]) -> str:
         "| against the first, mean | rms",
         rows,
     )
-
-
-def _work_precision_figure(studies: Sequence[SceneErrors]) -> Figure:
-    """Error of the hysteresis against time of up to four scenes; the Pareto front is marked."""
-    with style.house_style():
-        figure = style.blank_figure(style.PAGE, 1.25 * style.COLUMN)
-        rows = (len(studies) + 1) // 2
-        panels = figure.subplots(rows, 2, squeeze=False).ravel()
-        for axes, study, letter in zip(panels, studies, "abcd", strict=False):
-            _draw_work_precision(axes, study)
-            label_panel(axes, letter)
-        for axes in panels[len(studies) :]:
-            axes.set_axis_off()
-        for axes in panels[len(studies) - 2 : len(studies)]:
-            axes.set_xlabel("CPU time of one realisation (s)")
-        for axes in panels[::2]:
-            axes.set_ylabel("rms error of the hysteresis (%)")
-        entries = panels[0].get_legend_handles_labels()
-        figure.legend(*entries, loc="outside right upper", title="varied")
-        style.explain(
-            figure, "grey: the Pareto front, from setting to setting that none beats in both"
-        )
-        return figure
-
-
-def _draw_work_precision(axes: Axes, study: SceneErrors) -> None:
-    """Draw the settings of one scene."""
-    seconds, relative = study.work_and_precision()
-    error, best = 100 * relative, pareto_front(seconds, relative)
-    varied = np.array([errors.setting for errors in study.errors])
-    axes.plot(seconds[best], error[best], color="0.8", linewidth=4, zorder=1, label="Pareto front")
-    for setting, colour, marker in zip(_NAMES, style.COLOURS, style.MARKERS, strict=False):
-        chosen = varied == setting
-        axes.plot(
-            seconds[chosen],
-            error[chosen],
-            marker=marker,
-            linewidth=0.8,
-            color=colour,
-            label=_NAMES[setting],
-            zorder=3 if setting == "requested" else 2,
-        )
-    axes.set(xscale="log", yscale="log")
-    label_decimals(axes.xaxis)
-    label_decimals(axes.yaxis, LogLocator())
-    scene = study.scene
-    axes.set_title(
-        rf"{_spectrum(scene)}, $e_\mathrm{{el}} = {scene.elastic_energy:g}\,w_\mathrm{{int}}$"
-    )
-
-
-def _spectrum(scene: Scene) -> str:
-    """Spectrum of a scene in a title."""
-    if scene.spectrum.roll_off > scene.spectrum.short_cutoff:
-        return rf"$H = {scene.spectrum.hurst:g}$"
-    return "chemical" if scene.kind == "chemical" else "flat spectrum"

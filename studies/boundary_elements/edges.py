@@ -7,12 +7,9 @@ Where both models agreed, these would be in equilibrium,
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
-from operator import attrgetter
 
 import numpy as np
-from matplotlib.figure import Figure
 from scipy.fft import irfft, rfft
 
 from crackfront.core import jkr
@@ -22,14 +19,12 @@ from crackfront.core.field.rays import front_adhesion
 from crackfront.core.geometry.sphere import half_laplacian
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.core.variables import ADHESION, VERTICAL, variable
-from crackfront.plots.parts import HEIGHT_LABEL, label_panel
-from crackfront.plots.style import COLOURS, MARKERS, PAGE, blank_figure, explain, house_style
 from studies.accuracy.study import rms
 from studies.boundary_elements.cases import Case
 from studies.boundary_elements.cycle import BoundaryCycle
 from studies.boundary_elements.front import FrontCycle
 
-_CLASSES = 12
+CLASSES = 12
 """Classes of sites, as many in each, by the first-order force of the line."""
 
 
@@ -63,7 +58,7 @@ def edge_forces(case: Case, boundary: BoundaryCycle, front: FrontCycle) -> EdgeF
         pinning = adhesion - np.mean(adhesion)
         parts.append([turn / edge, pinning, half_laplacian(edge) / edge, adhesion - release])
     slope, pinning, line, needed = np.concatenate(parts, axis=1)
-    classes = np.array_split(np.argsort(line), _CLASSES)
+    classes = np.array_split(np.argsort(line), CLASSES)
     return EdgeForces(
         n_point=case.n_point,
         interaction_range=case.interaction_range,
@@ -75,38 +70,3 @@ def edge_forces(case: Case, boundary: BoundaryCycle, front: FrontCycle) -> EdgeF
         line=np.array([np.mean(line[one]) for one in classes]),
         needed=np.array([np.mean(needed[one]) for one in classes]),
     )
-
-
-def edge_figure(rows: Sequence[EdgeForces]) -> Figure:
-    """What is not balanced against the range, and the force that the line has at the shortest."""
-    energies = sorted({round(row.elastic_energy, 2) for row in rows})
-    with house_style():
-        figure = blank_figure(PAGE, 0.46 * PAGE)
-        left, forces = figure.subplots(1, 2)
-        for energy, colour, marker in zip(energies, COLOURS, MARKERS, strict=False):
-            alike = [row for row in rows if round(row.elastic_energy, 2) == energy]
-            ranges = [row.interaction_range for row in alike]
-            style = {"color": colour, "marker": marker, "linestyle": "none", "label": f"{energy:g}"}
-            left.plot(ranges, [row.left / row.pinning for row in alike], **style)
-            shortest = min(alike, key=attrgetter("interaction_range"))
-            forces.plot(shortest.line, shortest.needed, **style)
-        forces.axline((0.0, 0.0), slope=1.0, color="0.6", linewidth=0.8, zorder=0)
-        left.set(
-            xlim=(0.0, 1.1 * max(row.interaction_range for row in rows)),
-            ylim=(0.0, 1.1 * max(row.left / row.pinning for row in rows)),
-            xlabel=HEIGHT_LABEL.format("range of attraction"),
-            ylabel="rms force left / rms pinning",
-        )
-        forces.set(
-            xlabel=r"force of the line, first order / $w_\mathrm{int}$",
-            ylabel=r"force that balances the others / $w_\mathrm{int}$",
-        )
-        for axes, panel in ((left, "a"), (forces, "b")):
-            axes.legend(loc="upper left", title=r"$e_\mathrm{el}/w_\mathrm{int}$")
-            label_panel(axes, panel)
-        explain(
-            figure,
-            f"b: means over {_CLASSES} classes of sites, as many in each, by the force of first "
-            "order; grey line: both forces are equal",
-        )
-        return figure

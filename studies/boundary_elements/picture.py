@@ -32,6 +32,7 @@ from crackfront.plots.style import (
 from studies.boundary_elements.averages import Setting, limit_settings, rough_settings, settings
 from studies.boundary_elements.cases import Case
 from studies.boundary_elements.cycle import N_ANGLE, PRESSURE, BoundaryCycle
+from studies.boundary_elements.edges import CLASSES, EdgeForces
 from studies.boundary_elements.front import FrontCycle, shown_states
 from studies.boundary_elements.hysteresis import Hysteresis
 from studies.paper.drawing import draw_jump
@@ -281,3 +282,38 @@ def _draw_estimates(
         yerr=[float(one.standard_error) for one in estimates],
         **style,
     )
+
+
+def edge_figure(rows: Sequence[EdgeForces]) -> Figure:
+    """What is not balanced against the range, and the force that the line has at the shortest."""
+    energies = sorted({round(row.elastic_energy, 2) for row in rows})
+    with house_style():
+        figure = blank_figure(PAGE, 0.46 * PAGE)
+        left, forces = figure.subplots(1, 2)
+        for energy, colour, marker in zip(energies, COLOURS, MARKERS, strict=False):
+            alike = [row for row in rows if round(row.elastic_energy, 2) == energy]
+            ranges = [row.interaction_range for row in alike]
+            style = {"color": colour, "marker": marker, "linestyle": "none", "label": f"{energy:g}"}
+            left.plot(ranges, [row.left / row.pinning for row in alike], **style)
+            shortest = min(alike, key=attrgetter("interaction_range"))
+            forces.plot(shortest.line, shortest.needed, **style)
+        forces.axline((0.0, 0.0), slope=1.0, color="0.6", linewidth=0.8, zorder=0)
+        left.set(
+            xlim=(0.0, 1.1 * max(row.interaction_range for row in rows)),
+            ylim=(0.0, 1.1 * max(row.left / row.pinning for row in rows)),
+            xlabel=HEIGHT_LABEL.format("range of attraction"),
+            ylabel="rms force left / rms pinning",
+        )
+        forces.set(
+            xlabel=r"force of the line, first order / $w_\mathrm{int}$",
+            ylabel=r"force that balances the others / $w_\mathrm{int}$",
+        )
+        for axes, panel in ((left, "a"), (forces, "b")):
+            axes.legend(loc="upper left", title=r"$e_\mathrm{el}/w_\mathrm{int}$")
+            label_panel(axes, panel)
+        explain(
+            figure,
+            f"b: means over {CLASSES} classes of sites, as many in each, by the force of first "
+            "order; grey line: both forces are equal",
+        )
+        return figure

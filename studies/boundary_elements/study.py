@@ -15,11 +15,12 @@ from studies.boundary_elements.averages import limit_settings
 from studies.boundary_elements.cases import Case
 from studies.boundary_elements.cycle import RUNNING, BoundaryCycle, boundary_cycle
 from studies.boundary_elements.differences import Differences, differences
-from studies.boundary_elements.edges import EdgeForces, edge_figure, edge_forces
+from studies.boundary_elements.edges import EdgeForces, edge_forces
 from studies.boundary_elements.front import FrontCycle, front_cycle
 from studies.boundary_elements.hysteresis import Hysteresis, hysteresis
 from studies.boundary_elements.parameters import ValidationParameters, validation_cases
 from studies.boundary_elements.picture import (
+    edge_figure,
     hysteresis_figure,
     validation_figure,
     validation_picture,

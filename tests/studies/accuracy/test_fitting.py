@@ -9,7 +9,8 @@ import pytest
 
 from crackfront.simulate.front_sizes import LAW_SIZE
 from crackfront.simulate.laws import read_laws
-from studies.accuracy.fitting import fit_laws, laws_figure, laws_text
+from studies.accuracy.drawing import laws_figure
+from studies.accuracy.fitting import fit_laws, laws_text
 from studies.accuracy.scenes import HELD_OUT, SCENES
 from studies.accuracy.study import Errors, SceneErrors, scene_errors
 
