@@ -3,6 +3,7 @@
 import json
 import os
 import re
+import shutil
 import subprocess
 import sys
 import sysconfig
@@ -59,20 +60,27 @@ def archive(tmp_path_factory):
 
 
 @pytest.fixture(scope="module")
-def built(tmp_path_factory):
+def clone(tmp_path_factory):
+    """A clone of the last commit without tags."""
+    folder = tmp_path_factory.mktemp("clone") / "clone"
+    told("git", "clone", "-q", "--depth", "1", "--no-tags", f"file://{ROOT}", folder)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def built(clone, tmp_path_factory):
     """Archive and wheel of a release: of a tagged clone, by the tools that are installed."""
-    clone, dist = (tmp_path_factory.mktemp("built") / name for name in ("clone", "dist"))
-    told("git", "clone", "-q", "--depth", "1", "--no-tags", f"file://{ROOT}", clone)
-    told("git", "-C", clone, "tag", "v7.1.0")
+    folder = tmp_path_factory.mktemp("built")
+    tagged, dist = shutil.copytree(clone, folder / "clone", symlinks=True), folder / "dist"
+    told("git", "-C", tagged, "tag", "v7.1.0")
     # The wheel is built from the archive.
-    told(sys.executable, "-m", "build", "--no-isolation", "--outdir", dist, clone)
+    told(sys.executable, "-m", "build", "--no-isolation", "--outdir", dist, tagged)
     return dist / "crackfront-7.1.0.tar.gz", dist / "crackfront-7.1.0-py3-none-any.whl"
 
 
-def test_a_clone_without_tags_has_the_coming_version_and_names_its_commit(tmp_path):
-    told("git", "clone", "-q", "--depth", "1", "--no-tags", f"file://{ROOT}", tmp_path / "clone")
+def test_a_clone_without_tags_has_the_coming_version_and_names_its_commit(clone):
     commit = told("git", "-C", ROOT, "rev-parse", "--short=7", "HEAD")
-    found = scm_version(tmp_path / "clone")
+    found = scm_version(clone)
     assert found.startswith(COMING.replace("dev0", "dev"))
     assert f"+g{commit}" in found
 

@@ -37,11 +37,23 @@ def other(tmp_path):
 
 
 @pytest.mark.parametrize("block", [(4, 8), (0, 5), (7, 9), (5, 6)])
-def test_a_process_waits_for_another_one_at_the_same_realisations(tmp_path, other, block):
-    said = []
-    threading.Timer(1.0, other.kill).start()
-    with claimed(tmp_path, [shard(0, 4, "rough"), shard(*block)], said.append) as waited:
+def test_a_process_waits_for_another_one_at_the_same_realisations(
+    tmp_path, monkeypatch, other, block
+):
+    monkeypatch.setattr(claims, "_SECONDS", 0.02)
+    said, ended = [], []
+
+    def end():
+        ended.append(other.pid)
+        other.kill()
+
+    def announce(sentence):
+        said.append(sentence)
+        threading.Timer(0.1, end).start()
+
+    with claimed(tmp_path, [shard(0, 4, "rough"), shard(*block)], announce) as waited:
         assert waited
+        assert ended
     [sentence] = said
     named = f"realisations {block[0]} to {block[1] - 1} of flat in {tmp_path} already; waiting"
     assert named in sentence

@@ -11,14 +11,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
-from click.testing import CliRunner
 
-from crackfront.cli import main
 from crackfront.data.provenance import provenance
 from crackfront.sweep import parallel
 from crackfront.sweep.configuration import load_configuration
 from crackfront.sweep.parallel import default_launcher, launch_ranks, run_tasks
 from crackfront.sweep.store import Store
+from crackfront.sweep.tasks import run_and_store
 from tests.commands import curves, datasets
 from tests.commands import run as run_command
 
@@ -49,10 +48,15 @@ def crackfront(*arguments, ranks=None, timeout=600, **environment):
     )
 
 
-def dataset(folder):
-    """The aggregated file, without costs and origin."""
-    path = Store(folder).aggregate(load_configuration(Path(TEST)), provenance())
-    return xr.load_dataset(path).drop_vars(COSTS)
+def assert_same_bits(sweep, folder, serial):
+    """Compare what ranks stored in a folder with the table and curves of a run without them."""
+    found = Store(folder).aggregate(sweep, provenance())
+    one, other = (xr.load_dataset(path) for path in (found, serial.hysteresis))
+    # equals compares names, labels and every value.
+    assert one.drop_vars(COSTS).equals(other.drop_vars(COSTS))
+    curves_of_ranks = datasets(folder)
+    for stem, curve in datasets(serial.folder).items():
+        assert curve.equals(curves_of_ranks[stem])
 
 
 def test_without_mpi_tasks_run_one_after_the_other_in_order():
@@ -180,29 +184,16 @@ def test_a_launcher_that_is_nowhere_is_refused(monkeypatch, tmp_path):
 
 
 @pytest.mark.mpi
-def test_results_are_the_same_bits_for_any_number_of_ranks_and_without_mpi(tmp_path):
-    outputs = {name: tmp_path / name for name in ("serial", "mpi1", "mpi2")}
-    serial = CliRunner().invoke(main, ["simulate", TEST, "--output", str(outputs["serial"])])
-    assert serial.exit_code == 0, serial.output
-    runs = [
-        crackfront("simulate", TEST, "--output", str(outputs["mpi1"]), ranks=2),
-        crackfront("simulate", TEST, "--output", str(outputs["mpi2"]), "--ranks", "2"),
-    ]
-    for run in runs:
-        assert run.returncode == 0, run.stderr
-        assert "[8/8]" in run.stdout
+def test_results_are_the_same_bits_on_two_ranks_and_without_mpi(made, tmp_path, capfd):
+    run = run_command("simulate", TEST, "--output", tmp_path, "--ranks", "2")
+    assert run.exit_code == 0, capfd.readouterr().err
+    assert "[8/8]" in capfd.readouterr().out
     # Each process has its high-water mark, and these grow one after the other.
-    contents = curves(outputs["mpi2"]).values()
+    contents = curves(tmp_path).values()
     peaks = [xr.load_dataset(one, engine="netcdf4")["peak_memory"].item() for one in contents]
     assert len(set(peaks)) > 1
-    serial = dataset(outputs["serial"])
-    assert np.all(np.isfinite(serial["hysteresis"]))
-    for name in ("mpi1", "mpi2"):
-        # equals compares names, labels and every value.
-        assert serial.equals(dataset(outputs[name]))
-        found = datasets(outputs[name])
-        for stem, one in datasets(outputs["serial"]).items():
-            assert one.equals(found[stem])
+    assert np.all(np.isfinite(xr.load_dataset(made.hysteresis)["hysteresis"]))
+    assert_same_bits(load_configuration(Path(TEST)), tmp_path, made)
 
 
 OWN = """
@@ -222,11 +213,13 @@ fit: {lowest_elastic_energy: 1.0e-3, highest_elastic_energy: 0.1, bootstrap: 200
 
 
 @pytest.mark.mpi
-def test_a_surface_and_a_mask_in_npy_are_read_by_the_manager_alone(tmp_path, rng):
+def test_a_surface_and_a_mask_in_npy_are_read_by_the_manager_alone_and_one_rank_gives_the_same_bits(
+    tmp_path, rng
+):
     # By NuMPI all ranks of its communicator would read them together.
-    waves = np.hypot(*np.meshgrid(np.fft.fftfreq(256), np.fft.fftfreq(256)))
-    filtered = np.fft.fft2(rng.standard_normal((256, 256))) * np.maximum(waves, 0.03) ** -1.8
-    heights, masked = np.fft.ifft2(filtered).real, np.zeros((256, 256))
+    waves = np.hypot(*np.meshgrid(np.fft.fftfreq(64), np.fft.fftfreq(64)))
+    filtered = np.fft.fft2(rng.standard_normal((64, 64))) * np.maximum(waves, 0.03) ** -1.8
+    heights, masked = np.fft.ifft2(filtered).real, np.zeros((64, 64))
     masked[10:20, 30:40] = 1.0
     np.save(tmp_path / "scan.npy", 20 * heights / np.std(heights))
     np.save(tmp_path / "mask.npy", masked)
@@ -235,6 +228,12 @@ def test_a_surface_and_a_mask_in_npy_are_read_by_the_manager_alone(tmp_path, rng
     done = crackfront(*told, ranks=2)
     assert done.returncode == 0, done.stderr
     assert "[2/2]" in done.stdout
+    sweep, serial = load_configuration(tmp_path / "own.yaml"), Store(tmp_path / "serial")
+    list(run_and_store(serial, list(sweep.simulations()), provenance("text")))
+    [shard] = sweep.shards()
+    serial.finish_shard(sweep, shard, provenance("text"))
+    serial.aggregate(sweep, provenance("text"))
+    assert_same_bits(sweep, tmp_path / "own", serial)
 
 
 @pytest.mark.mpi

@@ -49,17 +49,32 @@ def store(tmp_path):
     return Store(tmp_path / "sweep")
 
 
+@pytest.fixture
+def whole(made, store):
+    """A copy of the store that was made."""
+    shutil.copytree(made.folder, store.folder)
+    return store
+
+
 def run_and_store(store, simulations):
     """Fill a store and return how the simulations ended."""
     return list(tasks.run_and_store(store, simulations, provenance("text")))
 
 
-def finish(store, sweep=SWEEP):
+def finish(store, sweep):
     """Run a whole sweep to the file of its rows."""
     for shard in sweep.shards():
         run_and_store(store, list(sweep.simulations(shard.item, shard.realisations)))
         store.finish_shard(sweep, shard, provenance("text"))
     store.aggregate(sweep, provenance("text"))
+
+
+@pytest.fixture(scope="module")
+def other(tmp_path_factory):
+    """A store with the same of a sweep of another seed."""
+    store = Store(tmp_path_factory.mktemp("other") / "sweep")
+    finish(store, replace(SWEEP, seed=SWEEP.seed + 1))
+    return store
 
 
 def without(store, *names):
@@ -190,16 +205,15 @@ def test_a_row_without_its_curve_does_not_count(store):
     assert store.inventory(FLAT).missing == (FLAT[2],)
 
 
-def test_what_a_job_reads_before_it_starts_is_that_of_its_own_block(store, monkeypatch):
-    run_and_store(store, list(SWEEP.simulations()))
+def test_what_a_job_reads_before_it_starts_is_that_of_its_own_block(whole, monkeypatch):
     read = []
     monkeypatch.setattr(
         "crackfront.sweep.result_packs.members", lambda path: (read.append(path), members(path))[1]
     )
     more = replace(SWEEP, n_realisation=3)
-    assert len(store.inventory(more.simulations(more.spectra[0], range(2, 3))).missing) == 2
+    assert len(whole.inventory(more.simulations(more.spectra[0], range(2, 3))).missing) == 2
     assert read == []
-    assert store.inventory(FLAT[:1]).missing == ()
+    assert whole.inventory(FLAT[:1]).missing == ()
     assert [path.name.partition(".")[0] for path in read] == ["flat"]
 
 
@@ -338,13 +352,12 @@ def test_a_row_that_is_lost_is_made_of_its_curve(store, made):
 
 
 @pytest.mark.parametrize("with_curves", [True, False])
-def test_an_archive_holds_what_was_archived_under_checksums_that_fit(store, tmp_path, with_curves):
-    finish(store)
-    (store.folder / "curves/.killed.part").write_text("half")
-    (store.folder / "elsewhere").symlink_to(__file__)
-    os.utime(store.folder / "hysteresis.nc", (0, 0))  # written under a clock at 1970
+def test_an_archive_holds_what_was_archived_under_checksums_that_fit(whole, tmp_path, with_curves):
+    (whole.folder / "curves/.killed.part").write_text("half")
+    (whole.folder / "elsewhere").symlink_to(__file__)
+    os.utime(whole.folder / "hysteresis.nc", (0, 0))  # written under a clock at 1970
     path = tmp_path / "sweep.zip"
-    n_file = store.archive(path, curves=with_curves)
+    n_file = whole.archive(path, curves=with_curves)
     with zipfile.ZipFile(path) as archive:
         assert len(archive.namelist()) == n_file + 1
         archive.extractall(tmp_path / "unpacked")
@@ -357,7 +370,7 @@ def test_an_archive_holds_what_was_archived_under_checksums_that_fit(store, tmp_
     for name in ("flat", "rough"):
         wanted |= {f"shards/{name}.nc", f"shards/{name}.nc.sha256"}
     if with_curves:
-        wanted |= {f"curves/{path.name}" for path in store.curves.glob("*.tar")}
+        wanted |= {f"curves/{path.name}" for path in whole.curves.glob("*.tar")}
     assert names == wanted
 
 
@@ -428,19 +441,18 @@ def flip(path, place=0.5):
 
 @pytest.mark.parametrize("rows", [True, False])
 @pytest.mark.parametrize("place", [0.0, 0.3, 0.6, 0.999])
-def test_a_curve_with_a_flipped_bit_is_named_and_computed_anew(store, rows, place):
-    run_and_store(store, FLAT[:2])
-    expected = [held.row for held in store.stored_results(FLAT[:2])]
+def test_a_curve_with_a_flipped_bit_is_named_and_computed_anew(whole, rows, place):
+    expected = [held.row for held in whole.stored_results(FLAT)]
     if not rows:
-        without(store, ".json")
-    member = flip_curve(store, FLAT[1], place)
-    inventory = store.inventory(FLAT[:2])
+        without(whole, ".json")
+    member = flip_curve(whole, FLAT[1], place)
+    inventory = whole.inventory(FLAT)
     assert inventory.missing == (FLAT[1],)
     [sentence] = inventory.unreadable
     assert str(member) in sentence
     assert "is damaged, its checksum is wrong" in sentence
-    run_and_store(store, inventory.missing)
-    found = [held.row for held in store.stored_results(FLAT[:2])]
+    run_and_store(whole, inventory.missing)
+    found = [held.row for held in whole.stored_results(FLAT)]
     assert [row.w_retr for row in found] == [row.w_retr for row in expected]
 
 
@@ -487,21 +499,6 @@ def test_a_checkpoint_that_is_of_no_use_costs_time_and_no_refusal_is_stored(stor
         assert held.row.w_appr == expected.w_appr
         assert held.row.iterations == expected.iterations
         assert not path.exists()
-
-
-@pytest.fixture(scope="module")
-def made(tmp_path_factory):
-    """A store with everything that the workflow makes of a sweep but figures."""
-    store = Store(tmp_path_factory.mktemp("made") / "sweep")
-    finish(store)
-    return store
-
-
-@pytest.fixture
-def whole(made, store):
-    """A copy of that store."""
-    shutil.copytree(made.folder, store.folder)
-    return store
 
 
 def test_nothing_is_taken_back_of_a_store_that_is_whole(whole, tmp_path):
@@ -698,23 +695,21 @@ def test_fit_and_summary_of_different_ranges_do_not_stand_side_by_side(whole, tm
     assert told.startswith(f"{whole.folder / 'fit.nc'} is the fit of another range than that of")
 
 
-def test_fit_and_figures_of_another_table_do_not_stand_in_a_summary(whole, tmp_path):
-    assert command("fit", TEST, "--output", whole.folder)[0] == 0
-    assert command("figures", TEST, "--output", whole.folder)[0] == 0
-    assert command("summary", TEST, "--output", whole.folder)[0] == 0
-    assert list(mixture_sentences(whole)) == []
+def test_fit_and_figures_of_another_table_do_not_stand_in_a_summary(finished, store, tmp_path):
+    shutil.copytree(finished, store.folder)
+    assert list(mixture_sentences(store)) == []
     wider = tmp_path / "wider.yaml"
     text = TEST.read_text(encoding="utf-8").replace("realisations: 2", "realisations: 3")
     wider.write_text(text)
-    assert command("simulate", wider, "--output", whole.folder)[0] == 0
-    assert command("aggregate", wider, "--output", whole.folder)[0] == 0
-    code, output = command("summary", wider, "--output", whole.folder)
+    assert command("simulate", wider, "--output", store.folder)[0] == 0
+    assert command("aggregate", wider, "--output", store.folder)[0] == 0
+    code, output = command("summary", wider, "--output", store.folder)
     assert (code, "fit.nc is the fit of another range or table" in output) == (2, True)
-    [told] = mixture_sentences(whole)
-    assert told.endswith(f"fit.nc is the fit of another table than {whole.hysteresis}")
-    assert command("fit", wider, "--output", whole.folder)[0] == 0
-    assert list(mixture_sentences(whole)) == []
-    code, output = command("summary", wider, "--output", whole.folder)
+    [told] = mixture_sentences(store)
+    assert told.endswith(f"fit.nc is the fit of another table than {store.hysteresis}")
+    assert command("fit", wider, "--output", store.folder)[0] == 0
+    assert list(mixture_sentences(store)) == []
+    code, output = command("summary", wider, "--output", store.folder)
     assert (code, ".png was drawn with another configuration" in output) == (2, True)
 
 
@@ -754,11 +749,8 @@ def test_the_archive_of_a_folder_is_named_after_it_wherever_it_is_called_from(wh
     assert whole.folder.with_name(f"{whole.folder.name}.zip").is_file()
 
 
-def test_a_folder_with_files_of_different_sweeps_is_told_and_not_archived(whole, tmp_path):
-    other = tmp_path / "other"
-    changed = replace(SWEEP, seed=SWEEP.seed + 1)
+def test_a_folder_with_files_of_different_sweeps_is_told_and_not_archived(whole, other, tmp_path):
     text = TEST.read_text(encoding="utf-8")
-    finish(Store(other), changed)
     assert list(mixture_sentences(whole)) == []
     whole.configuration.write_text(text.replace("hurst: 0.8", "hurst: 0.8 # as in the paper"))
     assert list(mixture_sentences(whole)) == []
@@ -776,7 +768,7 @@ def test_a_folder_with_files_of_different_sweeps_is_told_and_not_archived(whole,
         ("shards", "8 of 8 rows of .*/hysteresis.nc are in no file of"),
     ):
         shutil.move(whole.folder / part, tmp_path / part)
-        shutil.copytree(other / part, whole.folder / part)
+        shutil.copytree(other.folder / part, whole.folder / part)
         [told] = mixture_sentences(whole)
         assert re.search(words, told)
         result = CliRunner().invoke(main, ["verify", str(whole.folder)])
@@ -805,19 +797,16 @@ def test_the_curves_of_the_table_are_unpacked_without_those_of_other_numerics(wh
     assert not folder.exists()
 
 
-def test_two_stores_of_one_sweep_agree_in_bits_and_another_sweep_does_not(whole, tmp_path):
-    twin, other = Store(tmp_path / "twin"), Store(tmp_path / "other")
-    changed = replace(SWEEP, seed=SWEEP.seed + 1)
-    for store, sweep in ((twin, SWEEP), (other, changed)):
-        finish(store, sweep)
-    found = comparison(whole.folder, twin.folder)
+def test_two_stores_of_one_sweep_agree_in_bits_and_another_sweep_does_not(made, store, other):
+    finish(store, SWEEP)
+    found = comparison(made.folder, store.folder)
     assert found.in_bits
     assert found.n_file == 11
-    found = comparison(whole.folder, other.folder)
+    found = comparison(made.folder, other.folder)
     assert found.n_file == 11  # keys do not matter
     assert not found.in_bits
     assert found.by_variable()["force"].largest > 0
-    result = CliRunner().invoke(main, ["compare", str(whole.folder), str(twin.folder)])
+    result = CliRunner().invoke(main, ["compare", str(made.folder), str(store.folder)])
     assert result.exit_code == 0
     assert "agreement of 11 files in bits" in result.output
 

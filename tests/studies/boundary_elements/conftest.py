@@ -33,10 +33,10 @@ loads:
   steady: {first: 0.2, last: 0.4, turned: 0.3, end: 0.1}
 front: {n_angle: 64, spacing: 0.05}
 cases:
+  - {n_point: 64, interaction_range: 0.61, elastic_energies: [0.4], surfaces: 1}
   - {n_point: 48, interaction_range: 0.70, elastic_energies: [0, 0.4], surfaces: 2}
   - {n_point: 48, interaction_range: 0.70, elastic_energies: [0.4], roll_off: 0.9, hurst: 0.8,
      surfaces: 2}
-  - {n_point: 64, interaction_range: 0.61, elastic_energies: [0.4], surfaces: 1}
 """
 
 

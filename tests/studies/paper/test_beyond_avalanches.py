@@ -1,7 +1,6 @@
 """Avalanches: their law, their lengths, and what makes the checks fail."""
 
 from dataclasses import replace
-from unittest import mock
 
 import numpy as np
 import pytest
@@ -13,14 +12,9 @@ from studies.paper.events import event_record
 from studies.paper.figure import figure
 from tests.studies.paper.made import computed, failed, is_labelled, parameters
 
+pytestmark = pytest.mark.usefixtures("_few_draws")
+
 SCENE = figure("beyond-avalanches")
-
-
-@pytest.fixture(scope="module", autouse=True)
-def _few_draws():
-    """Intervals from a quarter of the draws."""
-    with mock.patch.multiple("studies.paper.power_law", _N_BOOTSTRAP=50, _N_JOINT_BOOTSTRAP=25):
-        yield
 
 
 @pytest.fixture(scope="module")
@@ -162,8 +156,9 @@ def test_a_finer_precision_finds_the_same_whole_events():
 
 def test_wrong_energies_and_extents_fail(rng):
     good = synthetic(rng)
-    assert sum("energy" in claim for claim in failed(replace(good, energy=-good.energy))) == 2
-    assert sum("circle" in claim for claim in failed(replace(good, extent=30 * good.extent))) == 2
+    wrong = failed(replace(good, energy=-good.energy, extent=30 * good.extent))
+    assert sum("energy" in claim for claim in wrong) == 2
+    assert sum("circle" in claim for claim in wrong) == 2
     assert any("grows" in claim for claim in failed(replace(good, extent=good.area**0.72)))
 
 

@@ -141,6 +141,7 @@ def test_a_difference_that_the_law_predicts_is_told_with_its_number():
     assert close_to("k", 1.9, 3.0, 0.5, law=(2.2, 0.2)).result == "FAIL"
 
 
+@pytest.mark.usefixtures("_few_draws")
 @pytest.mark.parametrize("path", sorted(REFERENCES.glob("*.nc")), ids=lambda path: path.stem)
 def test_the_kept_data_can_be_read_and_say_where_they_come_from(path):
     scene = figure(path.stem)

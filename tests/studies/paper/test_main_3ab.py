@@ -58,7 +58,8 @@ def test_disorder_in_the_wrong_order_is_refused():
 
 
 def test_both_contacts_take_the_sites_of_the_larger():
-    coarse = parameters("main-3ab", **COARSE | {"error": 0.1, "least_angles": 4})
+    steps = {"load_step": 1.0, "travel": 0.5, "precision": 1e-3}
+    coarse = parameters("main-3ab", **COARSE | steps | {"error": 0.1, "least_angles": 4})
     sites = [
         coarse.contact(energy, coarse.precision / 10).field.geometry.n_site
         for energy in (coarse.strong, coarse.weak)

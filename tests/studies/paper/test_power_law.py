@@ -19,6 +19,7 @@ def drawn(rng, exponent, cutoff, count):
     return values[rng.uniform(size=values.size) < np.exp(-(values - 1) / cutoff)][:count]
 
 
+@pytest.mark.usefixtures("_few_draws")
 @pytest.mark.parametrize(("exponent", "cutoff"), [(1.28, 100.0), (1.6, 30.0), (2.0, 1e5)])
 def test_it_recovers_the_law_of_its_values(rng, exponent, cutoff):
     values = drawn(rng, exponent, cutoff, 3000)
@@ -36,6 +37,7 @@ def test_its_interval_covers_the_exponent_about_as_often_as_it_says(rng):
     assert sum(law.low <= 1.28 <= law.high for law in laws) >= 6
 
 
+@pytest.mark.usefixtures("_few_draws")
 def test_values_below_the_smallest_have_no_part(rng):
     values = drawn(rng, 1.5, 50.0, 500)
     more = np.concatenate([values, np.full(300, 0.5)])
@@ -67,6 +69,7 @@ def scaling(rng, exponent, count, shoulder=0.6, tail=1.6, steepness=1.3):
     return samples
 
 
+@pytest.mark.usefixtures("_few_draws")
 @pytest.mark.parametrize("exponent", [1.28, 1.56])
 def test_a_joint_law_recovers_the_exponent_of_samples_with_a_shoulder(rng, exponent):
     law = joint_power_law(scaling(rng, exponent, 5000), 30.0, rng)
@@ -75,6 +78,7 @@ def test_a_joint_law_recovers_the_exponent_of_samples_with_a_shoulder(rng, expon
     assert law.exponent == pytest.approx(exponent, abs=0.08)
 
 
+@pytest.mark.usefixtures("_few_draws")
 def test_an_exponential_cutoff_would_take_a_shoulder_for_a_smaller_exponent(rng):
     samples = scaling(rng, 1.28, 5000, shoulder=1.5, tail=3.0)
     bare = [truncated_power_law(sample, 30.0, rng).exponent for sample in samples]
@@ -82,6 +86,7 @@ def test_an_exponential_cutoff_would_take_a_shoulder_for_a_smaller_exponent(rng)
     assert joint_power_law(samples, 30.0, rng).high > 1.28
 
 
+@pytest.mark.usefixtures("_few_draws")
 def test_the_scales_of_a_joint_law_are_those_of_its_samples(rng):
     samples = scaling(rng, 1.28, 3000)
     law = joint_power_law(samples, 30.0, rng)
@@ -99,6 +104,7 @@ def test_the_density_of_a_joint_law_is_normalised_for_every_sample():
         assert np.trapezoid(law.density(grid, sample), grid) == pytest.approx(1.0, abs=1e-5)
 
 
+@pytest.mark.usefixtures("_few_draws")
 def test_the_exponent_of_a_joint_law_shifts_with_its_beginning_where_there_is_no_power_law(rng):
     samples = scaling(rng, 1.28, 5000)
     true = joint_power_law(samples, 30.0, rng)
