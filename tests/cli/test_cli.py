@@ -1,6 +1,7 @@
 """The command: one cycle on any field, the steps of a sweep, exit codes and sentences."""
 
 import errno
+import functools
 import json
 import os
 import re
@@ -11,7 +12,6 @@ import socket
 import subprocess
 import sys
 from contextlib import nullcontext
-from functools import partial
 from pathlib import Path
 
 import click
@@ -28,11 +28,13 @@ from crackfront.core import jkr
 from crackfront.core.outcome import DefectError, Status
 from crackfront.core.solver.relax import named_solver
 from crackfront.core.units import WORK_OF_ADHESION
+from crackfront.plots.style import save_figure
 from crackfront.sweep.configuration import load_configuration
 from crackfront.sweep.fingerprints import row_fingerprint
 from crackfront.sweep.result_packs import Entry, new_pack
 from crackfront.sweep.rows import failed_row
 from tests.commands import curves, refused, run
+from tests.topography.made import DETAIL, measure_surfaces_once
 
 TEST = Path(__file__).parents[2] / "config/test.yaml"
 
@@ -85,7 +87,7 @@ def test_a_cycle_on_a_smooth_tile_is_that_of_jkr(smooth_tile, tmp_path):
 def test_a_cycle_that_ends_early_is_written_and_has_exit_code_one(
     rough_surface, tmp_path, monkeypatch
 ):
-    impatient = partial(named_solver, max_sweeps=3)
+    impatient = functools.partial(named_solver, max_sweeps=3)
     monkeypatch.setattr("crackfront.core.solver.relax.named_solver", impatient)
     result = cycle(rough_surface, tmp_path)
     assert result.exit_code == 1
@@ -173,7 +175,11 @@ fit: {lowest_elastic_energy: 0.08, highest_elastic_energy: 0.2, bootstrap: 200}
 """
 
 
-def test_a_sweep_of_straight_fronts_is_fitted_and_drawn(tmp_path):
+def test_a_sweep_of_straight_fronts_is_fitted_and_drawn(tmp_path, monkeypatch):
+    def save_png(figure, stem, subject):
+        return save_figure(figure, stem.with_name(f"{stem.name}.png"), subject)
+
+    monkeypatch.setattr("crackfront.plots.style.save_figure", save_png)
     configuration, output = tmp_path / "lines.yaml", ("--output", tmp_path / "out")
     configuration.write_text(LINES)
     for command in ("simulate", "aggregate", "fit", "figures"):
@@ -192,8 +198,25 @@ def test_a_sweep_of_straight_fronts_is_fitted_and_drawn(tmp_path):
     assert "## k by the law of docs/law.md" in (tmp_path / "out/fit.md").read_text("utf-8")
 
 
-def test_a_plan_tells_what_is_left_to_run_and_what_it_costs(tmp_path):
-    run("simulate", TEST, "--spectrum", "rough", "--output", tmp_path)
+@pytest.fixture(scope="module")
+def copy_store(tmp_path_factory):
+    """Function that copies the simulations of a spectrum, run once for all tests, to a folder."""
+
+    @functools.cache
+    def whole(spectrum):
+        folder = tmp_path_factory.mktemp(spectrum) / "store"
+        result = run("simulate", TEST, "--spectrum", spectrum, "--output", folder)
+        assert result.exit_code == 0, result.output
+        return folder
+
+    def copy(spectrum, folder):
+        shutil.copytree(whole(spectrum), folder, dirs_exist_ok=True)
+
+    return copy
+
+
+def test_a_plan_tells_what_is_left_to_run_and_what_it_costs(tmp_path, copy_store):
+    copy_store("rough", tmp_path)
     result = run("plan", TEST, "--output", tmp_path, "--block", "1")
     assert result.exit_code == 0, result.output
     [flat, rough, everything] = result.output.split("to run")[1].splitlines()[1:4]
@@ -204,8 +227,8 @@ def test_a_plan_tells_what_is_left_to_run_and_what_it_costs(tmp_path):
     assert float(rough.split()[3]) == 0
 
 
-def test_a_plan_tells_what_is_stale_and_why(tmp_path):
-    run("simulate", TEST, "--spectrum", "flat", "--output", tmp_path)
+def test_a_plan_tells_what_is_stale_and_why(tmp_path, copy_store):
+    copy_store("flat", tmp_path)
     finer = tmp_path / "finer.yaml"
     finer.write_text(TEST.read_text().replace("tolerance: 1e-6", "tolerance: 1e-7"))
     result = run("plan", finer, "--output", tmp_path)
@@ -214,9 +237,9 @@ def test_a_plan_tells_what_is_stale_and_why(tmp_path):
     assert "4 stored simulations are stale: 4 as numerics changed\n[1/4]" in result.output
 
 
-def test_the_status_counts_what_is_done_failed_and_left(tmp_path):
+def test_the_status_counts_what_is_done_failed_and_left(tmp_path, copy_store):
     sweep = load_configuration(TEST)
-    run("simulate", TEST, "--spectrum", "rough", "--output", tmp_path)
+    copy_store("rough", tmp_path)
     flat = tuple(sweep.simulations(sweep.spectra[0]))
     refused_row = failed_row(flat[0], "refused", "too rough")
     entry = Entry(flat[0].stem, flat[0].parts, row_fingerprint(), refused_row)
@@ -240,9 +263,8 @@ def test_the_status_of_a_folder_without_a_sweep_is_refused(tmp_path):
     assert "holds no sweep that was begun" in refused("status", tmp_path)
 
 
-def test_one_spectrum_can_be_run_alone(tmp_path):
-    result = run("simulate", TEST, "--spectrum", "rough", "--output", tmp_path)
-    assert result.exit_code == 0
+def test_one_spectrum_can_be_run_alone(tmp_path, copy_store):
+    copy_store("rough", tmp_path)
     assert {name.split("-")[0] for name in curves(tmp_path)} == {"rough"}
     assert [path.name for path in (tmp_path / "shards").glob("*.nc")] == ["rough.nc"]
 
@@ -268,8 +290,8 @@ def test_a_configuration_whose_name_is_no_name_for_results_is_refused(tmp_path, 
     assert "the results are named after" in refused("plan", bad)
 
 
-def test_a_damaged_curve_is_named_and_replaced_by_the_job_of_its_shard(tmp_path):
-    run("simulate", TEST, "--spectrum", "flat", "--output", tmp_path)
+def test_a_damaged_curve_is_named_and_replaced_by_the_job_of_its_shard(tmp_path, copy_store):
+    copy_store("flat", tmp_path)
     broken = min((tmp_path / "curves").glob("*.tar"))
     content = bytearray(broken.read_bytes())
     content[5000] ^= 1
@@ -283,19 +305,21 @@ def test_a_damaged_curve_is_named_and_replaced_by_the_job_of_its_shard(tmp_path)
     assert "[1/1]" in result.output
 
 
-@pytest.mark.parametrize(("allowed", "code"), [("", 1), ("failed_fraction: 1.0\n", 0)])
-def test_simulations_without_a_value_are_counted_and_too_many_fail(tmp_path, allowed, code):
+def test_simulations_without_a_value_are_counted_and_too_many_fail(tmp_path):
     limited = tmp_path / "limited.yaml"
     text = TEST.read_text().replace("max_sweeps: 100000", "max_sweeps: 2")
-    limited.write_text(text + allowed)
-    assert run("simulate", limited, "--output", tmp_path).exit_code == 0
-    result = run("aggregate", limited, "--output", tmp_path)
-    assert result.exit_code == code
-    assert "8 of 8 simulations have no value: 8 step_limit" in result.stderr
-    assert ("failed_fraction of the configuration allows 0.1" in result.stderr) == bool(code)
-    table = xr.load_dataset(tmp_path / "hysteresis.nc")
-    assert set(table["status_sentence"].values.flat) == {Status.STEP_LIMIT.value}
-    assert "has a value" in refused("fit", limited, "--output", tmp_path)
+    for allowed, code in (("", 1), ("failed_fraction: 1.0\n", 0)):
+        limited.write_text(text + allowed)
+        # The second time they are stored, as what is allowed is no part of them.
+        assert run("simulate", limited, "--output", tmp_path).exit_code == 0
+        (tmp_path / "hysteresis.nc").unlink(missing_ok=True)
+        result = run("aggregate", limited, "--output", tmp_path)
+        assert result.exit_code == code
+        assert "8 of 8 simulations have no value: 8 step_limit" in result.stderr
+        assert ("failed_fraction of the configuration allows 0.1" in result.stderr) == bool(code)
+        table = xr.load_dataset(tmp_path / "hysteresis.nc")
+        assert set(table["status_sentence"].values.flat) == {Status.STEP_LIMIT.value}
+        assert "has a value" in refused("fit", limited, "--output", tmp_path)
 
 
 def test_a_simulation_that_cannot_be_stored_ends_the_run_with_exit_code_one(tmp_path, monkeypatch):
@@ -374,11 +398,13 @@ def test_the_exit_codes_of_the_help_are_those_of_the_commands():
         assert re.search(rf"^ +{code} +\w", text, re.MULTILINE)
 
 
-def test_machines_read_the_plan_the_progress_and_the_fit(tmp_path):
+def test_machines_read_the_plan_the_progress_and_the_fit(tmp_path, copy_store):
     output = ("--output", tmp_path, "--json")
     before = json.loads(run("plan", TEST, *output).stdout)
     assert (before["simulations"], before["missing"], before["shards"]) == (8, 8, ["flat", "rough"])
     assert before["core_seconds"] > before["longest_seconds"] > 0
+    for spectrum in ("flat", "rough"):
+        copy_store(spectrum, tmp_path)
     for command in ("simulate", "aggregate"):
         assert run(command, TEST, *output[:2]).exit_code == 0
     after = json.loads(run("plan", TEST, *output).stdout)
@@ -582,9 +608,6 @@ def test_any_command_that_is_told_to_end_says_so_with_the_same_exit_code(
     assert signal.getsignal(signal.SIGTERM) is signal.SIG_DFL
 
 
-SCAN = TEST.parents[1] / "examples/scans/nanodiamond-detail.al3d"
-
-
 def test_the_help_loads_nothing_that_computes():
     code = """
 import sys
@@ -613,10 +636,10 @@ assert settings() == before
     subprocess.run([sys.executable, "-c", code], check=True, timeout=600)
 
 
-def test_a_scan_becomes_a_field_in_a_process_of_its_own(tmp_path):
-    arguments = (
-        f"surface {SCAN} --modulus 0.7N/mm2 --poisson 0.5 --radius 20um --work-of-adhesion 63mJ/m2"
-    ).split()
+def test_a_scan_becomes_a_field_in_a_process_of_its_own(tmp_path, monkeypatch):
+    measure_surfaces_once(monkeypatch)
+    sphere = "--modulus 0.7N/mm2 --poisson 0.5 --radius 20um --work-of-adhesion 63mJ/m2"
+    arguments = ["surface", str(DETAIL), *sphere.split()]
     alone, within = tmp_path / "alone.nc", tmp_path / "within.nc"
     command = [sys.executable, "-m", "crackfront", *arguments, "--field", str(alone)]
     subprocess.run(command, check=True, timeout=600)
@@ -685,15 +708,23 @@ def test_branches_of_a_straight_front_are_told_as_forward_and_back(smooth_tile, 
     assert [line.split(":")[0].split(", ")[1] for line in told] == ["forward", "forward", "back"]
 
 
+CYCLES = """
+import shlex, sys
+from crackfront.cli import main
+for loads in sys.argv[3:]:
+    words = ["cycle", "--field", sys.argv[1], "--output", sys.argv[2], *shlex.split(loads)]
+    main(words, standalone_mode=False)
+"""
+
+
 def test_once_the_solver_is_compiled_ahead_no_run_compiles_it(smooth_tile, tmp_path):
     assert run("compile").exit_code == 0
     sphere = "--max-penetration 0.1 --step 0.1"
     line = "--spring 1 --loads 0,1,0 --step 1"
-    for loads in (sphere, line):
-        words = ("cycle", "--field", smooth_tile, "--output", tmp_path / "out.nc", *loads.split())
-        command = [sys.executable, "-m", "crackfront", *map(str, words)]
-        done = subprocess.run(command, capture_output=True, text=True, check=True, timeout=600)
-        assert "compiling" not in done.stdout + done.stderr
+    command = [sys.executable, "-c", CYCLES, smooth_tile, tmp_path / "out.nc", sphere, line]
+    done = subprocess.run(command, capture_output=True, text=True, check=True, timeout=600)
+    assert done.stdout.count(f"states: {tmp_path / 'out.nc'}") == 2
+    assert "compiling" not in done.stdout + done.stderr
 
 
 def test_a_defect_of_a_solver_is_one_sentence():

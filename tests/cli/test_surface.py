@@ -16,10 +16,17 @@ from crackfront.analysis.law import shipped_law
 from crackfront.core.variables import variables
 from crackfront.simulate.user_surface import read_field, surface_adhesion
 from crackfront.topography.prediction.prediction import Prediction, predicted
-from crackfront.topography.scan.reading import read_measurements
-from crackfront.topography.spectrum.measures import measured_surface, read_surface
 from tests.commands import refused, run
-from tests.topography.made import DETAIL, OVERVIEW, SCENE, write_smooth
+from tests.topography.made import (
+    DETAIL,
+    OVERVIEW,
+    SCENE,
+    measure_surfaces_once,
+    measured_once,
+    run_simulations_once,
+    shipped_surface,
+    write_smooth,
+)
 
 ROOT = Path(__file__).parents[2]
 
@@ -43,9 +50,23 @@ def reservations(content):
     return [one["sentence"] for one in content["remarks"] if one["severity"] == "reservation"]
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(autouse=True)
+def computed_once(monkeypatch):
+    """Commands measure equal files once, and run equal simulations once."""
+    measure_surfaces_once(monkeypatch)
+    run_simulations_once(monkeypatch)
+
+
+@pytest.fixture
 def surface():
-    return measured_surface(read_measurements([DETAIL, OVERVIEW]))
+    """Surface of the scans that are shipped."""
+    return shipped_surface(DETAIL, OVERVIEW)
+
+
+@pytest.fixture(scope="module")
+def smooth(tmp_path_factory):
+    """Scan of a surface that the theory applies to without reservations."""
+    return write_smooth(tmp_path_factory.mktemp("scans") / "smooth.al3d")
 
 
 @pytest.fixture
@@ -61,9 +82,8 @@ def predict(tmp_path, monkeypatch):
     return command
 
 
-def test_a_batch_of_scans_is_a_table_with_a_row_for_each_sample(tmp_path):
+def test_a_batch_of_scans_is_a_table_with_a_row_for_each_sample(tmp_path, smooth):
     table, absent = tmp_path / "samples.csv", tmp_path / "absent.al3d"
-    smooth = write_smooth(tmp_path / "smooth.al3d")
     scans = {OVERVIEW: "applies with reservations", smooth: "applies", absent: "refused"}
     command = ("predict", *sphere(), "--csv", table)
     assert run(*command, *scans).exit_code == 4
@@ -81,14 +101,16 @@ def test_a_batch_of_scans_is_a_table_with_a_row_for_each_sample(tmp_path):
     assert "--csv writes rows alone" in refused(*command, "--json", OVERVIEW)
 
 
-def test_an_interrupted_batch_of_scans_keeps_the_rows_of_those_before(tmp_path, monkeypatch):
+def test_an_interrupted_batch_of_scans_keeps_the_rows_of_those_before(
+    tmp_path, smooth, monkeypatch
+):
     def interrupted(paths, options):
         if OVERVIEW in paths:
             raise KeyboardInterrupt
-        return read_surface(paths, options)
+        return measured_once(paths, options)
 
     monkeypatch.setattr("crackfront.topography.samples.read_surface", interrupted)
-    smooth, table = write_smooth(tmp_path / "smooth.al3d"), tmp_path / "samples.csv"
+    table = tmp_path / "samples.csv"
     assert run("predict", *sphere(), "--csv", table, smooth, OVERVIEW).exit_code != 0
     with table.open(encoding="utf-8", newline="") as file:
         assert [row["scan"] for row in csv.DictReader(file)] == [str(smooth)]
@@ -111,8 +133,7 @@ def test_a_negative_share_is_a_reservation_where_it_counts(predict):
     assert not any("w_loc" in text for text in reservations(weak))
 
 
-def test_each_outcome_has_its_exit_code(predict, tmp_path):
-    smooth = write_smooth(tmp_path / "smooth.al3d")
+def test_each_outcome_has_its_exit_code(predict, smooth):
     for code, outcome, more in (
         (0, "applies", {"scans": (smooth,)}),
         (0, "applies with reservations", {}),
@@ -234,12 +255,6 @@ def test_a_single_simulation_has_no_interval(predict):
     corrected = content["simulation"]["corrected"]["w_appr"]
     assert corrected["low"] is None
     assert f"w_appr                {1e3 * corrected['value']:.3g} mJ/m2; predicted " in text
-
-
-@pytest.fixture(scope="module")
-def coarse():
-    """The surface of the overview alone, with few sites under a sphere."""
-    return measured_surface(read_measurements([OVERVIEW]))
 
 
 def test_a_map_becomes_a_field_that_a_cycle_runs_on(tmp_path):

@@ -11,9 +11,11 @@ import pytest
 from crackfront.core import fingerprint as module
 from crackfront.core.fingerprint import fingerprint, module_digests, solver_fingerprint
 from crackfront.simulate.line.schedule import LineSchedule
+from crackfront.simulate.run import run_simulation
 from crackfront.simulate.simulation import simulation_fingerprint
 from crackfront.simulate.sphere.cycle import FullCycle
 from crackfront.simulate.sphere.steady import SteadySchedule
+from crackfront.sweep.configuration import load_configuration
 from crackfront.sweep.fingerprints import row_fingerprint
 from studies.paper.figure import checks_fingerprint, drawing_fingerprint, figure_fingerprint
 
@@ -176,34 +178,26 @@ def test_what_determines_straight_fronts_alone_changes_no_key_of_spheres(sources
 
 
 def test_every_module_that_a_simulation_runs_counts_in_its_key():
-    program = """
-import sys
-from pathlib import Path
-from crackfront.core.fingerprint import ROOT, module_digests
-from crackfront.simulate.run import run_simulation
-from crackfront.sweep.configuration import load_configuration
+    called = set()
 
-called = set()
+    def note(frame, event, _):
+        path = Path(frame.f_code.co_filename)
+        if event == "call" and path.is_relative_to(module.ROOT / "crackfront"):
+            called.add(".".join(path.relative_to(module.ROOT).with_suffix("").parts))
 
-def note(frame, event, _):
-    path = Path(frame.f_code.co_filename)
-    if event == "call" and path.is_relative_to(ROOT / "crackfront"):
-        called.add(".".join(path.relative_to(ROOT).with_suffix("").parts))
-
-for name in ("test", "line-test"):
-    simulation = next(iter(load_configuration(Path(f"config/{name}.yaml")).simulations()))
-    run_simulation(simulation)  # compiled without a trace, which would take minutes
-    sys.setprofile(note)
-    run_simulation(simulation)
-    sys.setprofile(None)
-counted = module_digests("crackfront.simulate.run", type(simulation.schedule).__module__)
-assert len(called) > 15, called
-assert called <= counted.keys(), called - counted.keys()
-"""
-    done = subprocess.run(
-        [sys.executable, "-c", program], cwd=module.ROOT, capture_output=True, text=True
-    )
-    assert done.returncode == 0, done.stderr
+    for name in ("test", "line-test"):
+        sweep = load_configuration(module.ROOT / f"config/{name}.yaml")
+        simulation = next(iter(sweep.simulations()))
+        run_simulation(simulation)  # compiled without a trace, which would take minutes
+        before = sys.getprofile()
+        sys.setprofile(note)
+        try:
+            run_simulation(simulation)
+        finally:
+            sys.setprofile(before)
+    counted = module_digests("crackfront.simulate.run", type(simulation.schedule).__module__)
+    assert len(called) > 15, called
+    assert called <= counted.keys(), called - counted.keys()
 
 
 @pytest.mark.parametrize(

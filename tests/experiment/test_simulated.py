@@ -1,5 +1,6 @@
 """Simulated cycles as loops: the works of adhesion of the simulation, from files in all units."""
 
+import functools
 import json
 from dataclasses import replace
 from pathlib import Path
@@ -27,20 +28,25 @@ SPECTRA = {"flat": FLAT, "self-affine": FLAT | {"roll_off": 0.4, "hurst": 0.8}}
 
 
 def run(spectrum, **options):
-    surface = cf.random_surface(elastic_energy=0.03, seed=3, **spectrum)
+    """A cycle on a surface of a spectrum, by its name."""
+    surface = cf.random_surface(elastic_energy=0.03, seed=3, **SPECTRA[spectrum])
     return cf.run_loop(surface, step=0.03, **options)
 
 
-@pytest.fixture(scope="module", params=SPECTRA)
+whole_cycle = functools.cache(run)
+"""A cycle until contact is lost, run once for each spectrum."""
+
+
+@pytest.fixture(params=SPECTRA)
 def cycle(request):
-    return run(SPECTRA[request.param])
+    return whole_cycle(request.param)
 
 
 @pytest.fixture
 def path(tmp_path):
     """File of a cycle in reduced units."""
     path = tmp_path / "cycle.nc"
-    cf.save_result(run(FLAT), path)
+    cf.save_result(whole_cycle("flat"), path)
     return path
 
 
@@ -88,14 +94,14 @@ def test_a_curve_of_a_sweep_has_the_works_of_its_row(tmp_path):
 
 def test_the_energy_lost_is_that_of_all_instabilities():
     """To what a coarse load step adds to them."""
-    cycle = run(FLAT, energy=True)
+    cycle = run("flat", energy=True)
     energy = float(cycle.dissipated_energy.sum()) + cycle.attrs["pull_off_energy"]
     area = np.pi * float(cycle.mean_radius.max()) ** 2
     assert measured_loop(cycle).lost_energy == pytest.approx(np.pi * energy / area, rel=0.1)
 
 
 def test_a_cycle_that_stays_in_contact_has_no_lost_energy_and_says_so():
-    found = measured_loop(run(FLAT, loads=[0.0, 1.0, -0.3]))
+    found = measured_loop(run("flat", loads=[0.0, 1.0, -0.3]))
     assert np.isnan(found.lost_energy)
     assert any("energy lost is not known" in remark for remark in found.remarks)
 

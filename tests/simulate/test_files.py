@@ -1,5 +1,6 @@
 """A simulation that ends at any state and goes on later is the undisturbed one, bit for bit."""
 
+import functools
 from dataclasses import asdict, replace
 from pathlib import Path
 
@@ -27,6 +28,7 @@ STEADY = replace(CYCLE, schedule=SteadySchedule(0.4, 1.2, travel=0.5, standard_e
 LINE = replace(LINES.simulation(LINES.spectra[0], 0.16, 1), record_fronts=True)
 
 
+@functools.cache
 def checkpoints(simulation):
     """Undisturbed result of a simulation, and its checkpoint at every state."""
     found = []

@@ -3,9 +3,15 @@
 import pytest
 
 from crackfront.topography.prediction.prediction import predicted
-from crackfront.topography.scan.reading import read_measurements
-from crackfront.topography.spectrum.measures import measured_surface
-from tests.topography.made import DETAIL, OVERVIEW, SCENE, map_heights, write_al3d
+from crackfront.topography.spectrum import draws
+from tests.topography.made import (
+    DETAIL,
+    OVERVIEW,
+    SCENE,
+    map_heights,
+    shipped_surface,
+    write_al3d,
+)
 
 
 @pytest.fixture
@@ -29,10 +35,16 @@ def scan(tmp_path, heights):
 @pytest.fixture(scope="session")
 def surface():
     """Surface of the scans that are shipped."""
-    return measured_surface(read_measurements([DETAIL, OVERVIEW]))
+    return shipped_surface(DETAIL, OVERVIEW)
 
 
 @pytest.fixture(scope="session")
 def prediction(surface):
     """Its prediction."""
     return predicted(surface, SCENE)
+
+
+@pytest.fixture
+def few_draws(monkeypatch):
+    """One batch of draws, where their number is not what is tested."""
+    monkeypatch.setattr(draws, "BATCHES", (1,))

@@ -1,5 +1,6 @@
 """Scans that tests make and read."""
 
+import functools
 from pathlib import Path
 
 import numpy as np
@@ -8,8 +9,10 @@ import pytest
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.synthesis import gaussian_field
 from crackfront.core.units import Scales
+from crackfront.simulate.run import run_simulation
 from crackfront.topography.options import reading_options
 from crackfront.topography.scan.reading import Measurement, read_measurements
+from crackfront.topography.spectrum import draws
 from crackfront.topography.spectrum.measures import read_surface
 from studies.accuracy import scans
 
@@ -59,6 +62,37 @@ def read(path, **given):
     return read_measurements([path], reading_options(given, 1))[0]
 
 
+def measured_once(paths, options):
+    """Surface of files that stay as they are, measured once by equal options and as many draws."""
+    return _measured(tuple(paths), tuple(options), draws.BATCHES)
+
+
+@functools.cache
+def _measured(paths, options, batches):
+    return read_surface(paths, options)
+
+
+def shipped_surface(*paths, **given):
+    """Surface of scans that are shipped, read by options as a user gives them."""
+    return measured_once(paths, reading_options(given, len(paths)))
+
+
+def measure_surfaces_once(monkeypatch):
+    """Let commands and library measure equal files once for each of their options."""
+    for module in ("library", "samples", "spectrum.measures"):
+        monkeypatch.setattr(f"crackfront.topography.{module}.read_surface", measured_once)
+
+
+simulated_once = functools.cache(run_simulation)
+"""Result of a simulation, of which equal ones are run once."""
+
+
+def run_simulations_once(monkeypatch):
+    """Let predictions run equal simulations once."""
+    place = "crackfront.topography.prediction.simulated.run_simulation"
+    monkeypatch.setattr(place, simulated_once)
+
+
 def refusal(*paths, **given):
     """Sentence for files that are refused."""
     with pytest.raises(ValueError, match=r".") as caught:
@@ -70,8 +104,8 @@ def refusal(*paths, **given):
 
 def write_smooth(path):
     """Scan of a surface with a third of the heights of nanodiamond, showing all that matters."""
-    spectrum = SelfAffineSpectrum(0.1e-6, 2.1e-6, 0.95, 1e-27)
-    heights = gaussian_field(spectrum, 512, 25.6e-6, np.random.default_rng(3))
+    spectrum = SelfAffineSpectrum(0.2e-6, 2.1e-6, 0.95, 1e-27)
+    heights = gaussian_field(spectrum, 256, 25.6e-6, np.random.default_rng(3))
     return write_al3d(path, heights, 25.6e-6, "smooth")
 
 

@@ -17,7 +17,7 @@ from crackfront.topography.options import (
     for_files,
     reading_options,
 )
-from tests.topography.made import DETAIL, OVERVIEW, SCENE
+from tests.topography.made import DETAIL, OVERVIEW, SCENE, measure_surfaces_once
 
 READING, PREDICTION, SPHERE = (
     set(record.model_fields) for record in (ReadingOptions, PredictionOptions, SphereOptions)
@@ -124,11 +124,19 @@ def test_an_option_that_does_not_exist_is_refused():
         cf.read_scan(OVERVIEW, SCENE, range="1nm")
 
 
+@pytest.fixture
+def measured_once(monkeypatch):
+    """Predictions of equal files measure their surface once."""
+    measure_surfaces_once(monkeypatch)
+
+
+@pytest.mark.usefixtures("measured_once")
 def test_the_range_of_attraction_reaches_the_verdict_of_the_library():
     with pytest.raises(ValueError, match=r"does not apply: .*attraction short against the sphere"):
         cf.predict(OVERVIEW, SCENE, range="3um")
 
 
+@pytest.mark.usefixtures("measured_once")
 def test_reservations_fail_where_the_library_is_strict():
     assert cf.predict(OVERVIEW, SCENE).verdict.of("reservation")
     with pytest.raises(ValueError, match=r"^the theory applies with reservations: small slopes"):

@@ -1,5 +1,7 @@
 """Fields and cycles that tests of cycles share."""
 
+import functools
+
 import numpy as np
 import pytest
 from scipy.ndimage import gaussian_filter
@@ -40,9 +42,12 @@ def patches(seed, sites, samples, interpolation):
     return polar_field(radii, adhesion, interpolation), radii[1] - radii[0]
 
 
+@functools.cache
 def cycles_of_few_sites(interpolation):
     """Field and record of each of some cycles over patches that are as wide as a contact."""
+    found = []
     for seed in range(40):
         field, _ = patches(seed, (4, 24), (16, 40), interpolation)
         recorder = Recorder(fronts=True, energy=True)
-        yield field, run_cycle(field, LoadSchedule(0.6, 0.05), recorder=recorder)
+        found.append((field, run_cycle(field, LoadSchedule(0.6, 0.05), recorder=recorder)))
+    return found

@@ -113,12 +113,11 @@ def test_the_load_steps_leave_no_trace_on_any_kind_of_field(solver, direction, f
     assert np.allclose(front, at_once, rtol=0, atol=SAME)
 
 
-@every_solver
 @pytest.mark.parametrize("direction", [1, -1])
 @settings(max_examples=10)
 @given(seed=st.integers(0, 2**32 - 1), tile=st.booleans(), n_ray=st.sampled_from([8, 15, 16, 21]))
 def test_any_order_of_forward_moves_ends_in_the_same_front_on_cubic_pieces(
-    solver, direction, seed, tile, n_ray
+    direction, seed, tile, n_ray
 ):
     field = random_field(seed, n_ray, 0.3, tile=tile, interpolation="cubic")
     rng, load = np.random.default_rng(seed), 0.3 if direction > 0 else -0.1
@@ -136,9 +135,10 @@ def test_any_order_of_forward_moves_ends_in_the_same_front_on_cubic_pieces(
         moving = rng.random(n_ray) < rng.random()
         front += direction * np.where(moving, drive / bound, 0.0)
     assume(np.min(front) >= 0.25)
-    found = held(start, load, direction, field, solver)
-    assert np.abs(found - start).max() > 0.05
-    assert np.allclose(found, front, rtol=0, atol=1e-7)
+    for solver in SOLVERS:
+        found = held(start, load, direction, field, solver)
+        assert np.abs(found - start).max() > 0.05
+        assert np.allclose(found, front, rtol=0, atol=1e-7), solver
 
 
 @every_solver
@@ -238,8 +238,8 @@ def last_held(front, low, high, field, solver, n_step):
 
 @every_solver
 def test_pull_off_of_a_smooth_sphere_is_met_to_ten_digits_by_ever_smaller_steps(solver):
-    field = polar_field(0.01 * np.arange(1, 201), np.full((200, 8), WORK_OF_ADHESION))
-    low, high, front = last_held(np.full(8, 1.0), -1.0, -0.8, field, solver, 32)
+    field = polar_field(0.01 * np.arange(1, 201), np.full((200, 4), WORK_OF_ADHESION))
+    low, high, front = last_held(np.full(4, 1.0), -1.0, -0.8, field, solver, 32)
     assert jkr.pull_off_penetration() == pytest.approx(-0.908560296, abs=5e-10)
     assert high - low < 1e-10
     assert high == pytest.approx(jkr.pull_off_penetration(), abs=1e-10)
@@ -249,8 +249,8 @@ def test_pull_off_of_a_smooth_sphere_is_met_to_ten_digits_by_ever_smaller_steps(
 
 @every_solver
 def test_the_radius_nears_pull_off_as_the_root_of_the_distance(solver):
-    field = polar_field(0.01 * np.arange(1, 201), np.full((200, 24), WORK_OF_ADHESION))
-    front, distances = np.full(24, 1.0), 10.0 ** -np.arange(2, 10)
+    field = polar_field(0.01 * np.arange(1, 201), np.full((200, 4), WORK_OF_ADHESION))
+    front, distances = np.full(4, 1.0), 10.0 ** -np.arange(2, 10)
     excess = []
     for distance in distances:
         front = tight(front, jkr.pull_off_penetration() + distance, -1, field, solver)

@@ -4,7 +4,6 @@ import os
 import subprocess
 import sys
 
-import numba
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -12,6 +11,7 @@ from hypothesis import strategies as st
 from scipy.ndimage import gaussian_filter
 
 from crackfront.core.adhesion import AdhesionMap, rough_adhesion
+from crackfront.core.compiled import jit
 from crackfront.core.cycle.record import Recorder
 from crackfront.core.cycle.run import run_cycle
 from crackfront.core.cycle.schedule import LoadSchedule
@@ -48,7 +48,8 @@ def outcomes(front, penetration, direction, field):
     ]
 
 
-@numba.njit
+# Kept on disk, as the kernels that it calls are.
+@jit
 def stiffness_ahead(problem, radius, segment, product, reach):
     return hardening(problem, 0, radius, product, segment, reach)
 

@@ -272,24 +272,24 @@ def slow_front(case, start, penetration, direction, rng):
         front[site] = target if part * step == length else a + direction * part * step
 
 
-@every_solver
 @pytest.mark.parametrize("direction", [1, -1])
 @pytest.mark.parametrize(("seed", "n_angle"), [(1, 8), (2, 9), (3, 16), (4, 17)])
-def test_any_order_of_single_forward_moves_ends_in_the_same_front(solver, direction, seed, n_angle):
+def test_any_order_of_single_forward_moves_ends_in_the_same_front(direction, seed, n_angle):
     case = Rays(seed, n_angle=n_angle, amplitude=0.3, spacing=0.12)
     start = np.full(n_angle, 1.0 if direction > 0 else 2.0)
     penetration = 0.3 if direction > 0 else -0.1
     slow = slow_front(case, start, penetration, direction, np.random.default_rng(seed))
-    fast = tight(start, penetration, direction, case.field, solver)
-    assert fast.status is Status.CONVERGED
-    assert np.abs(fast.front - start).max() > 0.1
-    assert np.allclose(fast.front, slow, rtol=0, atol=SAME)
+    for solver in SOLVERS:
+        fast = tight(start, penetration, direction, case.field, solver)
+        assert fast.status is Status.CONVERGED, solver
+        assert np.abs(fast.front - start).max() > 0.1, solver
+        assert np.allclose(fast.front, slow, rtol=0, atol=SAME), solver
 
 
-@every_solver
+@pytest.mark.parametrize("solver", sorted(set(SOLVERS) - {"reference"}))
 @few
 @given(case=rays())
-def test_every_solver_ends_in_the_front_of_the_reference(solver, case):
+def test_every_other_solver_ends_in_the_front_of_the_reference(solver, case):
     loads = [0.0, 0.4, 0.8]
     for direction, start in ((1, case.circle()), (-1, case.circle() + 2.2)):
         found = along(start, loads[::direction], direction, case.field, solver)
@@ -503,7 +503,7 @@ def test_a_front_solves_the_equation_of_equilibrium_in_si(solver):
 def test_raising_the_load_by_two_at_once_meets_no_spurious_root_in_compression(solver, case, start):
     front = np.full(case.n_angle, max(start, case.radii[0]))
     at_once = tight(front, 2.0, 1, case.field, solver)
-    in_steps = along(front, np.linspace(0, 2, 21), 1, case.field, solver)
+    in_steps = along(front, np.linspace(0, 2, 11), 1, case.field, solver)
     assert at_once.front.min() >= np.sqrt(2.0)
     assert np.allclose(at_once.front, in_steps[-1], rtol=0, atol=SAME)
 

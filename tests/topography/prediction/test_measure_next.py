@@ -1,24 +1,22 @@
 """Which scan to measure next follows from what the draws leave open."""
 
-import functools
 import re
 from dataclasses import replace
 
 import pytest
 
-from crackfront.topography.options import reading_options
 from crackfront.topography.prediction.prediction import predicted
 from crackfront.topography.prediction.surface_remarks import measure_next
 from crackfront.topography.scan.reading import read_measurements
 from crackfront.topography.spectrum.measures import measured_surface
-from tests.topography.made import DETAIL, OVERVIEW, SCENE, map_heights, write_al3d
-
-
-@functools.cache
-def known(*paths, detrend="2"):
-    """A surface of files."""
-    options = reading_options({"detrend": detrend}, len(paths))
-    return measured_surface(read_measurements(paths, options))
+from tests.topography.made import (
+    DETAIL,
+    OVERVIEW,
+    SCENE,
+    map_heights,
+    shipped_surface,
+    write_al3d,
+)
 
 
 def lengths(sentence):
@@ -28,41 +26,43 @@ def lengths(sentence):
 
 
 def test_a_detail_needs_a_larger_scan_and_an_overview_a_finer_one():
-    larger = measure_next(known(DETAIL)).sentence
+    larger = measure_next(shipped_surface(DETAIL)).sentence
     assert "a scan with a side of" in larger.lower()
     side, pixel = lengths(larger)
     assert side > 7.2  # that of the detail
     assert pixel < 3.6 / 4  # waves that the detail holds too
-    finer = measure_next(known(OVERVIEW)).sentence
+    finer = measure_next(shipped_surface(OVERVIEW)).sentence
     assert "a scan with pixels of at most" in finer.lower()
     pixel, side = lengths(finer)
     assert pixel < 0.3 / 4
     assert side > 2 * 1.32  # waves that the overview holds too
 
 
-def test_the_scan_that_is_asked_for_narrows_the_interval_as_much_as_was_said():
-    detail, both = known(DETAIL).joint.draws, known(DETAIL, OVERVIEW).joint.draws
+def test_the_scan_that_is_asked_for_narrows_the_interval_as_much_as_was_said(surface):
+    detail, both = shipped_surface(DETAIL).joint.draws, surface.joint.draws
     longer, shorter = detail.factors_with
     assert both.factor < 1.5 * longer < shorter < detail.factor
-    assert "would hardly narrow it" in measure_next(known(DETAIL, OVERVIEW)).sentence
+    assert "would hardly narrow it" in measure_next(surface).sentence
 
 
 @pytest.mark.parametrize("path", [DETAIL, OVERVIEW])
 def test_the_advice_is_the_same_under_a_levelling_of_another_order(path):
     kinds = {
-        re.sub(r"[\d.]+", "", measure_next(known(path, detrend=detrend)).sentence)
-        for detrend in ("2", "4")
+        re.sub(r"[\d.]+", "", measure_next(shipped_surface(path, **given)).sentence)
+        for given in ({}, {"detrend": "4"})
     }
     assert len(kinds) == 1
 
 
+@pytest.mark.usefixtures("few_draws")
 def test_scans_that_disagree_stand_in_the_first_line_of_the_page(tmp_path, rng):
     heights = map_heights(rng)
     paths = [
         write_al3d(tmp_path / "as-made.al3d", heights),
         write_al3d(tmp_path / "louder.al3d", 3 * heights[::-1]),
     ]
-    page = repr(predicted(known(*paths), replace(SCENE, contact_modulus=1e3)))
+    surface = measured_surface(read_measurements(paths))
+    page = repr(predicted(surface, replace(SCENE, contact_modulus=1e3)))
     first = page.splitlines()[0]
     assert "disagrees with the other scans" in first
     assert page.count(first) == 1

@@ -13,7 +13,6 @@ from crackfront.analysis.law_spheres import sphere_factors
 from crackfront.core import jkr
 from crackfront.core.adhesion import larkin_length
 from crackfront.core.spectrum import TabulatedSpectrum
-from crackfront.topography.options import reading_options
 from crackfront.topography.page.report import report_text
 from crackfront.topography.prediction.prediction import predicted
 from crackfront.topography.prediction.surface_remarks import spectrum_remarks
@@ -23,8 +22,7 @@ from crackfront.topography.prediction.works import (
     surface_spectrum,
     works,
 )
-from crackfront.topography.spectrum.measures import read_surface
-from tests.topography.made import DETAIL, OVERVIEW, SCENE
+from tests.topography.made import DETAIL, OVERVIEW, SCENE, shipped_surface
 
 
 def sentences(found, *severities):
@@ -75,7 +73,7 @@ def amplified(surface, factor):
 @pytest.mark.parametrize("scans", [[OVERVIEW], [DETAIL, OVERVIEW]])
 def test_intervals_hold_the_works_at_every_e_el_within_its_own(scans):
     """The factor k falls with e_el, so that w_retr is largest within the interval of one scan."""
-    found = predicted(read_surface(scans, reading_options({}, len(scans))), SCENE)
+    found = predicted(shipped_surface(*scans), SCENE)
     for e_el in np.geomspace(found.e_el.low, found.e_el.high, 7):
         other = works(amplified(found.surface, e_el / found.e_el.value), SCENE)
         for name in ("w_appr", "w_retr", "hysteresis", "front_hysteresis"):

@@ -1,18 +1,14 @@
 """The simulations behind a prediction."""
 
-import functools
 from dataclasses import replace
 
 import pytest
 
 from crackfront.simulate.line.schedule import LineSchedule
-from crackfront.simulate.run import run_simulation
 from crackfront.simulate.sphere.steady import SteadySchedule
 from crackfront.topography.prediction.prediction import predicted
 from crackfront.topography.prediction.simulated import prediction_plan, simulated
-from crackfront.topography.scan.reading import read_measurements
-from crackfront.topography.spectrum.measures import measured_surface
-from tests.topography.made import OVERVIEW, SCENE
+from tests.topography.made import OVERVIEW, SCENE, shipped_surface
 
 
 @pytest.fixture
@@ -26,23 +22,15 @@ def small_limits(monkeypatch):
     return limit
 
 
-@pytest.fixture
-def _each_simulated_once(monkeypatch):
-    """Equal simulations are run once."""
-    once = functools.cache(run_simulation)
-    monkeypatch.setattr("crackfront.topography.prediction.simulated.run_simulation", once)
-
-
 LONG_WAVES = replace(SCENE, radius=0.5e-3, contact_modulus=1.2e6 / 0.75)
 
 
 @pytest.fixture(scope="module")
 def coarse():
     """The surface of the overview alone, with few sites under a sphere."""
-    return measured_surface(read_measurements([OVERVIEW]))
+    return shipped_surface(OVERVIEW)
 
 
-@pytest.mark.usefixtures("_each_simulated_once")
 def test_a_sphere_with_too_many_sites_is_a_straight_front_on_its_springs(coarse, small_limits):
     sphere_plan = prediction_plan(coarse, LONG_WAVES, 2, 1)
     assert sphere_plan.remark == ""
@@ -51,14 +39,14 @@ def test_a_sphere_with_too_many_sites_is_a_straight_front_on_its_springs(coarse,
     plan = prediction_plan(coarse, LONG_WAVES, 2, 1)
     schedule = plan.simulations[0].schedule
     assert isinstance(schedule, LineSchedule)
-    spring = predicted(coarse, LONG_WAVES).l_kappa / LONG_WAVES.lateral
+    prediction = predicted(coarse, LONG_WAVES)
+    spring = prediction.l_kappa / LONG_WAVES.lateral
     assert schedule.spring == pytest.approx(spring)
     assert schedule.length >= 9.99 * spring
     found = simulated(plan, LONG_WAVES)
     assert found.remark == plan.remark
     assert "a straight front is simulated, on springs of the length L_kappa" in plan.remark
-    law = predicted(coarse, LONG_WAVES).factors.both
-    assert found.k.value == pytest.approx(law.value, rel=0.15)
+    assert found.k.value == pytest.approx(prediction.factors.both.value, rel=0.15)
 
 
 def test_what_is_too_large_in_every_way_is_refused(coarse, small_limits):

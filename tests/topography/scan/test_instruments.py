@@ -148,6 +148,7 @@ def test_channels_are_listed_and_those_of_other_quantities_refused(monkeypatch, 
     assert "channel 'Default' holds phase, no heights" in refusal(scan)
 
 
+@pytest.mark.usefixtures("few_draws")
 def test_a_channel_of_lengths_that_is_named_after_another_quantity_is_in_doubt(tmp_path, noise):
     path = write_text(tmp_path / "scan.txt", noise)
     path.write_text(path.read_text().replace("Channel: Main", "Channel: AmplitudeTrace"))

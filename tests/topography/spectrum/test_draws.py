@@ -6,16 +6,14 @@ import numpy as np
 import pytest
 
 from crackfront.core.spectrum import TabulatedSpectrum
-from crackfront.topography.density.bands import analysed_scan
 from crackfront.topography.options import PredictionOptions
 from crackfront.topography.prediction.prediction import check_and_predict
-from crackfront.topography.scan.reading import read_measurements
 from crackfront.topography.spectrum import draws, quadrature
 from crackfront.topography.spectrum.draws import ORDERS, Draws, mean_squares
 from crackfront.topography.spectrum.joining import joint_spectrum
 from crackfront.topography.spectrum.measures import measured_surface
 from studies.accuracy.energies import KINDS, found_scan
-from tests.topography.made import DETAIL, OVERVIEW, SCENE
+from tests.topography.made import DETAIL, OVERVIEW, SCENE, shipped_surface
 
 MOST = 0.03
 """How far the median and the ends of an interval may move, as a part of its width."""
@@ -33,10 +31,7 @@ def moved(one, other):
 
 
 FILES = {"detail": [DETAIL], "overview": [OVERVIEW], "both": [DETAIL, OVERVIEW]}
-MEASURED = {
-    name: lambda files=files: measured_surface(read_measurements(files))
-    for name, files in FILES.items()
-} | {
+MEASURED = {name: lambda files=files: shipped_surface(*files) for name, files in FILES.items()} | {
     kind.name: lambda kind=kind: found_scan(kind, 0).surface
     for kind in KINDS
     if kind.name in ("roll-off outside", "optic, Gaussian", "deep scratches", "three line scans")
@@ -77,17 +72,16 @@ def test_intervals_do_not_depend_on_the_seeds_and_the_digits_of_heights(measurem
 
 
 def test_four_times_as_many_draws_say_the_same(monkeypatch):
-    measurements = read_measurements([DETAIL])
-    known = measured_surface(measurements)
+    known = shipped_surface(DETAIL)
     number = 4 * known.joint.draws.weight.size // draws.BATCH
     monkeypatch.setattr(draws, "BATCHES", (number,))
-    more = measured_surface(measurements)
+    more = measured_surface([one.measurement for one in known.scans])
     assert more.joint.draws.weight.size == number * draws.BATCH
     assert moved(ends(known), ends(more)) < MOST
 
 
 def test_what_is_unsettled_is_what_moves():
-    scans = [analysed_scan(one) for one in read_measurements([DETAIL])]
+    scans = shipped_surface(DETAIL).scans
     found = [joint_spectrum(scans, seed).draws for seed in range(6)]
     energies = [item.mean_square(0.5) for item in found]
     logarithms = np.log([(one.low, one.value, one.high) for one in energies])
@@ -133,7 +127,7 @@ def test_mean_squares_of_draws_are_those_of_tables(rng):
 @pytest.mark.parametrize("files", [[OVERVIEW], [DETAIL, OVERVIEW]], ids=["unsure", "known"])
 def test_what_is_a_little_stiffer_has_no_other_kind_of_answer(files):
     """From a sphere that conforms to one that does not, as by heights that grow by one per cent."""
-    surface = measured_surface(read_measurements(files))
+    surface = shipped_surface(*files)
     known, outcomes = None, []
     for modulus in SCENE.contact_modulus * 1.02 ** np.arange(120):
         verdict, found = check_and_predict(
@@ -153,6 +147,7 @@ def test_what_is_a_little_stiffer_has_no_other_kind_of_answer(files):
     assert order == ["applies with reservations", "cannot be decided", "does not apply"]
 
 
+@pytest.mark.usefixtures("few_draws")
 @pytest.mark.parametrize("number", [3, 12])
 def test_a_gaussian_spot_that_looks_blunt_is_no_fall_of_the_surface(number):
     [kind] = [kind for kind in KINDS if kind.name == "optic, Gaussian"]

@@ -1,7 +1,5 @@
 """What a surface is: spectrum and rms measures of one scan or several."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 
@@ -24,7 +22,8 @@ from tests.topography.made import (
     write_line,
 )
 
-SHIPPED = tuple(sorted((Path(__file__).parents[3] / "examples/scans").glob("*.al3d")))
+# A batch says what a surface is; how many there should be, test_draws.py asks.
+pytestmark = pytest.mark.usefixtures("few_draws")
 
 
 def half(surface):
@@ -32,8 +31,7 @@ def half(surface):
     return surface.half_derivative
 
 
-def test_the_spectrum_of_the_shipped_scans_is_that_of_nanodiamond():
-    surface = measured_surface(read_measurements(SHIPPED))
+def test_the_spectrum_of_the_shipped_scans_is_that_of_nanodiamond(surface):
     fit, truth = surface.joint.fit, SelfAffineSpectrum(0.1e-6, 2.1e-6, 1.0, 8.4e-27)
     for found, value in ((fit.roll_off, 2.1e-6), (fit.hurst, 1.0), (fit.plateau, 8.4e-27)):
         assert 0.99 * found.low < value < 1.01 * found.high

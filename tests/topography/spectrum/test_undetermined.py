@@ -10,9 +10,11 @@ from numpy.testing import assert_allclose
 from crackfront.topography.density.bands import analysed_scan
 from crackfront.topography.prediction.surface_remarks import spectrum_remarks
 from crackfront.topography.scan.reading import Measurement
-from crackfront.topography.spectrum import draws
 from crackfront.topography.spectrum.joining import joint_spectrum
 from crackfront.topography.spectrum.measures import measured_surface
+
+# A batch is enough to see whether there is an answer.
+pytestmark = pytest.mark.usefixtures("few_draws")
 
 PIXEL = 0.1e-6
 
@@ -39,12 +41,6 @@ def waves_up_to(number, rng, shape=(48, 48)):
     along = np.fft.fftfreq(shape[0], 1 / shape[0])
     transform[np.hypot(along[:, None], np.arange(transform.shape[1])) > number] = 0
     return 1e-8 * np.fft.irfft2(transform, shape)
-
-
-@pytest.fixture(autouse=True)
-def few_draws(monkeypatch):
-    """One batch of draws, which is enough to see whether there is an answer."""
-    monkeypatch.setattr(draws, "BATCHES", (1,))
 
 
 def refusal(*measurements):
