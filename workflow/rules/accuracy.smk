@@ -91,7 +91,7 @@ rule accuracy_report:
         mem_mb=2000,
         runtime=60,
     params:
-        sources=fingerprint("studies.accuracy.report"),
+        sources=fingerprint("studies.accuracy.drawing"),
         results=folder,
     shell:
         f"{STUDIES} accuracy report --output {{params.results:q}}{LOGGED}"
