@@ -14,6 +14,7 @@ import xarray as xr
 
 from crackfront.data.provenance import provenance
 from crackfront.plots.style import STYLE
+from crackfront.simulate.run import run_simulation
 from crackfront.sweep.configuration import load_configuration
 from crackfront.sweep.store import Store
 from tests.commands import curves, datasets, slow
@@ -236,7 +237,7 @@ def test_a_signal_stores_what_runs_and_ends_cleanly(configuration, same, tmp_pat
     assert same(tmp_path)
 
 
-def test_a_killed_process_goes_on_from_its_last_checkpoint(same_as_made, tmp_path):
+def test_a_killed_process_goes_on_from_its_last_checkpoint(same_as_made, tmp_path, monkeypatch):
     with running(TEST, tmp_path, "--checkpoint", "0", until=1) as process:
         while not any((tmp_path / "checkpoints").glob("[!.]*.nc")):
             time.sleep(0.01)
@@ -247,7 +248,15 @@ def test_a_killed_process_goes_on_from_its_last_checkpoint(same_as_made, tmp_pat
     [checkpoint] = (tmp_path / "checkpoints").glob("[!.]*.nc")
     known = xr.load_dataset(checkpoint)["force"]
     kept = len(stored(tmp_path))
+    resumed = []
+
+    def noted(simulation, **how):
+        resumed.append("resume" in how)
+        return run_simulation(simulation, **how)
+
+    monkeypatch.setattr("crackfront.sweep.tasks.run_simulation", noted)
     assert rerun(TEST, tmp_path) == 8 - kept
+    assert sum(resumed) == 1
     ended = datasets(tmp_path)[checkpoint.name]["force"]
     assert known.size < ended.size
     assert ended.values[: known.size].tobytes() == known.values.tobytes()
