@@ -471,6 +471,13 @@ def test_complex_numbers_are_no_surface():
         cf.run_loop(tile(0.01 * WAVE * 1j), loads=[0])
 
 
+@pytest.mark.parametrize("coordinates", [{"y": ("row", np.arange(32))}, {"y": 3.0}])
+def test_a_coordinate_along_no_dimension_of_its_name_is_of_no_concern(coordinates):
+    values = xr.DataArray(1 + WAVE, coordinates | {"x": np.arange(32) / 8}, ("x", "row"))
+    found = cf.surface(values, 4.0, kind="chemical", units="w_int")
+    xr.testing.assert_equal(found, cf.surface(1 + WAVE, 4.0, kind="chemical", units="w_int"))
+
+
 @pytest.mark.parametrize("unit", ["um", "m", "reduced"])
 def test_a_side_and_the_coordinate_of_an_array_are_compared_in_one_unit(unit):
     places = {"um": 1e-6, "m": 1.0, "reduced": SPHERE.lateral}[unit]

@@ -151,7 +151,8 @@ def _refuse_other_side(values: xr.DataArray, side: float | str, sphere: Scales |
     """Raise if coordinates of an array span another side than is given, or are not of a tile."""
     wanted = float(side) if sphere is None else in_si("side", side, "m")
     for name in ("x", "y"):
-        if name not in values.coords or "x" not in values.dims or values.sizes[name] < 2:
+        along_dimension = name in values.coords and {"x", name} <= {*values.dims}
+        if not along_dimension or values.sizes[name] < 2:
             continue
         if name == "y" and values.y[0] > values.y[-1]:
             # As in pictures, whose rows are counted downwards.
