@@ -9,7 +9,9 @@ they end with that process, however it ends.
 from __future__ import annotations
 
 import contextlib
+import functools
 import importlib
+import itertools
 import os
 import secrets
 import shlex
@@ -19,13 +21,16 @@ import subprocess
 import sys
 import threading
 import time
+import traceback
 from collections.abc import Callable, Generator, Iterator, Sequence
-from concurrent.futures import Executor, as_completed
 from pathlib import Path
 from types import FrameType
-from typing import TypeVar, cast
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from crackfront.data.bounds import counted
+
+if TYPE_CHECKING:
+    from mpi4py import MPI
 
 Task = TypeVar("Task")
 Result = TypeVar("Result")
@@ -57,6 +62,9 @@ _RANK_VARIABLES = (
 
 _POLL_SECONDS = 0.02
 """Time between two polls of a launcher. (Units: s)"""
+
+_LONGEST_NAP = 0.001
+"""Longest time between two looks for a message. (Units: s)"""
 
 _GRACE_SECONDS = 10.0
 """Time that a launcher has to end its ranks before it is killed. (Units: s)"""
@@ -204,10 +212,37 @@ def serve_tasks(module: str) -> None:
     """
     importlib.import_module(module)
     from mpi4py import MPI
-    from mpi4py.futures import MPICommExecutor
 
-    with MPICommExecutor(MPI.COMM_WORLD, root=0):
-        pass
+    world = MPI.COMM_WORLD
+    while (handed := world.recv(source=_sender(world))) is not None:
+        function, task = handed
+        try:
+            answer = function(task), ""
+        except Exception:  # the manager raises one with this text
+            answer = None, traceback.format_exc()
+        _nap_until(functools.partial(_is_sent, world.isend(answer, 0)))
+
+
+def _is_sent(request: MPI.Request) -> bool:
+    """Whether a message has left this rank."""
+    return bool(request.Test())
+
+
+def _sender(world: MPI.Intracomm) -> int:
+    """Wait for a message; return the rank that sent it."""
+    from mpi4py import MPI
+
+    status = MPI.Status()
+    _nap_until(lambda: world.iprobe(status=status))
+    return status.Get_source()
+
+
+def _nap_until(ready: Callable[[], bool]) -> None:
+    """Wait without taking the core from other ranks, as a wait inside of MPI would."""
+    nap = 0.0
+    while not ready():
+        time.sleep(nap)
+        nap = min(_LONGEST_NAP, 2 * nap + 1e-6)
 
 
 def run_tasks(
@@ -218,27 +253,45 @@ def run_tasks(
     Without MPI the tasks run here, one after the other. With MPI this is called by the manager
     while the other ranks are in :func:`serve_tasks`, also where there is no task. The longest tasks
     stand first. The function is a module's, of one task; it and the tasks travel by pickle. `keep`
-    takes every task and its result here, also of those that end while this is closed.
+    takes every task and its result here, also of those that end while this is closed. RuntimeError
+    with the traceback if a task fails on a rank, when those that run beside it have ended.
     """
     if not under_mpi():
         for task in tasks:
             yield task, keep(task, function(task))
         return
     from mpi4py import MPI
-    from mpi4py.futures import MPICommExecutor
 
-    with MPICommExecutor(MPI.COMM_WORLD, root=0) as entered:
-        executor = cast("Executor", entered)  # None on the other ranks, which are not here
-        futures = {executor.submit(function, task): task for task in tasks}
-        try:
-            for future in as_completed(list(futures)):
-                task = futures.pop(future)
-                yield task, keep(task, future.result())
-        finally:
-            executor.shutdown(wait=True, cancel_futures=True)
-            for future, task in futures.items():
-                if not future.cancelled() and future.exception() is None:
-                    keep(task, future.result())
+    world = MPI.COMM_WORLD
+    left = iter(tasks)
+    running: dict[int, tuple[Task, MPI.Request]] = {}
+
+    def hand_out(rank: int) -> None:
+        for task in itertools.islice(left, 1):
+            running[rank] = task, world.isend((function, task), rank)
+
+    def take_in() -> tuple[int, Task, Any, str]:
+        rank = _sender(world)
+        task, sent = running.pop(rank)
+        sent.wait()
+        return rank, task, *world.recv(source=rank)
+
+    try:
+        for rank in range(1, world.size):
+            hand_out(rank)
+        while running:
+            rank, task, result, failure = take_in()
+            if failure:
+                raise RuntimeError(f"rank {rank} failed:\n{failure}")
+            hand_out(rank)  # it computes while this one stores
+            yield task, keep(task, result)
+    finally:
+        while running:
+            _, task, result, failure = take_in()
+            if not failure:
+                keep(task, result)
+        for rank in range(1, world.size):
+            world.send(None, rank)
 
 
 def default_launcher() -> str:

@@ -5,7 +5,8 @@ from __future__ import annotations
 import functools
 from collections.abc import Callable, Generator, Mapping, Sequence
 from contextlib import closing
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from pathlib import Path
 
 from numba.core.errors import NumbaError
 
@@ -106,16 +107,19 @@ class _TaskResult:
     """What the process that ran a task hands to the one that stores it."""
 
     outcome: SimulationOutcome
-    entry: Entry | None = None
-    curve: bytes = b""
+    files: Mapping[str, bytes] = field(default_factory=dict)
+    """What is to be stored, by the names in a pack; nothing where it has not ended."""
+    checkpoint: Path | None = None
+    """What is of no use then."""
 
 
 def _keep(packs: Mapping[str, Pack], task: _Task, result: _TaskResult) -> SimulationOutcome:
     """Store a simulation that has ended and remove its checkpoint; return how it ended."""
-    if result.entry is not None:
+    if result.files:
         try:
-            packs[task.simulation.spectrum_name].append(result.entry.files(result.curve))
-            task.store.checkpoint(task.simulation).unlink(missing_ok=True)
+            packs[task.simulation.spectrum_name].append(result.files)
+            if result.checkpoint is not None:
+                result.checkpoint.unlink(missing_ok=True)
         except OSError as error:
             return _not_stored(error)
     return result.outcome
@@ -185,8 +189,10 @@ def _run(task: _Task) -> _TaskResult:
         curve = dataset_content(simulation_dataset(result), origin)
         row, sentence, seconds = sweep_row(result), wrong, result.measures.seconds
     named = simulation.stem, simulation.parts, row_fingerprint()
-    entry = Entry(*named, row, origin.arithmetic)
-    return _TaskResult(SimulationOutcome(row.status, seconds, sentence), entry, curve)
+    files = Entry(*named, row, origin.arithmetic).files(curve)
+    left = task.store.checkpoint(simulation)
+    checkpoint = left if left.exists() else None
+    return _TaskResult(SimulationOutcome(row.status, seconds, sentence), files, checkpoint)
 
 
 class _StopRequestedError(Exception):

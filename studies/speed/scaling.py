@@ -153,30 +153,45 @@ def disk_of_simulation() -> float:
 
 
 def hand_out_seconds(n_worker: int = 4, n_task: int = 5000) -> float:
-    """Time of the rank that hands out, for a task whose curve of 30 kB it stores."""
+    """Time of the rank that hands out, for a simulation of the default sweep that it stores.
+
+    Each worker runs one, and answers with its curve and row from then on.
+    """
     script = f"""
 import sys, time
 from pathlib import Path
-from crackfront.data.packs import Pack
 from crackfront.sweep import parallel
-pack, files = Pack(Path(sys.argv[1]) / "curves.tar"), {{"row.json": bytes(2000)}}
-for tasks in ([0] * {n_worker}, [30_000] * {n_task}):
-    started = time.perf_counter()
-    if parallel.is_manager({n_worker}):
-        keep = lambda task, curve: pack.append(files | {{"curve.nc": curve}})
-        assert len(list(parallel.run_tasks(bytes, tasks, keep))) == len(tasks)
-    else:
+manager = parallel.is_manager({n_worker})
+from crackfront.sweep import tasks
+run, first = tasks._run, []
+def answer(task):
+    first[:] = first or [run(task)]
+    return first[0]
+tasks._run = answer
+if not manager:
+    for _ in range(2):
         parallel.serve_tasks("time")
-if parallel.is_manager({n_worker}):
-    print((time.perf_counter() - started) / {n_task})
+    sys.exit()
+from crackfront.cli.sweep import run_missing
+from crackfront.sweep.library import opened
+sweep, store, origin = opened(Path(sys.argv[2]), Path(sys.argv[1]))
+simulations = list(sweep.simulations())
+run_missing(store, tuple(simulations[:{n_worker}]), origin)
+started = time.perf_counter()
+run_missing(store, tuple((simulations * {n_task})[:{n_task}]), origin)
+print((time.perf_counter() - started) / {n_task})
 """
     with tempfile.TemporaryDirectory() as folder:
         mpi = [*default_launcher().split(), "-n", str(n_worker + 1), sys.executable, "-m", "mpi4py"]
         (path := Path(folder) / "dispatch.py").write_text(script)
         done = subprocess.run(
-            [*mpi, str(path), folder], capture_output=True, text=True, timeout=250, check=True
+            [*mpi, str(path), folder, str(ROOT / "config/default.yaml")],
+            capture_output=True,
+            text=True,
+            timeout=250,
+            check=True,
         )
-    return float(done.stdout)
+    return float(done.stdout.split()[-1])
 
 
 def start_seconds() -> float:

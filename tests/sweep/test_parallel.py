@@ -257,12 +257,13 @@ def test_a_launcher_of_another_mpi_is_no_silent_serial_run(tmp_path):
 
 
 @pytest.mark.mpi
-def test_an_exception_in_a_task_ends_the_job_at_once(tmp_path):
+def test_an_exception_in_a_task_ends_the_job_and_what_runs_beside_it_is_kept(tmp_path):
     script = tmp_path / "failing.py"
     script.write_text(
         "from crackfront.sweep import parallel\n"
         "if parallel.is_manager(2):\n"
-        "    list(parallel.run_tasks((1).__truediv__, [1, 0, 1, 1], max))\n"
+        "    keep = lambda task, result: print(f'kept {task}: {result}', flush=True)\n"
+        "    list(parallel.run_tasks((1).__truediv__, [0, 4], keep))\n"
         "else:\n"
         "    parallel.serve_tasks('operator')\n"
     )
@@ -272,3 +273,4 @@ def test_an_exception_in_a_task_ends_the_job_at_once(tmp_path):
     )
     assert run.returncode != 0
     assert "ZeroDivisionError" in run.stderr
+    assert run.stdout.count("kept 4: 0.25") == 1
