@@ -40,6 +40,8 @@ def test_numbers_have_the_error_of_their_cell_or_of_their_claim():
 def test_times_and_memory_are_not_compared():
     assert [one.value for one in numbers(TIMES)] == [0.1]
     assert [*numbers("Scale paper, 3 s of one core.")] == []
+    fastest = "| scene | g | 1% |\n| --- | --- | --- |\n| flat | 0.5 | 0.2 s (0.9%), 461 times |"
+    assert [one.value for one in numbers(fastest)] == [0.5]
 
 
 def test_a_number_differs_beyond_its_error():
