@@ -8,6 +8,7 @@ What follows is run on copies of stored rows and curves.
 
 from __future__ import annotations
 
+import contextlib
 import heapq
 import resource
 import subprocess
@@ -253,6 +254,18 @@ def late(configuration: Path, command: str) -> tuple[float, float]:
     return time.process_time(), peak_memory()
 
 
+def planned(configuration: Path) -> tuple[float, float]:
+    """Processor time and memory of Snakemake's plan of a stored sweep. (Units: s, bytes)."""
+    from snakemake.cli import main as snakemake
+
+    folder = configuration.parents[2]
+    settings = [f"sweep={configuration}", f"block={REALISATIONS_OF_A_SHARD}"]
+    plan = ["--dry-run", "--cores", "1", "--directory", str(folder)]
+    with contextlib.suppress(SystemExit):
+        snakemake(["--snakefile", f"{ROOT}/Snakefile", *plan, "--config", *settings])
+    return time.process_time(), peak_memory()
+
+
 def late_table(sizes: Sequence[int]) -> str:
     """What the commands that follow the simulations take, and what the law in use says.
 
@@ -261,21 +274,29 @@ def late_table(sizes: Sequence[int]) -> str:
     """
     rows = []
     for n_row in sizes:
-        with tempfile.TemporaryDirectory() as folder:
-            path = synthetic(Path(folder), n_row, packed=(packed := n_row <= _MOST_PACKED))
+        with tempfile.TemporaryDirectory() as above:
+            (folder := Path(above, "results", "test")).mkdir(parents=True)
+            path = synthetic(folder, n_row, packed=(packed := n_row <= _MOST_PACKED))
+            rows.append(["snakemake -n", f"{n_row}", *_late_cells(in_fresh_process(planned, path))])
             costs = postprocessing_costs(load_configuration(path))
             commands = ("plan", "status", *costs, *(("checksums", "verify") if packed else ()))
             rows += [
-                [name, f"{n_row}", *_late_cells(path, name, costs.get(name))] for name in commands
+                [
+                    name,
+                    f"{n_row}",
+                    *_late_cells(in_fresh_process(late, path, name), costs.get(name)),
+                ]
+                for name in commands
             ]
             if packed:
                 rows.append(["sha256sum", f"{n_row}", f"{_sum_seconds(folder):.0f}", "-", "", "-"])
-                next(Path(folder, "shards").glob("*.nc")).unlink()
-                rows.append(["plan, a shard left", f"{n_row}", *_late_cells(path, "plan", None)])
+                next((folder / "shards").glob("*.nc")).unlink()
+                cells = _late_cells(in_fresh_process(late, path, "plan"))
+                rows.append(["plan, a shard left", f"{n_row}", *cells])
     return markdown_table("command | simulations | CPU s | by the law | MB | by the law", rows)
 
 
-def _sum_seconds(folder: str) -> float:
+def _sum_seconds(folder: Path) -> float:
     """Processor time of `sha256sum --check` in a folder, in seconds."""
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     checked = ["sha256sum", "--quiet", "--check", "SHA256SUMS"]
@@ -284,9 +305,9 @@ def _sum_seconds(folder: str) -> float:
     return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
 
 
-def _late_cells(path: Path, command: str, cost: Cost | None) -> list[str]:
+def _late_cells(measured: tuple[float, float], cost: Cost | None = None) -> list[str]:
     """Measured and expected seconds and megabytes of a command; some have no expectation."""
-    seconds, peak = in_fresh_process(late, path, command)
+    seconds, peak = measured
     expected = ("-", "-") if cost is None else (f"{cost.seconds:.0f}", f"{cost.memory / 1e6:.0f}")
     return [f"{seconds:.0f}", expected[0], f"{peak / 1e6:.0f}", expected[1]]
 
