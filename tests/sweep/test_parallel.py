@@ -257,15 +257,21 @@ def test_a_launcher_of_another_mpi_is_no_silent_serial_run(tmp_path):
 
 
 @pytest.mark.mpi
-def test_an_exception_in_a_task_ends_the_job_and_what_runs_beside_it_is_kept(tmp_path):
+def test_ranks_return_results_of_any_size_and_an_exception_ends_the_job_with_what_runs_kept(
+    tmp_path,
+):
     script = tmp_path / "failing.py"
     script.write_text(
         "from crackfront.sweep import parallel\n"
         "if parallel.is_manager(2):\n"
+        "    for sizes in ([], [7], [10**6, 0, 10**6, 3, 0]):\n"
+        "        found = list(parallel.run_tasks(bytes, sizes, lambda _, result: len(result)))\n"
+        "        assert sorted(found) == sorted(zip(sizes, sizes))\n"
         "    keep = lambda task, result: print(f'kept {task}: {result}', flush=True)\n"
         "    list(parallel.run_tasks((1).__truediv__, [0, 4], keep))\n"
         "else:\n"
-        "    parallel.serve_tasks('operator')\n"
+        "    for _ in range(4):\n"
+        "        parallel.serve_tasks('operator')\n"
     )
     mpi = [*default_launcher().split(), "-n", "3", sys.executable, "-m", "mpi4py"]
     run = subprocess.run(
