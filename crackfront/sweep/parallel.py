@@ -267,6 +267,7 @@ def run_tasks(
     running: dict[int, tuple[Task, MPI.Request]] = {}
 
     def hand_out(rank: int) -> None:
+        # The next task, if one is left.
         for task in itertools.islice(left, 1):
             running[rank] = task, world.isend((function, task), rank)
 

@@ -110,7 +110,7 @@ class _TaskResult:
     files: Mapping[str, bytes] = field(default_factory=dict)
     """What is to be stored, by the names in a pack; nothing where it has not ended."""
     checkpoint: Path | None = None
-    """What is of no use then."""
+    """File of a checkpoint that is to be removed once they are stored; None where there is none."""
 
 
 def _keep(packs: Mapping[str, Pack], task: _Task, result: _TaskResult) -> SimulationOutcome:
