@@ -62,8 +62,8 @@ BEGAN   := $(shell date +%s)
 ended    = echo "$$(date +%s) $(1)" >> .venv/.times
 
 .DEFAULT_GOAL := all
-.PHONY: all env test test-portable test-cluster nightly law accuracy validate benchmark timings reproduce reproduce-boundary figures report docs \
-  lint lock clean help
+.PHONY: all env test test-portable test-cluster nightly law accuracy validate benchmark timings reproduce reproduce-fronts reproduce-scans \
+  reproduce-boundary figures report docs lint lock clean help
 
 all: env  ## Run the sweep SWEEP to its figure and fit; by default with quick straight fronts
 	@echo $(BEGAN) > .venv/.times; $(call ended,environment)
@@ -156,25 +156,16 @@ timings: env  ## What depends on the machine, for the pages (an hour)
 
 # All of it resumes: rules that are done are not run again, and boundary elements keep every load step.
 reproduce: env  ## The numbers and figures of the pages, but for timings and reproduce-boundary (4 core hours)
-	$(MAKE) --no-print-directory law
-	$(MAKE) --no-print-directory figures SCALE=paper
+	$(MAKE) --no-print-directory --jobs 2 reproduce-fronts reproduce-scans
 	$(MAKE) --no-print-directory accuracy
-	$(MAKE) --no-print-directory validate VALIDATION=config/validation.yaml
 	cp results/accuracy/laws.png results/accuracy/work-precision.png docs/figures/
 	cp results/validation/differences.nc $(KEPT)/validation/differences-256.nc
 	cp $(addprefix results/figures/paper/,$(addsuffix .nc,$(PAPER))) $(KEPT)/
-	@$(REPAIR) config/spheres.yaml
-	$(SNAKE) --config sweep=config/spheres.yaml
 	$(IN_ENV) .venv/bin/python -m studies law spheres config/spheres.yaml --output $(KEPT)
 	$(IN_ENV) .venv/bin/python -m studies law held-out --output $(KEPT)
 	$(IN_ENV) .venv/bin/python -m studies paper gallery
 	$(IN_ENV) .venv/bin/python -m studies paper experiment --keep
 	$(IN_ENV) .venv/bin/python -m studies accuracy report --keep
-	$(IN_ENV) .venv/bin/python -m studies accuracy energies --scans 12 --keep
-	$(IN_ENV) .venv/bin/python -m studies accuracy movement --keep
-	$(IN_ENV) .venv/bin/python -m studies accuracy loops --loops 20 --keep
-	$(IN_ENV) .venv/bin/python -m studies accuracy predictions --keep
-	$(IN_ENV) .venv/bin/python -m studies accuracy energy-balance --keep
 	$(IN_ENV) .venv/bin/python -m studies boundary-elements numbers --keep
 	$(IN_ENV) .venv/bin/python -m studies law figure
 	$(IN_ENV) .venv/bin/python -m studies law numbers --keep
@@ -188,6 +179,21 @@ reproduce: env  ## The numbers and figures of the pages, but for timings and rep
 	  && cp sphx_glr_a_first_loop_002.png ../../figures/tutorial-fronts.png \
 	  && cp sphx_glr_c_instabilities_001.png ../../figures/tutorial-jumps.png \
 	  && cp sphx_glr_d_si_units_001.png ../../figures/tutorial-si.png
+
+# What has no times among its results: simulations on all cores and, beside them, what runs on one.
+reproduce-fronts: env
+	$(MAKE) --no-print-directory law
+	$(MAKE) --no-print-directory figures SCALE=paper
+	$(MAKE) --no-print-directory validate VALIDATION=config/validation.yaml
+	@$(REPAIR) config/spheres.yaml
+	$(SNAKE) --config sweep=config/spheres.yaml
+
+reproduce-scans: env
+	$(IN_ENV) .venv/bin/python -m studies accuracy energies --scans 12 --keep
+	$(IN_ENV) .venv/bin/python -m studies accuracy movement --keep
+	$(IN_ENV) .venv/bin/python -m studies accuracy loops --loops 20 --keep
+	$(IN_ENV) .venv/bin/python -m studies accuracy predictions --keep
+	$(IN_ENV) .venv/bin/python -m studies accuracy energy-balance --keep
 
 # Its shards have few simulations each: they run side by side, each on one core.
 law: env  ## The law of k, from its straight fronts, into results/law (an hour of one core)
