@@ -18,6 +18,7 @@ from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.geometry.sphere import polar_field
 from crackfront.core.solver.relax import Newton
 from crackfront.core.units import WORK_OF_ADHESION
+from crackfront.plots.style import STYLE
 from crackfront.simulate.run import compile_solver
 
 # As of the command: Python looks for garbage among what is imported, also as it ends.
@@ -58,6 +59,14 @@ def _floating_point_errors_raise() -> Iterator[None]:
     before = np.seterr(all="raise", under="ignore")
     yield
     np.seterr(**before)
+
+
+@pytest.fixture(autouse=True)
+def _plain_figures(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where the look of figures is not in question: no search for their layout, no fonts."""
+    if not request.node.get_closest_marker("look"):
+        monkeypatch.setitem(STYLE, "figure.constrained_layout.use", False)
+        monkeypatch.setitem(STYLE, "pdf.fonttype", 3)
 
 
 @pytest.fixture

@@ -103,16 +103,16 @@ def test_the_changelog_begins_with_the_coming_version_and_the_citation_has_the_l
     assert released == next(section for section in sections if section[1])
 
 
-def test_the_archive_holds_all_that_is_committed_and_the_wheel_the_package_alone(built):
+def test_the_archive_holds_all_that_is_committed_and_the_wheel_the_package_alone_which_runs(
+    built, tmp_path
+):
     committed = set(told("git", "-C", ROOT, "ls-tree", "-r", "--name-only", "HEAD").splitlines())
     with tarfile.open(built[0]) as sources:
         assert committed <= {name.partition("/")[2] for name in sources.getnames()}
     names = {name for name in zipfile.ZipFile(built[1]).namelist() if ".dist-info/" not in name}
     assert "crackfront/analysis/law.json" in names
     assert names == {name for name in committed if name.startswith("crackfront/")}
-
-
-def test_the_wheel_runs_in_an_empty_environment(built, tmp_path):
+    # In an empty environment.
     empty = tmp_path / "empty"
     told(sys.executable, "-m", "venv", "--without-pip", empty)
     pip = (sys.executable, "-m", "pip", "--disable-pip-version-check", "--python", empty)

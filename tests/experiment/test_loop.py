@@ -77,7 +77,7 @@ def test_two_columns_suffice_with_a_displacement_of_unknown_zero(without, stiffn
 )
 def test_two_columns_hold_the_truth_at_any_preload_and_drift(made, given):
     held, pulled = [], []
-    for seed in range(10):
+    for seed in range(5):
         found = analyse_loop(loop(seed, **made), Rig(RADIUS, MODULUS, stiffness=given))
         for name, truth in TRUTH.items():
             estimate = getattr(found, name)

@@ -235,6 +235,7 @@ def test_every_positive_mean_lies_within_the_axes_and_others_are_arrows(table, f
     assert len(axes.texts) == 1
 
 
+@pytest.mark.look
 def test_the_labels_of_a_narrow_range_of_disorder_do_not_meet(table):
     arrays = {item.name: getattr(table, item.name) for item in fields(table)}
     strongest = {name: one[:, 2:] for name, one in arrays.items() if np.ndim(one) > 1}
@@ -268,6 +269,7 @@ def test_spectra_are_compared_at_equal_elastic_energy(table, fit):
         np.testing.assert_allclose(density, spectrum.density(wavevector))
 
 
+@pytest.mark.look
 def test_a_figure_is_the_same_file_again_whatever_the_user_settings(table, fit, tmp_path):
     first = save_figure(hysteresis_figure(fit), tmp_path / "one" / "figure.0")
     with matplotlib.rc_context({"font.size": 20.0, "lines.linewidth": 9.0}):

@@ -13,7 +13,6 @@ import pytest
 import xarray as xr
 
 from crackfront.data.provenance import provenance
-from crackfront.plots.style import STYLE
 from crackfront.simulate.run import run_simulation
 from crackfront.sweep.configuration import load_configuration
 from crackfront.sweep.store import Store
@@ -327,36 +326,34 @@ HARM = {
 }
 
 
-@pytest.mark.parametrize(
-    ("name", "harm"),
-    [
-        (slow if (i + j) % 3 or "pdf" in name else pytest.param)(name, harm)
-        for i, name in enumerate(FILES)
-        for j, harm in enumerate(HARM)
-    ],
-)
-def test_a_file_that_lost_its_content_is_found_not_archived_and_made_anew(
-    finished, tmp_path, monkeypatch, name, harm
+LOST = [dict(zip(FILES, 4 * tuple(HARM), strict=False))]
+LOST += [{name: harm} for name in FILES for harm in HARM]
+MADE_BY = {"curves": "simulate", "shards": "simulate", "hysteresis": "aggregate", "fit": "fit"}
+MADE_BY |= {"configuration": "fit", "figures": "figures", "summary": "summary"}
+
+
+@pytest.mark.parametrize("lost", [LOST[0], *map(slow, LOST[1:])], ids=lambda lost: " ".join(lost))
+def test_files_that_lost_their_content_are_found_not_archived_and_made_anew(
+    finished, tmp_path, lost
 ):
-    # How a figure looks that is made anew is not in question: no search for its layout, no fonts.
-    monkeypatch.setitem(STYLE, "figure.constrained_layout.use", False)
-    monkeypatch.setitem(STYLE, "pdf.fonttype", 3)
     folder = shutil.copytree(finished, tmp_path / "sweep")
     assert {path.name for path in folder.glob("*.*")} <= set(FILES)
-    path = min(folder.glob(name))
-    path.write_bytes(HARM[harm](path.read_bytes()))
+    harmed = [min(folder.glob(name)) for name in lost]
+    for path, harm in zip(harmed, lost.values(), strict=True):
+        path.write_bytes(HARM[harm](path.read_bytes()))
     verified = run_command("verify", folder)
     assert verified.exit_code == 1
-    assert f"damaged: {path.relative_to(folder)}" in verified.output
+    for path in harmed:
+        assert f"damaged: {path.relative_to(folder)}" in verified.output
     archived = run_command("archive", folder)
     assert archived.exit_code == 2
-    assert f"the first is {path}" in archived.stderr
-    # What the workflow does before it plans, and the command of the file then.
-    assert any(str(path) in told for told in repaired(TEST, folder))
-    command = {"curves": "simulate", "shards": "simulate", "configuration": "fit"}
-    command |= {"fit": "fit", "hysteresis": "aggregate", "summary": "summary"}
-    made_by = command.get(path.relative_to(folder).parts[0].partition(".")[0], "figures")
-    assert run_command(made_by, TEST, "--output", folder).exit_code == 0
+    assert any(f"the first is {path}" in archived.stderr for path in harmed)
+    # What the workflow does before it plans, and the commands of the files then.
+    told = repaired(TEST, folder)
+    assert all(any(str(path) in one for one in told) for path in harmed)
+    parts = {path.relative_to(folder).parts[0].partition(".")[0] for path in harmed}
+    for command in dict.fromkeys(MADE_BY[part] for part in MADE_BY if part in parts):
+        assert run_command(command, TEST, "--output", folder).exit_code == 0
     assert run_command("verify", folder).exit_code == 0
     assert run_command("archive", folder).exit_code == 0
 

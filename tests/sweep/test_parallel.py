@@ -184,6 +184,7 @@ def test_a_launcher_that_is_nowhere_is_refused(monkeypatch, tmp_path):
 
 
 @pytest.mark.mpi
+@pytest.mark.slow
 def test_results_are_the_same_bits_on_two_ranks_and_without_mpi(made, tmp_path, capfd):
     run = run_command("simulate", TEST, "--output", tmp_path, "--ranks", "2")
     assert run.exit_code == 0, capfd.readouterr().err

@@ -82,7 +82,7 @@ def test_four_times_as_many_draws_say_the_same(monkeypatch):
 
 def test_what_is_unsettled_is_what_moves():
     scans = shipped_surface(DETAIL).scans
-    found = [joint_spectrum(scans, seed).draws for seed in range(6)]
+    found = [joint_spectrum(scans, seed).draws for seed in range(4)]
     energies = [item.mean_square(0.5) for item in found]
     logarithms = np.log([(one.low, one.value, one.high) for one in energies])
     width = np.mean(logarithms[:, 2] - logarithms[:, 0])
@@ -126,10 +126,10 @@ def test_mean_squares_of_draws_are_those_of_tables(rng):
 
 @pytest.mark.parametrize("files", [[OVERVIEW], [DETAIL, OVERVIEW]], ids=["unsure", "known"])
 def test_what_is_a_little_stiffer_has_no_other_kind_of_answer(files):
-    """From a sphere that conforms to one that does not, as by heights that grow by one per cent."""
+    """From a sphere that conforms to one that does not, as by heights that grow by two per cent."""
     surface = shipped_surface(*files)
     known, outcomes = None, []
-    for modulus in SCENE.contact_modulus * 1.02 ** np.arange(120):
+    for modulus in SCENE.contact_modulus * 1.04 ** np.arange(60):
         verdict, found = check_and_predict(
             surface, replace(SCENE, contact_modulus=modulus), PredictionOptions()
         )
@@ -139,7 +139,7 @@ def test_what_is_a_little_stiffer_has_no_other_kind_of_answer(files):
         estimates = [getattr(found, name) for name in ("e_el", "hysteresis", "w_retr")]
         numbers = np.array([(one.low, one.value, one.high) for one in estimates])
         if known is not None:
-            assert numbers == pytest.approx(known, rel=0.08)
+            assert numbers == pytest.approx(known, rel=0.16)
         known = numbers
         undecided = verdict.of("undecided")
         assert bool(undecided) == (verdict.outcome == "cannot be decided")
