@@ -39,9 +39,10 @@ if unknown:
 SCALE = config.get("scale", "quick")
 if SCALE not in SCALES:
     raise WorkflowError(f"scale is {SCALE!r}; choose one of {', '.join(SCALES)}")
-RANKS = config.get("ranks", workflow.resource_settings.cores or 1)
-if not isinstance(RANKS, int) or RANKS < 1:
-    raise WorkflowError(f"ranks is {RANKS!r}; give a whole number of 1 or more")
+if not isinstance(config.get("ranks", 1), int) or config.get("ranks", 1) < 1:
+    raise WorkflowError(
+        f"ranks is {config['ranks']!r}; give a whole number of 1 or more"
+    )
 
 
 def shipped(path):
@@ -76,6 +77,21 @@ FIRSTS = {item.name: SWEEP.one_per_amplitude(item) for item in SWEEP.spectra}
 RANK_BYTES = max(
     expected_cost(one).memory for firsts in FIRSTS.values() for one in firsts
 )
+
+
+def expected_ranks(cores):
+    """Cores of a job of simulations: all, or one where jobs side by side end earlier."""
+    seconds = [
+        len(shard.realisations)
+        * sum(expected_cost(one).seconds for one in FIRSTS[shard.item.name])
+        for shard in SHARDS.values()
+    ]
+    # The longest job may be the last; one on all cores starts ranks, and waits for its last.
+    idle, beside = max(seconds) * (1 - 1 / cores), 5.0 * len(seconds)
+    return cores if idle > beside else 1
+
+
+RANKS = config.get("ranks", expected_ranks(workflow.resource_settings.cores or 1))
 # Names, as reading this must not import what computes the figures.
 ANIMATED = ["beyond-animation"]
 
