@@ -195,10 +195,9 @@ reproduce-scans: env
 	$(IN_ENV) .venv/bin/python -m studies accuracy predictions --keep
 	$(IN_ENV) .venv/bin/python -m studies accuracy energy-balance --keep
 
-# Its shards have few simulations each: they run side by side, each on one core.
 law: env  ## The law of k, from its straight fronts, into results/law (an hour of one core)
 	set -e; for name in $(FRONTS_OF_LAW); do \
-	  $(REPAIR) config/$$name.yaml; $(SNAKE) --config sweep=config/$$name.yaml ranks=1; done
+	  $(REPAIR) config/$$name.yaml; $(SNAKE) --config sweep=config/$$name.yaml; done
 	$(IN_ENV) .venv/bin/python -m studies law fit $(FRONTS_OF_LAW:%=config/%.yaml)
 
 FRONTS_OF_LAW = line line-strong line-long line-long-strong line-chemical line-chemical-strong line-weak \

@@ -79,16 +79,21 @@ RANK_BYTES = max(
 )
 
 
+SECONDS = {
+    name: len(shard.realisations)
+    * sum(expected_cost(one).seconds for one in FIRSTS[shard.item.name])
+    for name, shard in SHARDS.items()
+}
+
+
 def expected_ranks(cores):
     """Cores of a job of simulations: all, or one where jobs side by side end earlier."""
-    seconds = [
-        len(shard.realisations)
-        * sum(expected_cost(one).seconds for one in FIRSTS[shard.item.name])
-        for shard in SHARDS.values()
-    ]
-    # The longest job may be the last; one on all cores starts ranks, and waits for its last.
-    idle, beside = max(seconds) * (1 - 1 / cores), 5.0 * len(seconds)
-    return cores if idle > beside else 1
+    ends = [0.0] * cores
+    for seconds in sorted(SECONDS.values(), reverse=True):
+        ends[ends.index(min(ends))] += seconds
+    # A job on all cores starts ranks, and its last simulation leaves cores idle.
+    in_turn = sum(SECONDS.values()) / cores + 5.0 * len(SECONDS)
+    return 1 if max(ends) < in_turn else cores
 
 
 RANKS = config.get("ranks", expected_ranks(workflow.resource_settings.cores or 1))

@@ -9,8 +9,8 @@ rule simulate:
     benchmark:
         f"{RESULTS}/benchmarks/simulate-{{shard}}.tsv"
     # What takes all cores comes before what takes one, which would leave the others waiting: jobs
-    # are chosen by the sum of their priorities.
-    priority: 100
+    # are chosen by the sum of their priorities. The longest of them comes first.
+    priority: lambda wildcards: 100 + SECONDS[wildcards.shard]
     threads: RANKS
     resources:
         # Tasks and a launcher are a profile's. What is not done in time goes on in the next job.
