@@ -33,6 +33,7 @@ def test_more_ranks_are_never_slower_and_never_more_efficient_than_a_full_job(rn
 
 
 @pytest.mark.mpi
+@pytest.mark.slow
 def test_a_rank_hands_out_tasks_and_stores_their_curves():
     assert 0 < scaling.hand_out_seconds(2, 50) < np.inf
 
