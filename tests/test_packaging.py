@@ -103,6 +103,7 @@ def test_the_changelog_begins_with_the_coming_version_and_the_citation_has_the_l
     assert released == next(section for section in sections if section[1])
 
 
+@pytest.mark.slow
 def test_the_archive_holds_all_that_is_committed_and_the_wheel_the_package_alone_which_runs(
     built, tmp_path
 ):

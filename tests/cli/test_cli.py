@@ -636,6 +636,7 @@ assert settings() == before
     subprocess.run([sys.executable, "-c", code], check=True, timeout=600)
 
 
+@pytest.mark.slow
 def test_a_scan_becomes_a_field_in_a_process_of_its_own(tmp_path, monkeypatch):
     measure_surfaces_once(monkeypatch)
     sphere = "--modulus 0.7N/mm2 --poisson 0.5 --radius 20um --work-of-adhesion 63mJ/m2"

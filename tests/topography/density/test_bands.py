@@ -133,7 +133,7 @@ def test_scans_that_agree_join_and_those_that_do_not_are_told(found):
 
 
 def test_limits_that_are_named_stand_in_place_of_those_that_are_found(found):
-    [one] = found("form that is left").surface.scans
+    [one] = found("self-affine, H = 0.8").surface.scans
     band = analysed_scan(one.measurement, shortest=8 * PIXEL, longest=SIDE / 3).band
     assert [limit.cause for limit in band.ends] == ["named", "named"]
     assert [limit.wavelength for limit in band.ends] == [8 * PIXEL, SIDE / 3]

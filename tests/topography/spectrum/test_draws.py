@@ -13,6 +13,7 @@ from crackfront.topography.spectrum.draws import ORDERS, Draws, mean_squares
 from crackfront.topography.spectrum.joining import joint_spectrum
 from crackfront.topography.spectrum.measures import measured_surface
 from studies.accuracy.energies import KINDS, found_scan
+from tests.commands import slow
 from tests.topography.made import DETAIL, OVERVIEW, SCENE, shipped_surface
 
 MOST = 0.03
@@ -148,7 +149,7 @@ def test_what_is_a_little_stiffer_has_no_other_kind_of_answer(files):
 
 
 @pytest.mark.usefixtures("few_draws")
-@pytest.mark.parametrize("number", [3, 12])
+@pytest.mark.parametrize("number", [slow(3), 12])
 def test_a_gaussian_spot_that_looks_blunt_is_no_fall_of_the_surface(number):
     [kind] = [kind for kind in KINDS if kind.name == "optic, Gaussian"]
     found = found_scan(kind, number)
