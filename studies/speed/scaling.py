@@ -61,7 +61,7 @@ _MOST_PACKED = 10**5
 
 @dataclass(frozen=True, slots=True)
 class Played:
-    """Hours and efficiency of a sweep on a number of ranks, managers included."""
+    """Hours and efficiency of a sweep on a number of cores, a rank that simulates on each."""
 
     n_rank: int
     hours: float
@@ -98,7 +98,7 @@ def played(
     useful = float(sum(np.sum(shard) for shard in shards))
     sizes = {n_rank: min(n_rank, job_ranks) for n_rank in rank_numbers}
     jobs = {
-        size: [job_seconds(shard, max(1, size - 1), losses) for shard in shards]
+        size: [job_seconds(shard, size, losses) for shard in shards]
         for size in set(sizes.values())
     }
     rows = []

@@ -21,7 +21,7 @@ from tests.yaml_texts import from_yaml, to_yaml
 
 ROOT = Path(__file__).parents[2]
 COSTS = {"seconds", "cpu_seconds", "peak_memory"}
-SRUN = "srun -K1 --mpi=pmi2"
+SRUN = "srun -K1 --overcommit --mpi=pmi2"
 
 
 def slurm_answers():
@@ -60,7 +60,7 @@ def configuration(folder, *changes):
 def profile(folder, **simulate):
     """The profile of the repository as a site would adapt it; resources of a shard may change."""
     content = from_yaml((ROOT / "workflow/profiles/slurm/config.yaml").read_text())
-    content["set-resources"]["simulate"] |= {"tasks": 3, "mem_mb_per_cpu": 500} | simulate
+    content["set-resources"]["simulate"] |= {"tasks": 2, "mem_mb_per_cpu": 700} | simulate
     # Every wait between two looks at a job is 10 s longer than the last: looks at 12 and 34 s.
     content |= {"slurm-init-seconds-before-status-checks": 12, "latency-wait": 5, "retries": 1}
     (folder / "profile").mkdir()
@@ -118,7 +118,7 @@ def until(condition, seconds=600):
 
 
 WAYS = {
-    "serial": ("hysteresis.nc", {"tasks": 2}),
+    "serial": ("hysteresis.nc", {"tasks": 1}),
     "srun": ("shards/flat.nc", {"mpi": SRUN}),
     "mpiexec": ("shards/flat.nc", {"mpi": default_launcher()}),
 }
@@ -200,7 +200,7 @@ def test_a_rank_that_is_killed_ends_its_job_and_the_retry_goes_on(tmp_path):
 
 def checkpoint_at_the_limit(folder, results, command):
     """What a job has stored of its one simulation when its time is over, and what it printed."""
-    job = ["sbatch", "--parsable", "--ntasks=3", "--time=60", "--signal=TERM@58", "--wrap", command]
+    job = ["sbatch", "--parsable", "--ntasks=2", "--time=60", "--signal=TERM@58", "--wrap", command]
     number = run(job, cwd=folder).stdout.strip()
     before = [path.stat().st_mtime for path in (results / "checkpoints").glob("*.nc")]
     until(
@@ -233,7 +233,7 @@ def test_a_time_limit_keeps_what_runs_and_the_next_job_goes_on_from_there(tmp_pa
 def test_the_plain_job_script_runs_a_sweep_to_its_page(tmp_path):
     sweep = configuration(tmp_path)
     script = ROOT / "workflow/sbatch.sh"
-    resources = ("--partition=main", "--ntasks=3", "--mem-per-cpu=500M", "--time=4")
+    resources = ("--partition=main", "--ntasks=2", "--mem-per-cpu=700M", "--time=4")
     done = run(["sbatch", "--wait", *resources, str(script), str(sweep)], cwd=tmp_path)
     told = "".join(path.read_text() for path in tmp_path.glob("slurm-*.out"))
     assert done.returncode == 0, told

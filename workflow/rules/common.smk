@@ -182,8 +182,8 @@ def minutes(seconds):
 
 def rank_options(resources, threads):
     """How many ranks simulate and what starts them, where a profile says so."""
-    # The rank that hands out the work is a task of the profile, and no thread of this machine.
-    ranks = resources.get("tasks", threads + 1) - 1
+    # The rank that hands out the work mostly sleeps: it is no task of a profile, and no thread.
+    ranks = resources.get("tasks", threads)
     launcher = resources.get("mpi")
     return f"--ranks {ranks}" + (
         f" --launcher {shlex.quote(launcher)}" if launcher else ""
