@@ -98,8 +98,7 @@ def played(
     useful = float(sum(np.sum(shard) for shard in shards))
     sizes = {n_rank: min(n_rank, job_ranks) for n_rank in rank_numbers}
     jobs = {
-        size: [job_seconds(shard, size, losses) for shard in shards]
-        for size in set(sizes.values())
+        size: [job_seconds(shard, size, losses) for shard in shards] for size in set(sizes.values())
     }
     rows = []
     for n_rank, size in sizes.items():

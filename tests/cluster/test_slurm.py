@@ -60,7 +60,11 @@ def configuration(folder, *changes):
 def profile(folder, **simulate):
     """The profile of the repository as a site would adapt it; resources of a shard may change."""
     content = from_yaml((ROOT / "workflow/profiles/slurm/config.yaml").read_text())
-    content["set-resources"]["simulate"] |= {"tasks": 2, "mem_mb_per_cpu": 700} | simulate
+    resources = (
+        content["set-resources"]["simulate"] | {"tasks": 2, "mem_mb_per_cpu": 700} | simulate
+    )
+    used = {name: value for name, value in resources.items() if value is not None}
+    content["set-resources"]["simulate"] = used
     # Every wait between two looks at a job is 10 s longer than the last: looks at 12 and 34 s.
     content |= {"slurm-init-seconds-before-status-checks": 12, "latency-wait": 5, "retries": 1}
     (folder / "profile").mkdir()
@@ -118,11 +122,11 @@ def until(condition, seconds=600):
 
 
 WAYS = {
-    "serial": ("hysteresis.nc", {"tasks": 1}),
+    "serial": ("hysteresis.nc", {"tasks": 1, "mpi": None}),
     "srun": ("shards/flat.nc", {"mpi": SRUN}),
     "mpiexec": ("shards/flat.nc", {"mpi": default_launcher()}),
 }
-"""Up to where a sweep runs, and the resources of its shard."""
+"""Up to where a sweep runs, and the resources of its shard; None takes one of the profile away."""
 
 
 @pytest.fixture(scope="module")
