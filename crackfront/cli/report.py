@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import os
 import sys
 import time
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -161,14 +162,15 @@ def refuse_overwriting(inputs: Iterable[Path], outputs: Mapping[str, Path | None
 
     The outputs are those of options by their names; a figure without suffix is a PDF and a PNG.
     """
-    read = {path.resolve() for path in inputs}
-    written: dict[Path, str] = {}
+    # Of a link to itself `Path.resolve` finds no place.
+    read = {os.path.realpath(path) for path in inputs}
+    written: dict[str, str] = {}
     for option, given in outputs.items():
         if given is None:
             continue
         is_stem = option == "--figure" and not given.suffix
         for path in [Path(f"{given}{end}") for end in (".pdf", ".png")] if is_stem else [given]:
-            place = path.resolve()
+            place = os.path.realpath(path)
             if place in read:
                 raise ValueError(
                     f"{option} would overwrite {path}, which the command reads; name another file"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -170,7 +171,7 @@ def archive(folder: Path, output: Path | None, no_curves: bool) -> None:
     path = named.with_name(f"{named.name}.zip") if output is None else output
     if path.suffix.lower() != ".zip":
         raise ValueError(f"--output is {path}; name a ZIP file, as in {named.name}.zip")
-    if folder.resolve() in path.resolve().parents:
+    if Path(os.path.realpath(folder)) in Path(os.path.realpath(path)).parents:
         raise ValueError(f"--output is {path}, among the results; name a file outside of {folder}")
     click.echo(f"archive: {path}, {Store(folder).archive(path, curves=not no_curves)} files")
 

@@ -657,6 +657,25 @@ def test_an_output_that_cannot_be_written_is_refused_with_its_path(tmp_path):
 
 
 @pytest.mark.parametrize(
+    "command",
+    [
+        "cycle --max-penetration 0.3 --step 0.1 --output out.nc --field",
+        "surface --unit m --size 1,1",
+        "predict --modulus 1MPa --poisson 0.5 --radius 1mm --work-of-adhesion 1mJ/m2",
+        "loop --radius 1mm",
+        "samples",
+        "plan",
+        "archive",
+        "verify",
+    ],
+)
+def test_a_link_to_itself_is_refused_in_a_sentence(tmp_path, monkeypatch, command):
+    monkeypatch.chdir(tmp_path)
+    Path("loop.nc").symlink_to("loop.nc")
+    assert "loop.nc" in refused(*command.split(), "loop.nc")
+
+
+@pytest.mark.parametrize(
     ("output", "reason"),
     [
         ("/dev/null", "it is a device or pipe, which is not replaced"),
