@@ -621,6 +621,7 @@ print(heavy & set(sys.modules), file=sys.stderr)
     assert done.stderr == "set()\n"
 
 
+@pytest.mark.slow
 def test_the_library_changes_no_setting_of_the_program_that_imports_it():
     code = """
 import gc, signal, sys

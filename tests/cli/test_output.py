@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.commands import curves, run
+from tests.commands import curves, run, slow
 
 ROOT = Path(__file__).parents[2]
 TEST = str(ROOT / "config/test.yaml")
@@ -30,7 +30,7 @@ def test_a_sweep_is_computed_although_nobody_reads_its_lines(tmp_path, ranks):
     assert {path.name for path in (tmp_path / "shards").glob("*.nc")} == {"flat.nc", "rough.nc"}
 
 
-@pytest.mark.parametrize("closing", [">&-", ">&- 2>&-", "<&- >&- 2>&-"])
+@pytest.mark.parametrize("closing", [slow(">&-"), slow(">&- 2>&-"), "<&- >&- 2>&-"])
 def test_a_closed_output_becomes_no_file_that_is_written(tmp_path, closing):
     (tmp_path / "text").write_text("content")
     told = ["bash", "-c", f'exec "$@" {closing}', "bash", *command("checksums", tmp_path)]
@@ -46,6 +46,7 @@ def test_an_answer_that_does_not_fit_on_a_disk_is_no_success():
     assert done.returncode != 0
 
 
+@pytest.mark.slow
 def test_names_are_bytes(tmp_path):
     folder = tmp_path / os.fsdecode(b"my \xff dir")
     folder.mkdir()

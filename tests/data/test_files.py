@@ -386,6 +386,7 @@ for read in (read_dataset, read_attributes):
 """
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(shutil.which("cc") is None, reason="needs a compiler of C")
 def test_files_are_whole_where_locks_are_absent(tmp_path):
     source, library = tmp_path / "locks.c", tmp_path / "locks.so"

@@ -296,6 +296,7 @@ def test_a_sweep_is_aggregated_from_the_files_of_its_shards_alone_whatever_the_b
     assert [*whole["curve"].values.flat] == [f"{one.stem}.nc" for one in SWEEP.simulations()]
 
 
+@pytest.mark.slow
 def test_a_table_is_written_in_less_memory_than_its_rows_take(tmp_path):
     script = """
 import resource, sys
@@ -424,6 +425,7 @@ sys.exit(any([os.waitpid(start, 0)[1] for start in starts]))
 """Processes that have all imported and wait for one signal, the end of a pipe."""
 
 
+@pytest.mark.slow
 def test_fifty_starts_in_one_instant_do_not_meet(store):
     command = [sys.executable, "-c", _STARTS, str(store.folder)]
     done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=600)

@@ -185,6 +185,7 @@ def test_the_fast_solver_stops_at_an_edge_in_compression():
     assert found.status is expected.status
 
 
+@pytest.mark.slow
 def test_the_number_of_threads_has_no_say():
     # Libraries of linear algebra share vectors of more than 10000 numbers among threads.
     program = (

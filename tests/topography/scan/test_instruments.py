@@ -251,6 +251,7 @@ assert whole.detrend().rms_height_from_area() > 0
 """
 
 
+@pytest.mark.slow
 def test_a_scan_is_read_without_the_readers_of_other_formats_which_come_when_used(
     scan, tmp_path, rng
 ):
