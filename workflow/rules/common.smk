@@ -16,6 +16,7 @@ from crackfront.core.fingerprint import fingerprint
 from crackfront.simulate.costs import expected_cost
 from crackfront.sweep.configuration import load_configuration, results_folder
 from crackfront.sweep.fingerprints import shard_fingerprint
+from crackfront.sweep.jobs import cores_of_job
 from crackfront.sweep.postprocessing import postprocessing_costs
 from crackfront.sweep.watching import SweepBar
 from studies.boundary_elements.parameters import load_validation
@@ -89,18 +90,10 @@ SECONDS = {
     for name, shard in SHARDS.items()
 }
 
-
-def expected_ranks(cores):
-    """Cores of a job of simulations: all, or one where jobs side by side end earlier."""
-    ends = [0.0] * cores
-    for seconds in sorted(SECONDS.values(), reverse=True):
-        ends[ends.index(min(ends))] += seconds
-    # A job on all cores starts ranks, and its last simulation leaves cores idle.
-    in_turn = sum(SECONDS.values()) / cores + 5.0 * len(SECONDS)
-    return 1 if max(ends) < in_turn else cores
-
-
-RANKS = config.get("ranks", expected_ranks(workflow.resource_settings.cores or 1))
+RANKS = config.get(
+    "ranks",
+    cores_of_job(list(SECONDS.values()), workflow.resource_settings.cores or 1),
+)
 # Names, as reading this must not import what computes the figures.
 ANIMATED = ["beyond-animation"]
 

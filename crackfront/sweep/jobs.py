@@ -1,0 +1,26 @@
+"""How the jobs of a sweep share the cores of a machine."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+_JOB_SECONDS = 5.0
+"""What a job over all cores takes beside its simulations: ranks start, and the last one is waited
+for. (Units: s)"""
+
+
+def cores_of_job(seconds: Sequence[float], n_core: int) -> int:
+    """Cores of every job: all, or one where jobs side by side end earlier.
+
+    Parameters
+    ----------
+    seconds
+        Expected processor time of each job (Units: s). Side by side the longest start first.
+    n_core
+        Cores of the machine.
+    """
+    ends = [0.0] * n_core
+    for longest in sorted(seconds, reverse=True):
+        ends[ends.index(min(ends))] += longest
+    in_turn = sum(seconds) / n_core + _JOB_SECONDS * len(seconds)
+    return 1 if max(ends) < in_turn else n_core
