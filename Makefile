@@ -137,8 +137,8 @@ test-cluster: env  ## Run the tests that need a Slurm, on one started for them (
 nightly: env  ## Run all tests, the slow ones and those on a Slurm too
 	@mkdir -p $(dir $(REPORT))
 	@echo "Test report: $(REPORT)"
-	@$(IN_ENV) .venv/bin/python -m pytest --junitxml=$(REPORT)
-	@$(MAKE) --no-print-directory test-cluster
+	@$(IN_ENV) .venv/bin/python -m pytest --junitxml=$(REPORT); passed=$$?; \
+	  $(MAKE) --no-print-directory test-cluster && exit $$passed
 
 benchmark: env  ## Solvers against the reference, what requests cost, how sweeps scale (an hour)
 	$(IN_ENV) .venv/bin/python -m studies speed solvers
