@@ -6,6 +6,7 @@ import contextlib
 import functools
 import hashlib
 import itertools
+import os
 from collections import Counter, defaultdict
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass
@@ -403,10 +404,11 @@ class Store:
                 f"{self.folder} holds no hysteresis.nc; run the sweep before it is archived"
             )
         listed = read_sums(self.folder)
+        own = os.path.realpath(path)  # also of a link to itself
         found = {
             file: str(file.relative_to(self.folder))
             for file in result_files(self.folder)
-            if (curves or file.parent != self.curves) and file.resolve() != path.resolve()
+            if (curves or file.parent != self.curves) and os.path.realpath(file) != own
         }
         if damaged := [file for file, name in found.items() if is_damaged(file, listed.get(name))]:
             raise ValueError(

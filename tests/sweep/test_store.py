@@ -556,6 +556,12 @@ def test_a_damaged_file_is_not_archived(whole, tmp_path):
     whole.archive(tmp_path / "sweep.zip", curves=False)
 
 
+def test_an_archive_takes_the_place_of_a_link_to_itself(made, tmp_path):
+    (tmp_path / "loop.zip").symlink_to("loop.zip")
+    assert made.archive(tmp_path / "loop.zip") > 5
+    assert not (tmp_path / "loop.zip").is_symlink()
+
+
 def test_a_folder_and_its_archive_are_verified(whole, tmp_path):
     archive = tmp_path / "sweep.zip"
     whole.archive(archive, curves=True)

@@ -140,7 +140,7 @@ def test_what_is_a_little_stiffer_has_no_other_kind_of_answer(files):
         estimates = [getattr(found, name) for name in ("e_el", "hysteresis", "w_retr")]
         numbers = np.array([(one.low, one.value, one.high) for one in estimates])
         if known is not None:
-            assert numbers == pytest.approx(known, rel=0.16)
+            assert numbers == pytest.approx(known, rel=0.08)
         known = numbers
         undecided = verdict.of("undecided")
         assert bool(undecided) == (verdict.outcome == "cannot be decided")
