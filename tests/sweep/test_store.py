@@ -556,9 +556,9 @@ def test_a_damaged_file_is_not_archived(whole, tmp_path):
     whole.archive(tmp_path / "sweep.zip", curves=False)
 
 
-def test_an_archive_takes_the_place_of_a_link_to_itself(made, tmp_path):
+def test_an_archive_takes_the_place_of_a_link_to_itself(whole, tmp_path):
     (tmp_path / "loop.zip").symlink_to("loop.zip")
-    assert made.archive(tmp_path / "loop.zip") > 5
+    assert whole.archive(tmp_path / "loop.zip", curves=False) > 5
     assert not (tmp_path / "loop.zip").is_symlink()
 
 
