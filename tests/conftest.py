@@ -26,11 +26,19 @@ gc.set_threshold(1_000_000)
 atexit.register(gc.freeze)
 
 SEED = 20240229
+AS_PRINTED = STYLE.copy()
 
-hypothesis.settings.register_profile(
-    "ours", deadline=None, max_examples=50, derandomize=bool(os.environ.get("CI"))
-)
-hypothesis.settings.load_profile("ours")
+
+def pytest_configure(config: pytest.Config) -> None:
+    """More generated examples where the slow tests run too, by night."""
+    by_day = "not slow" in config.option.markexpr
+    hypothesis.settings.register_profile(
+        "ours",
+        deadline=None,
+        max_examples=20 if by_day else 100,
+        derandomize=bool(os.environ.get("CI")),
+    )
+    hypothesis.settings.load_profile("ours")
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
@@ -61,12 +69,21 @@ def _floating_point_errors_raise() -> Iterator[None]:
     np.seterr(**before)
 
 
-@pytest.fixture(autouse=True)
-def _plain_figures(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Where the look of figures is not in question: no search for their layout, no fonts."""
-    if not request.node.get_closest_marker("look"):
+@pytest.fixture(autouse=True, scope="session")
+def _plain_figures() -> Iterator[None]:
+    """No search for the layout of figures, no fonts; fixtures that tests share draw so too."""
+    with pytest.MonkeyPatch.context() as monkeypatch:
         monkeypatch.setitem(STYLE, "figure.constrained_layout.use", False)
         monkeypatch.setitem(STYLE, "pdf.fonttype", 3)
+        yield
+
+
+@pytest.fixture(autouse=True)
+def _figures_as_printed(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where the look of figures is in question, they have their layout and fonts."""
+    if request.node.get_closest_marker("look"):
+        for name, value in AS_PRINTED.items():
+            monkeypatch.setitem(STYLE, name, value)
 
 
 @pytest.fixture

@@ -738,6 +738,7 @@ for loads in sys.argv[3:]:
 """
 
 
+@pytest.mark.slow
 def test_once_the_solver_is_compiled_ahead_no_run_compiles_it(smooth_tile, tmp_path):
     assert run("compile").exit_code == 0
     sphere = "--max-penetration 0.1 --step 0.1"

@@ -70,13 +70,11 @@ def smooth(tmp_path_factory):
 
 
 @pytest.fixture
-def predict(tmp_path, monkeypatch):
+def predict(tmp_path):
     """Result of a prediction for the shipped scans, without the seconds that figures take."""
 
     def command(*more, scans=(DETAIL, OVERVIEW), drawn=False, **changes):
-        if not drawn:
-            monkeypatch.setattr("crackfront.plots.style.save_figure", lambda figure, stem: ())
-        figure = () if "--no-figure" in more else ("--figure", tmp_path / "figure")
+        figure = ("--figure", tmp_path / "figure") if drawn else ("--no-figure",)
         return run("predict", *scans, *sphere(**changes), *figure, *more)
 
     return command
@@ -141,7 +139,7 @@ def test_each_outcome_has_its_exit_code(predict, smooth):
         (4, "does not apply", {"modulus": "100GPa"}),
     ):
         strict = ["--strict"] * more.pop("strict", False)
-        result = predict("--json", "--no-figure", *strict, **more)
+        result = predict("--json", *strict, **more)
         content = json.loads(result.stdout)
         assert (result.exit_code, content["outcome"]) == (code, outcome)
         assert (content["prediction"] is None) == (code == 4)
@@ -167,7 +165,7 @@ def test_the_text_says_what_was_read_predicted_and_drawn(predict, tmp_path):
     assert 8 <= len(short) <= 16  # every reservation has a line
     assert short[0].startswith("hysteresis        2")
     assert result.exit_code == 0, result.output
-    assert predict("--no-figure").output.splitlines() == short
+    assert predict().output.splitlines() == short
     for text in (
         "nanodiamond-overview.al3d: al3d, 144 x 144 points, 43.2 um x 43.2 um",
         "SYNTHETIC, not a measurement",
@@ -352,16 +350,6 @@ def test_a_field_needs_the_whole_sphere_and_one_scan(tmp_path):
     assert "the sphere is incomplete" in refused("surface", OVERVIEW, *sphere(radius=None), *field)
     assert "--field takes one scan" in refused("surface", OVERVIEW, DETAIL, *sphere(), *field)
     assert not (tmp_path / "field.nc").exists()
-
-
-def test_the_documentation_shows_what_the_command_prints(predict, monkeypatch):
-    monkeypatch.chdir(ROOT)
-    names = [path.relative_to(ROOT) for path in (DETAIL, OVERVIEW)]
-    page = (ROOT / "docs/surfaces.md").read_text(encoding="utf-8")
-    shown = page.split("```text\n")[1].split("```")[0]
-    assert predict(scans=names).output == shown
-    command = page.split("```sh\n")[1].split("```")[0].replace("\\\n", " ").split()
-    assert command == ["crackfront", "predict", *map(str, names), *sphere()]
 
 
 def test_the_documentation_states_the_range_of_the_law():

@@ -269,8 +269,10 @@ def test_spectra_are_compared_at_equal_elastic_energy(table, fit):
         np.testing.assert_allclose(density, spectrum.density(wavevector))
 
 
-@pytest.mark.look
-def test_a_figure_is_the_same_file_again_whatever_the_user_settings(table, fit, tmp_path):
+@pytest.mark.parametrize(
+    "drawn", ["plain", pytest.param("as printed", marks=[pytest.mark.look, pytest.mark.slow])]
+)
+def test_a_figure_is_the_same_file_again_whatever_the_user_settings(fit, tmp_path, drawn):
     first = save_figure(hysteresis_figure(fit), tmp_path / "one" / "figure.0")
     with matplotlib.rc_context({"font.size": 20.0, "lines.linewidth": 9.0}):
         second = save_figure(hysteresis_figure(fit), tmp_path / "two" / "figure.0")
