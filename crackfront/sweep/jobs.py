@@ -9,13 +9,15 @@ _JOB_SECONDS = 5.0
 for. Of the five jobs of `config/default.yaml` on two cores it is 27 s. (Units: s)"""
 
 
-def cores_of_job(seconds: Sequence[float], n_core: int) -> int:
+def cores_of_job(seconds: Sequence[float], longest: Sequence[float], n_core: int) -> int:
     """Cores of every job: all, or one where jobs side by side end earlier.
 
     Parameters
     ----------
     seconds
         Expected processor time of each job (Units: s). Side by side the longest start first.
+    longest
+        That of the longest simulation of each job, before which no job ends (Units: s).
     n_core
         Cores of the machine.
 
@@ -25,7 +27,8 @@ def cores_of_job(seconds: Sequence[float], n_core: int) -> int:
         1 or `n_core`.
     """
     ends = [0.0] * n_core
-    for longest in sorted(seconds, reverse=True):
-        ends[ends.index(min(ends))] += longest
-    in_turn = sum(seconds) / n_core + _JOB_SECONDS * len(seconds)
+    for one in sorted(seconds, reverse=True):
+        ends[ends.index(min(ends))] += one
+    spread = map(max, longest, (one / n_core for one in seconds))
+    in_turn = sum(spread) + _JOB_SECONDS * len(seconds)
     return 1 if max(ends) < in_turn else n_core

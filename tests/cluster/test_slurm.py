@@ -60,9 +60,7 @@ def configuration(folder, *changes):
 def profile(folder, **simulate):
     """The profile of the repository as a site would adapt it; resources of a shard may change."""
     content = from_yaml((ROOT / "workflow/profiles/slurm/config.yaml").read_text())
-    resources = (
-        content["set-resources"]["simulate"] | {"tasks": 2, "mem_mb_per_cpu": 700} | simulate
-    )
+    resources = content["set-resources"]["simulate"] | {"tasks": 2} | simulate
     used = {name: value for name, value in resources.items() if value is not None}
     content["set-resources"]["simulate"] = used
     # Every wait between two looks at a job is 10 s longer than the last: looks at 12 and 34 s.

@@ -13,6 +13,7 @@ BASE = Path(workflow.current_basedir).parents[1]
 sys.path.insert(0, str(BASE))  # where the studies stand
 
 from crackfront.core.fingerprint import fingerprint
+from crackfront.data.bounds import memory_at_hand
 from crackfront.simulate.costs import expected_cost
 from crackfront.sweep.configuration import load_configuration, results_folder
 from crackfront.sweep.fingerprints import shard_fingerprint
@@ -84,16 +85,32 @@ RANK_BYTES = max(
 )
 
 
-SECONDS = {
-    name: len(shard.realisations)
-    * sum(expected_cost(one).seconds for one in FIRSTS[shard.item.name])
+TIMES = {
+    name: [expected_cost(one).seconds for one in FIRSTS[shard.item.name]]
     for name, shard in SHARDS.items()
 }
+SECONDS = {
+    name: len(shard.realisations) * sum(TIMES[name]) for name, shard in SHARDS.items()
+}
 
-RANKS = config.get(
-    "ranks",
-    cores_of_job(list(SECONDS.values()), workflow.resource_settings.cores or 1),
-)
+
+def chosen_ranks():
+    """Cores of a job of those shards that are left; all where memory does not allow as many jobs.
+
+    The job then says so itself.
+    """
+    n_core = workflow.resource_settings.cores or 1
+    if RANK_BYTES * n_core > memory_at_hand():
+        return n_core
+    left = [name for name in SHARDS if not Path(RESULTS, f"shards/{name}.nc").exists()]
+    return cores_of_job(
+        [SECONDS[name] for name in left or SHARDS],
+        [max(TIMES[name]) for name in left or SHARDS],
+        n_core,
+    )
+
+
+RANKS = config.get("ranks", chosen_ranks())
 # Names, as reading this must not import what computes the figures.
 ANIMATED = ["beyond-animation"]
 
@@ -168,8 +185,11 @@ def configuration(wildcards, output):
 
 
 def megabytes(number):
-    """Memory to ask for where a number of bytes is expected. (Units: MB)"""
-    return int(number * 1.5e-6) + 1
+    """Memory to ask for where a number of bytes is expected. (Units: MB)
+
+    A job on a cluster also holds Snakemake twice, 0.3 GB each.
+    """
+    return max(1000, int(number * 1.5e-6) + 1)
 
 
 def minutes(seconds):
