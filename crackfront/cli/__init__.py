@@ -112,9 +112,10 @@ Exit codes:
       that ended early, ranks that failed, memory that ran out, results that are
       damaged or do not agree
   2   the input cannot be used; one sentence says why, and nothing was computed
-  3   predict, samples with --strict: the theory applies with reservations
-  4   predict, samples: the theory does not apply; the output says which modulus,
-      radius, roughness or w_int would meet the condition
+  3   predict, samples with --strict: the theory applies with reservations, or it
+      cannot be decided whether it applies
+  4   predict, samples: the theory does not apply, or a sample cannot be used; the
+      output says which modulus, radius, roughness or w_int would meet the condition
   75  interrupted (Ctrl-C, SIGTERM, a closed terminal); run the same command again
 
 \b

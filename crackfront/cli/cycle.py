@@ -158,8 +158,9 @@ def cycle(
     units is w_int.
 
     With --spring the front is straight along y, with one site for every y of the tile. Springs
-    pull it along x; the loads are the positions of their other ends, in lengths of the tile. On a
-    tile without roughness the front rests at the load.
+    pull it along x; the loads, which a straight front needs, are the positions of their other
+    ends, in the unit of length of the tile. On a tile without roughness the front rests at the
+    load.
 
     The exit code is 0 if the cycle is complete (on a sphere without --loads, if contact is lost)
     and 1 if it ended early; the output is written in both cases. It is 2 if the input cannot be

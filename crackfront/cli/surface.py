@@ -140,15 +140,16 @@ def predict(
     """Predict how strongly a soft sphere sticks to a measured surface, from the fitted law.
 
     SCANS are files of instruments in any format that SurfaceTopography reads, one measurement of
-    the surface or several. In their place --psd names the export of a spectral density, and --rms
-    with --hurst and --correlation-length or --roll-off the numbers of one. Works of adhesion are
-    w_int - e_el -+ k e_el. k is that of `crackfront law`, divided by the ratio of the front to
-    boundary elements.
+    the surface or several. Instead of scans, --psd names an exported spectral density, or --rms,
+    --hurst and --correlation-length or --roll-off describe a self-affine surface. Works of
+    adhesion are w_int - e_el -+ k e_el. k is that of `crackfront law`, divided by the ratio of the
+    front to boundary elements.
 
     Exit code 0: a prediction, with reservations where there are any or where it cannot be decided
     whether the theory applies (3 with --strict). 4: the theory does not apply; nothing is
-    predicted, and the output says which modulus, radius, roughness or w_int would meet it. With
-    --csv it is the largest of all samples; a scan that cannot be used counts as 4.
+    predicted, and the output says which modulus, radius, roughness or w_int would meet the
+    condition. With --csv the code is the largest of all samples; a scan that cannot be used counts
+    as 4.
     """
     from crackfront.topography.page.report import machine_readable, report_text
     from crackfront.topography.prediction.prediction import check_and_predict

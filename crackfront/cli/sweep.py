@@ -207,8 +207,8 @@ def _block(context: click.Context, parameter: click.Parameter, value: str | None
 @click.option(
     "--launcher",
     envvar="CRACKFRONT_LAUNCHER",
-    help="Launcher of the ranks, as in 'srun -K1 --mpi=pmi2'; also from CRACKFRONT_LAUNCHER.  "
-    "[default: mpiexec beside this Python]",
+    help="Launcher of the ranks, as in 'srun -K1 --overcommit --mpi=pmi2'; also from "
+    "CRACKFRONT_LAUNCHER.  [default: mpiexec beside this Python]",
 )
 @click.option(
     "--checkpoint",

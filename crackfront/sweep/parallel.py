@@ -315,8 +315,8 @@ def launch_ranks(
     It is None if the manager stopped on request. The first signal that requests a stop leaves the
     ranks a file in the folder, which all ranks see; the second ends the launcher, which is killed
     where it does not end. What the ranks print is passed on as long as it is read. The launcher
-    takes `-n` and a number, as "srun -K1 --mpi=pmi2" does. ValueError if there is none, or it
-    cannot be started.
+    takes `-n` and a number, as "srun -K1 --overcommit --mpi=pmi2" does. ValueError if there is
+    none, or it cannot be started.
     """
     # Under -m mpi4py a rank that fails ends the job, where it would else hang.
     command = [

@@ -317,7 +317,7 @@ def parts() -> dict[str, str]:
     sweeps = [(million(slower, n_shard=n_shard), job_ranks) for n_shard, job_ranks in JOBS]
     useful = sum(float(np.sum(shard)) for shard in sweeps[0][0]) / 3600
     heads = [f"hours, {n_shard} shards of {job_ranks} ranks" for n_shard, job_ranks in JOBS]
-    header = " | ".join(["ranks", *(f"{head} | efficiency" for head in heads)])
+    header = " | ".join(["cores", *(f"{head} | efficiency" for head in heads)])
     cells = [
         [f"{rows[0].n_rank}"]
         + [text for row in rows for text in (f"{row.hours:.3g}", f"{row.efficiency:.1%}")]

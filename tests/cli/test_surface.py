@@ -2,9 +2,11 @@
 
 import csv
 import json
+import re
 import shutil
 from dataclasses import replace
 from pathlib import Path
+from statistics import NormalDist
 
 import numpy as np
 import pytest
@@ -13,6 +15,7 @@ import xarray as xr
 import crackfront as cf
 from crackfront.analysis.estimate import Estimate
 from crackfront.analysis.law import shipped_law
+from crackfront.analysis.validity import shipped_validity
 from crackfront.core.variables import variables
 from crackfront.simulate.user_surface import read_field, surface_adhesion
 from crackfront.topography.prediction.prediction import Prediction, predicted
@@ -359,6 +362,14 @@ def test_the_documentation_states_the_range_of_the_law():
     smallest, largest = law.size
     assert f"w_rms/w_int from {weakest:.2g} to {strongest:.2g} and g from {smallest:.2g} " in page
     assert f"to {largest:.3g}" in page
+
+
+def test_the_documentation_states_from_which_share_on_negative_w_loc_is_a_reservation():
+    energy = max(row.elastic_energy for row in shipped_validity())
+    share = NormalDist().cdf((energy - 1) / (2 * np.sqrt(energy)))
+    for name in ("surfaces.md", "accuracy.md"):
+        text = " ".join((ROOT / "docs" / name).read_text(encoding="utf-8").split())
+        assert re.search(rf"above {share:.1%}.* above 25%", text)
 
 
 NUMBERS = ("--rms", "20nm", "--roll-off", "2um", "--hurst", "0.8", "--short-cutoff", "20nm")
