@@ -214,6 +214,7 @@ fit: {lowest_elastic_energy: 1.0e-3, highest_elastic_energy: 0.1, bootstrap: 200
 
 
 @pytest.mark.mpi
+@pytest.mark.slow
 def test_a_surface_and_a_mask_in_npy_are_read_by_the_manager_alone_and_one_rank_gives_the_same_bits(
     tmp_path, rng
 ):
