@@ -42,6 +42,18 @@ def run_examples(page):
     return test.globs
 
 
+def test_the_tests_that_pages_name_exist():
+    files = {path.name: path.read_text() for path in (ROOT / "tests").rglob("test_*.py")}
+    defined = re.findall(r"def (test_\w+)", " ".join(files.values()))
+    named = set()
+    for page in DOCS.rglob("*.md"):
+        named |= set(re.findall(r"`((?:test_|\.\.\.)[\w.]+)`", page.read_text()))
+    assert len(named) > 40
+    for name in named - set(files):
+        pattern = name.replace("...", r"\w*")
+        assert any(re.fullmatch(pattern, one) for one in defined), name
+
+
 def test_the_page_of_the_core_gives_what_it_shows():
     run_examples(DOCS / "core.md")
 
