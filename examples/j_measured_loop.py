@@ -3,8 +3,8 @@ A measured loop beside its prediction
 =====================================
 
 A rig presses a sphere on a surface and pulls it off; its table holds force and contact radius.
-Here the rig is simulated: a sphere on the very scan, with noise. The tables ``rig.csv`` and
-``density.csv`` beside this file were written by it.
+Here the rig is simulated: a sphere on the very scan, with noise. Copies of the tables that it
+writes, ``rig.csv`` and ``density.csv``, are beside this file.
 """
 
 import sys

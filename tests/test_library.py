@@ -302,7 +302,8 @@ def test_instabilities_sweep_what_the_front_travels_and_lose_energy(surface, jum
         ({"roll_off": 9.0}, "the longest waves of the spectrum, of 9, or its e_el is not"),
         ({"error": 0.0}, "error is 0.0; it must lie between 0 and 1"),
         ({"roll_off": 0.1}, "roll_off 0.1 is shorter than short_cutoff 0.4"),
-        ({"hurst": 0.0}, "hurst is 0.0; it must lie in"),
+        ({"roll_off": 0.8, "hurst": 0.0}, "hurst is 0.0; it must lie in"),
+        ({"hurst": 0.8}, "hurst is 0.8, but without a roll_off the spectrum is flat"),
         ({"side": 0.1}, "side is 0.1; the tile must hold the longest waves"),
         ({"kind": "rough"}, "kind is 'rough'; choose one of roughness, chemical"),
         ({"seed": -1}, "seed is -1; it must lie between 0 and"),
@@ -354,13 +355,13 @@ def test_a_surface_that_cannot_be_used_is_refused(surface, change, sentence):
         (lambda: cf.surface(np.zeros((4, 4)), 1.0, units=3), "units is 3; give the name of a unit"),
         (lambda: cf.run_loop(tile(np.zeros((4, 4))), loads=0.5), "loads is 0.5; give the loads"),
         (lambda: cf.run_loop(tile(np.zeros((4, 4))), loads="01"), "loads is '01'; give the loads"),
-        (lambda: cf.plot_surface(tile(np.zeros((4, 4))), axes=3), "axes is 3; give axes of matpl"),
+        (lambda: cf.plot_surface(tile(np.zeros((4, 4))), axes=3), "axes is 3; give one Axes of"),
         (lambda: cf.read_scan(SCAN, SPHERE, mask=np.ones(3)), "mask is a numpy.ndarray; give a pa"),
         (lambda: cf.in_si_units(tile(np.zeros((4, 4))), 1e-3), "sphere is 0.001; give crackf"),
         (lambda: cf.in_si_units([1], SPHERE), "data is a list; give an xarray.DataArray or"),
         (lambda: cf.plot_loop(tile(np.zeros((4, 4)))), "loop is a xarray.DataArray; give an"),
         (lambda: cf.plot_instabilities(None), "jumps is None; give what find_instabilities"),
-        (lambda: cf.read_scan(7, SPHERE), "scan is 7; give the path of a file"),
+        (lambda: cf.read_scan(7, SPHERE), "path is 7; give the path of a file"),
         (lambda: cf.predict(7, SPHERE), "scans is 7; give the path of a file, or a list"),
         (lambda: cf.predict([SCAN], "1mm"), "sphere is '1mm'; give crackfront.Scales"),
         (lambda: cf.run_sweep(7), "configuration is 7; give the path"),
@@ -428,7 +429,11 @@ def test_an_array_is_the_same_surface_in_all_units():
             {"side": "1mm", "sphere": SPHERE},
             r"adhesion is 1 J/m\^2, 15\.87 of that of the sphere;",
         ),
-        (1 + WAVE, {"units": "mJ/m2"}, "units is 'mJ/m2'; choose one of reduced, w_int, or give"),
+        (
+            1 + WAVE,
+            {"units": "mJ/m2"},
+            "units is 'mJ/m2', which needs the sphere; give it",
+        ),
         ([1.0, 2.0], {}, r"the values have the shape \(2,\); a tile must be"),
         (WAVE, {"kind": "rough"}, "kind is 'rough'; choose one of"),
         (
@@ -436,7 +441,11 @@ def test_an_array_is_the_same_surface_in_all_units():
             {"units": "w_int"},
             "work_of_adhesion is nan at x index 1, y index 8",
         ),
-        (xr.DataArray(1 + WAVE, attrs={"units": "nm"}), {}, "units is 'nm'; choose one of reduced"),
+        (
+            xr.DataArray(1 + WAVE, attrs={"units": "nm"}),
+            {},
+            "units is 'nm', which needs the sphere",
+        ),
         (
             xr.DataArray(1 + WAVE, attrs={"units": "w_int"}),
             {"units": "reduced"},
@@ -660,6 +669,7 @@ def test_simulations_without_a_value_are_warned_of(tmp_path):
         (cf.run_loop, {"max_penetration": -1.0}, "max penetration -1.0 never makes contact"),
         (cf.run_loop, {"error": 1e-6}, "error is 1e-06, but the finest numerics"),
         (cf.run_loop, {"error": 2}, "error is 2; it must lie between 0 and 1"),
+        (cf.find_instabilities, {"direction": "retraction"}, "direction is 'retraction'; give 1"),
         (cf.find_instabilities, {"direction": 0}, "direction is 0; give 1 for approach or -1"),
         (cf.find_instabilities, {"precision": 0.01}, "precision is 0.01; .* at most a tenth of"),
         (cf.find_instabilities, {"precision": 0.0}, "precision is 0; it must be positive"),
@@ -667,12 +677,23 @@ def test_simulations_without_a_value_are_warned_of(tmp_path):
         (cf.find_instabilities, {"step": 0}, "load step is 0; it must be positive"),
         (cf.find_instabilities, {"step": -1.0}, "load step is -1.0; it must be positive"),
         (cf.find_instabilities, {"travel": -1.0}, "travel is -1; it must be positive and finite"),
-        (cf.find_instabilities, {"travel": 1e-12}, "travel is 1e-12 .* by up to 0.0011 of them;"),
+        (cf.find_instabilities, {"travel": 1e-12}, "travel is 1e-12 .* by up to .* of them;"),
+        (cf.find_instabilities, {"precision": 2e-3}, "within a precision of 0.002 a front moves"),
     ],
 )
 def test_a_loop_that_cannot_be_run_is_refused(surface, run, given, sentence):
     with pytest.raises(ValueError, match=sentence):
         run(surface, **({"error": 0.05} | given))
+
+
+def test_a_smooth_sphere_has_no_instability_before_pull_off():
+    assert cf.find_instabilities(cf.surface(np.zeros((64, 64)), 4), step=0.1).instability.size == 0
+
+
+def test_fronts_that_do_not_fit_into_memory_are_refused_before_the_loop(surface, monkeypatch):
+    monkeypatch.setattr("crackfront.data.bounds.memory_at_hand", lambda: 4e9)
+    with pytest.raises(ValueError, match=r"fronts of .* sites would need .* set fronts=False"):
+        cf.run_loop(surface, max_penetration=5e3)
 
 
 @pytest.mark.parametrize(
@@ -816,6 +837,11 @@ def test_the_patches_of_the_instabilities_have_the_area_of_the_sites_that_moved(
     moved = np.abs(jumps.after - jumps.before) > jumps.attrs["travel"]
     swept = (jumps.before**2 - jumps.after**2) / 2 * 2 * np.pi / jumps.sizes["angle"]
     assert area == pytest.approx(float(swept.where(moved).sum()), rel=0.05)
+
+
+def test_heights_that_were_multiplied_have_no_stated_spectrum(surface):
+    lines = [len(cf.plot_spectrum(one, axes_of_a_figure()).lines) for one in (surface, 3 * surface)]
+    assert lines[1] == lines[0] - 1
 
 
 def test_the_rms_values_of_a_spectrum_are_those_of_the_surface():

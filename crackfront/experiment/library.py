@@ -41,7 +41,8 @@ def measured_loop(
         of :func:`run_loop` or the file of one; it states its sphere, and all other arguments are
         left out.
     radius : float or str, optional
-        Radius of the sphere; a number of metres, or a text with a unit, as '1.25mm'. (Units: m)
+        Radius of the sphere, which a measured loop needs; a number of metres, or a text with a
+        unit, as '1.25mm'. (Units: m)
     contact_modulus : float or str, optional
         E' = E / (1 - nu^2); fitted to force and contact radius if it is not given. (Units: Pa)
     modulus_error, radius_error : float, optional
@@ -50,7 +51,8 @@ def measured_loop(
         Stiffness of the machine, for displacements with a force or a contact radius alone.
         (Units: N/m)
     window : (float, float), optional
-        Contact radii that both branches are averaged over. (Units: m)
+        Contact radii that both branches are averaged over; numbers, or texts with a unit.
+        (Units: m)
 
     Returns
     -------
@@ -86,10 +88,15 @@ def measured_loop(
     }
     if isinstance(loop, (str, PathLike)) and is_netcdf(Path(loop)):
         loop = read_dataset(Path(loop))
-    if isinstance(loop, Dataset) and "penetration" not in loop:
-        # Simulated cycles have one. Other columns, as a time, are left out.
+    if isinstance(loop, Dataset) and not {"penetration", "pinning_force"} & {*loop}:
+        # Simulated cycles have one of these. Other columns, as a time, are left out.
         named = {name: loop[name] for name in UNITS if name in loop}
-        loop = named if len(named) > 1 else loop
+        if len(named) < 2:
+            raise ValueError(
+                f"the dataset has {', '.join(map(str, loop)) or 'no variables'}; a measured loop "
+                f"needs two of {', '.join(UNITS)}"
+            )
+        loop = named
     if isinstance(loop, Dataset):
         if without := [name for name, value in given.items() if value is not None]:
             leave_out = ", ".join(without)
@@ -98,15 +105,18 @@ def measured_loop(
                 "(crackfront.in_si_units gives a cycle in reduced units a sphere)"
             )
         return simulated_loop(loop)
+    refuse_other_type(
+        "loop", loop, (str, PathLike, Mapping), "the path of a table, or arrays by their names"
+    )
     if radius is None:
         raise ValueError("a measured loop does not state its sphere; give its radius in metres")
     refuse_no_numbers(modulus_error=modulus_error, radius_error=radius_error)
     if window is not None:
-        refuse_other_type("window", window, (tuple, list), "two contact radii in metres")
+        refuse_other_type("window", window, (tuple, list), "a pair of contact radii")
         if len(window) != 2:
-            raise ValueError(f"window has {len(window)} values; give two contact radii in metres")
-        refuse_no_numbers(**{"a contact radius of window": window[0]})
-        refuse_no_numbers(**{"a contact radius of window": window[1]})
+            raise ValueError(f"window has {len(window)} values; give two contact radii")
+        first, last = (in_si("a contact radius of window", one, "m") for one in window)
+        window = first, last
     rig = Rig(
         in_si("radius", radius, "m"),
         None if contact_modulus is None else in_si("contact_modulus", contact_modulus, "Pa"),
@@ -124,9 +134,6 @@ def measured_loop(
             name: None if loop.get(name) is None else _column(name, loop[name]) for name in UNITS
         }
         return analyse_loop(Recording(**columns), rig)
-    refuse_other_type(
-        "loop", loop, (str, PathLike), "the path of a table, or arrays by their names"
-    )
     return analyse_loop(read_recording(Path(loop), {}, {}), rig)
 
 

@@ -37,7 +37,9 @@ _BINS_A_DECADE = 20
 
 def _drawing(axes: Axes | None) -> AbstractContextManager[Axes]:
     """Given axes in the style that they have, or new ones in that of the package."""
-    refuse_other_type("axes", axes, (Axes, type(None)), "axes of matplotlib")
+    refuse_other_type(
+        "axes", axes, (Axes, type(None)), "one Axes of matplotlib, as axes[0] of several"
+    )
     return shown_axes() if axes is None else nullcontext(axes)
 
 
@@ -86,12 +88,19 @@ def plot_surface(surface: DataArray, axes: Axes | None = None) -> Axes:
     surface : xarray.DataArray
         A surface in reduced units, or what :func:`in_si_units` made of it.
     axes : matplotlib.axes.Axes, optional
-        Where to draw; by default axes of a new figure, which are returned.
+        Where to draw; by default axes of a new figure.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        The axes that it is drawn on.
 
     Raises
     ------
     ValueError
         If the surface cannot be used.
+    TypeError
+        If an argument is of another type.
     """
     kind = surface_kind(surface)
     surface, units = _reduced(surface)
@@ -110,17 +119,31 @@ def plot_spectrum(surface: DataArray, axes: Axes | None = None) -> Axes:
     """Isotropic power spectrum of a rough surface, with the scales that dominate it.
 
     A bar spans the wavevectors that carry 80% of the mean square of heights, half-derivatives (and
-    with them e_el) or slopes. Parameters are those of :func:`plot_surface`.
+    with them e_el) or slopes. The spectrum that the surface states is drawn beside it, if its e_el
+    is still that of the heights within a factor of two.
+
+    Parameters
+    ----------
+    surface, axes : optional
+        As of :func:`plot_surface`.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        The axes that it is drawn on.
 
     Raises
     ------
     ValueError
         If the surface cannot be used, is not one of heights, or is flat.
+    TypeError
+        If an argument is of another type.
     """
     if surface_kind(surface) != "roughness":
         raise ValueError(f"{surface.name} has no height spectrum; plot that of height(x, y)")
     surface, units = _reduced(surface)
-    pixel = surface_adhesion(surface).pixel
+    adhesion = surface_adhesion(surface)
+    pixel = adhesion.pixel
     modes = tile_modes(surface.transpose("x", "y").values, pixel)
     if modes.power.size == 0:
         raise ValueError("the surface is flat; it has no spectrum to plot")
@@ -131,7 +154,8 @@ def plot_spectrum(surface: DataArray, axes: Axes | None = None) -> Axes:
     shortest, longest = (2 * np.pi / modes.wavevector[np.array(ends)]).T
     shape, energy = stated_spectrum(surface), surface.attrs.get("elastic_energy_requested")
     ideal = None
-    if shape is not None and energy is not None:
+    # Heights that were multiplied keep the attributes, and have another spectrum.
+    if shape is not None and energy is not None and 0.5 < adhesion.e_el / float(energy) < 2:
         ideal = shape.with_elastic_energy(float(energy)).density(wavevector)
     rms = np.sqrt(totals[:, -1])
     with _drawing(axes) as drawn:
@@ -142,14 +166,26 @@ def plot_spectrum(surface: DataArray, axes: Axes | None = None) -> Axes:
 def plot_loop(loop: Dataset, axes: Axes | None = None) -> Axes:
     """Force against mean radius, between the JKR curves of both branches and those of the paper.
 
-    `loop` is what :func:`run_loop` has returned or `crackfront cycle` written, in reduced units or
-    in SI; `axes` as of :func:`plot_surface`. Of a straight front it is the force of its springs
-    against their place.
+    Of a straight front it is the force of its springs against their place.
+
+    Parameters
+    ----------
+    loop : xarray.Dataset
+        What :func:`run_loop` has returned or `crackfront cycle` written, in reduced units or in SI.
+    axes : matplotlib.axes.Axes, optional
+        As of :func:`plot_surface`.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        The axes that it is drawn on.
 
     Raises
     ------
     ValueError
         If it is no loop, or holds no state.
+    TypeError
+        If an argument is of another type.
     """
     _refuse_no_loop(loop)
     if "pinning_force" in loop:
@@ -176,15 +212,32 @@ def plot_fronts(
 ) -> Axes:
     """Fronts of both branches, over the work of adhesion that pins them if the surface is given.
 
-    `loop` and `axes` are as of :func:`plot_loop`; the loop holds its fronts, at most `most` of
-    which are drawn of a branch. A surface may be in other units than the loop.
+    Parameters
+    ----------
+    loop : xarray.Dataset
+        As of :func:`plot_loop`, with its fronts.
+    surface : xarray.DataArray, optional
+        As of :func:`plot_surface`, in the units of the loop or in others; none for straight fronts.
+    axes : matplotlib.axes.Axes, optional
+        As of :func:`plot_surface`.
+    most : int, optional
+        Largest number of fronts that are drawn of a branch.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        The axes that they are drawn on.
 
     Raises
     ------
     ValueError
         If loop or surface cannot be used, or the loop holds no fronts.
+    TypeError
+        If an argument is of another type.
     """
     _refuse_no_loop(loop)
+    if isinstance(surface, Axes):
+        raise TypeError("surface is axes of matplotlib; give them by name, as axes=...")
     if ("radius" not in loop and "position" not in loop) or loop.sizes.get("step") == 0:
         raise ValueError(
             "the loop holds no fronts; run it with fronts=True, or crackfront cycle with "
@@ -218,12 +271,24 @@ def plot_fronts(
 def plot_instabilities(jumps: Dataset, axes: Axes | None = None) -> Axes:
     """What each instability of a branch has swept, coloured by the energy that it dissipated.
 
-    `jumps` is what :func:`find_instabilities` has returned, `axes` as of :func:`plot_surface`.
+    Parameters
+    ----------
+    jumps : xarray.Dataset
+        What :func:`find_instabilities` has returned, in reduced units or in SI.
+    axes : matplotlib.axes.Axes, optional
+        As of :func:`plot_surface`.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        The axes that they are drawn on.
 
     Raises
     ------
     ValueError
         If there is no instability.
+    TypeError
+        If an argument is of another type.
     """
     refuse_other_type("jumps", jumps, Dataset, "what find_instabilities returns")
     if "before" not in jumps or "travel" not in jumps.attrs:

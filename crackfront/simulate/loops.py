@@ -31,6 +31,7 @@ from crackfront.core.solver import DEFAULT_TOLERANCE
 from crackfront.core.solver.relax import Newton, named_solver
 from crackfront.core.variables import variables
 from crackfront.data.arguments import refuse_no_numbers, refuse_other_type
+from crackfront.data.bounds import refuse_beyond_memory
 from crackfront.data.labels import labelled, labelled_fields
 from crackfront.data.provenance import __version__
 from crackfront.simulate.files import cycle_dataset
@@ -83,9 +84,11 @@ def run_loop(
         with these it is 0.03 by default, or what the finest numerics on the pixels leave, and the
         result states it; without them an error is refused.
     sites : int, optional
-        Sites of the front, in place of an error; by default one a pixel or more.
+        Sites of the front, in place of an error. By default those that the error needs; where
+        there is none, one a pixel or more.
     samples : float, optional
-        Samples a pixel along a ray, in place of an error; by default 2, of a straight front 1.
+        Samples a pixel along a ray, in place of an error. By default those that the error needs;
+        where there is none 2, of a straight front 1.
     solver : {"newton", "reference"}, optional
         Solver; both find the same fronts.
     fronts, energy : bool, optional
@@ -93,12 +96,14 @@ def run_loop(
         step loses energy even where a front would follow a slow load without loss; the comment of
         the variable says how much of the energies of a straight front this is.
     progress : callable, optional
-        Called with every state as it is found.
+        Called with every state as it is found, a `ContactState` of a sphere or a `LineState` of a
+        straight front.
 
     Returns
     -------
     xarray.Dataset
-        The curves over `step`, the fronts `radius(step, angle)` or `position(step, y)`, and
+        The curves over `step` (`penetration`, `force`, `mean_radius`, ..., each with its units),
+        the fronts `radius(step, angle)` or `position(step, y)`, and
         measures of the whole: `e_el`, `w_rms`, `correlation_length`, `w_appr`, `w_retr` and what
         else the table of a sweep has of them, of a straight front over the last period of its tile
         or less; NaN where the loop has no steady part. The attribute `result` states them, the
@@ -107,8 +112,8 @@ def run_loop(
     Raises
     ------
     ValueError
-        If the surface, a length or the solver cannot be used, or the pixels are too coarse for
-        an error that is asked for.
+        If the surface, a length or the solver cannot be used, the pixels are too coarse for an
+        error that is asked for, or there is no memory for the fronts.
     TypeError
         If an argument is of another type.
 
@@ -140,6 +145,12 @@ def run_loop(
     solution = named_solver(solver, DEFAULT_TOLERANCE)
     contact = surface if isinstance(surface, LoopContact) else PressedSphere(surface)
     setup = contact.setup(visited, max_penetration, step, LoopNumerics(error, sites, samples))
+    if fronts:
+        refuse_beyond_memory(
+            f"{setup.expected} fronts of {setup.front.size} sites",
+            8.0 * setup.expected * setup.front.size,
+            "set fronts=False, or take larger steps or a smaller max_penetration",
+        )
     compile_solver(solver, setup.kind)
     observers = [] if progress is None else [lambda recorder: progress(recorder.states[-1])]
     recorder = Recorder(fronts=fronts, energy=energy, observers=observers)
@@ -213,7 +224,7 @@ def find_instabilities(
     max_penetration: float = 1.0,
     step: float = 0.02,
     travel: float = 0.05,
-    precision: float = 2e-5,
+    precision: float | None = None,
     error: float | None = None,
     sites: int | None = None,
     samples: float | None = None,
@@ -236,7 +247,9 @@ def find_instabilities(
         quarter of the root of the precision, by which a front moves smoothly before it jumps.
     precision : float, optional
         Penetration to which an instability is located, at most a tenth of the step: a smooth step
-        that is not divided further would count as one. (Units: reduced vertical length)
+        that is not divided further would count as one. By default 2e-5, or less where the step or
+        the `travel` is small: before pull-off the whole front moves with the root of the
+        penetration. (Units: reduced vertical length)
     error : float, optional
         As in :func:`run_loop`, by default 0.05 where the surface states its spectrum.
     sites, samples : optional
@@ -245,15 +258,19 @@ def find_instabilities(
     Returns
     -------
     xarray.Dataset
-        Over `instability` the penetration, the dissipated energy, the whole area between the fronts
-        before and after, and the extent of the largest patch of sites that moved by more than the
-        `travel`; these fronts, `before` and `after`, over `angle` as well.
+        Over `instability` the `penetration` (Units: reduced vertical length), the
+        `dissipated_energy` (Units: pi w_int R times that), the whole `area` between the fronts
+        before and after (Units: reduced lateral length**2), and the `extent` of the largest patch
+        of sites that moved by more than the attribute `travel`; these fronts, `before` and `after`,
+        over `angle` as well. (Units: reduced lateral length)
 
     Raises
     ------
     ValueError
         If an argument cannot be used, a front is not found, or the surface is that of a straight
         front, which has no first contact and no pull-off to end a branch.
+    TypeError
+        If an argument is of another type.
     """
     if isinstance(surface, LoopContact):
         raise ValueError(
@@ -261,24 +278,25 @@ def find_instabilities(
             "straight front has not; give the surface itself"
         )
     if direction not in get_args(Direction):
-        raise ValueError(f"direction is {direction}; give 1 for approach or -1 for retraction")
-    refuse_no_numbers(
-        max_penetration=max_penetration, step=step, travel=travel, precision=precision
-    )
+        raise ValueError(f"direction is {direction!r}; give 1 for approach or -1 for retraction")
+    refuse_no_numbers(max_penetration=max_penetration, step=step, travel=travel)
     schedule = LoadSchedule(max_penetration, step)
+    if not 0 < travel < math.inf:
+        raise ValueError(f"travel is {travel:g}; it must be positive and finite")
+    numerics = LoopNumerics(error, sites, samples, usual_error=0.05)
+    contact = PressedSphere(surface).setup(None, max_penetration, step, numerics)
+    reach = travel * contact.measures.correlation_length
+    if precision is None:
+        precision = min(2e-5, step / 10, max(reach**2, _round_off(contact)))
+    refuse_no_numbers(precision=precision)
     if not 0 < precision <= step / 10:
         raise ValueError(
             f"precision is {precision:g}; it must be positive, and at most a tenth of the step, "
             f"{step / 10:g}"
         )
-    if not 0 < travel < math.inf:
-        raise ValueError(f"travel is {travel:g}; it must be positive and finite")
-    numerics = LoopNumerics(error, sites, samples, usual_error=0.05)
-    contact = PressedSphere(surface).setup(None, max_penetration, step, numerics)
-    _refuse_unresolved_motion(contact, travel, precision)
+    _refuse_unresolved_motion(contact, travel, precision, direction)
     compile_solver("newton")
     field, solver = contact.field, Newton(min(contact.tolerance, precision / 10))
-    reach = travel * contact.measures.correlation_length
     start = 0.0 if direction > 0 else max_penetration
     touched = front_at(field, first_touch(field), Load(start, 1), solver)
     loads = schedule.approach() if direction > 0 else schedule.retraction()
@@ -296,16 +314,29 @@ _SMOOTH = 0.25
 lengths: where a site is about to jump, it moves with that root."""
 
 
-def _refuse_unresolved_motion(contact: LoopSetup, travel: float, precision: float) -> None:
+def _round_off(contact: LoopSetup) -> float:
+    """Penetration below which steps are round-off, in reduced units."""
+    return 10 * float(np.finfo(float).eps) * contact.front.size
+
+
+_PULL_OFF = 1.5
+"""Penetration from pull-off over the square of the motion of the smooth sphere there: half of the
+curvature of the penetration in the radius. (Units: reduced lengths)"""
+
+
+def _refuse_unresolved_motion(
+    contact: LoopSetup, travel: float, precision: float, direction: Direction
+) -> None:
     """Raise if round-off hides steps of a precision, or if smooth motion counts as a jump."""
-    round_off = 10 * float(np.finfo(float).eps) * contact.front.size
-    if precision < round_off:
+    if precision < (least := _round_off(contact)):
         raise ValueError(
             f"precision is {precision:g}, below the round-off of a front of {contact.front.size} "
-            f"sites ({round_off:.1e}); raise it"
+            f"sites ({least:.1e}); raise it"
         )
     length = contact.measures.correlation_length
     least = max(_SMOOTH * math.sqrt(precision), precision / length)
+    if direction < 0:
+        least = max(least, math.sqrt(precision / _PULL_OFF) / length)
     if travel < least:
         raise ValueError(
             f"travel is {travel:g} correlation lengths, but within a precision of {precision:g} a "

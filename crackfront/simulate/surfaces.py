@@ -115,6 +115,11 @@ def _shape(short_cutoff: float | Spectrum, roll_off: float | None, hurst: float 
     named = {name: one for name, one in optional.items() if one is not None}
     if not isinstance(short_cutoff, Spectrum):
         refuse_no_numbers(short_cutoff=short_cutoff, **named)
+        if hurst is not None and roll_off is None:
+            raise ValueError(
+                f"hurst is {hurst:g}, but without a roll_off the spectrum is flat and has no Hurst "
+                "exponent; give the roll_off, or leave hurst out"
+            )
         long = short_cutoff if roll_off is None else roll_off
         return SelfAffineSpectrum(short_cutoff, long, 1.0 if hurst is None else hurst)
     for name, value in named.items():

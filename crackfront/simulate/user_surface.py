@@ -112,7 +112,8 @@ def surface(
     given = units or ("reduced" if sphere is None else unit)
     if given not in known and sphere is None:
         raise ValueError(
-            f"units is {units!r}; choose one of {', '.join(known)}, or give the sphere as well"
+            f"units is {units!r}, which needs the sphere; give it, or values whose units are "
+            f"{' or '.join(known)}"
         )
     factor = known[given] if given in known else unit_value(given, unit) / scale
     found = surface_array(kind, factor * samples, float(side) / len(samples))

@@ -71,7 +71,7 @@ def read_scan(path: File, sphere: Scales, **options: Any) -> DataArray:
     """
     refuse_unknown("read_scan", options, ReadingOptions)
     refuse_no_scales(sphere)
-    file = _path(path)
+    file = _path(path, "path")
     [reading] = reading_options(options, 1)
     surface_library()  # All of it, as the user's program may import it too.
     measured, *others = read_measurements([file], reading)
@@ -80,10 +80,10 @@ def read_scan(path: File, sphere: Scales, **options: Any) -> DataArray:
     return scan_surface(analysed_scan(measured, reading.shortest, reading.longest), sphere)
 
 
-def _path(scan: File) -> Path:
-    """Path of a scan, refused where it is none."""
-    refuse_other_type("scan", scan, (str, PathLike), "the path of a file")
-    return Path(scan)
+def _path(given: File, name: str) -> Path:
+    """Path that an argument names, refused where it is none."""
+    refuse_other_type(name, given, (str, PathLike), "the path of a file")
+    return Path(given)
 
 
 def read_psd(path: File, **options: Any) -> StatedSurface:
@@ -114,7 +114,7 @@ def read_psd(path: File, **options: Any) -> StatedSurface:
         If the file cannot be opened.
     """
     refuse_unknown("read_psd", options, PsdOptions)
-    return density_surface(read_psd_file(_path(path), checked_options(PsdOptions, options)))
+    return density_surface(read_psd_file(_path(path, "path"), checked_options(PsdOptions, options)))
 
 
 def self_affine_surface(**numbers: Any) -> StatedSurface:
@@ -208,6 +208,6 @@ def _measured(scans: File | Iterable[File], options: dict[str, Any]) -> Measured
     """Surface of one scan or several."""
     paths = [scans] if isinstance(scans, (str, PathLike)) else scans
     refuse_other_type("scans", paths, Iterable, "the path of a file, or a list of such")
-    files = [_path(path) for path in paths]
+    files = [_path(path, "scan") for path in paths]
     surface_library()  # All of it, as the user's program may import it too.
     return read_surface(files, reading_options(options, len(files)))

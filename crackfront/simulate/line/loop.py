@@ -47,7 +47,7 @@ class StraightFront(LoopContact):
     surface: DataArray
     """The periodic surface, in reduced units."""
     spring: float
-    """Length of the springs, w_int / kappa. (Units: that of the surface)"""
+    """Length of the springs, w_int / kappa. (Units: reduced lateral length)"""
 
     def setup(
         self,
@@ -60,8 +60,13 @@ class StraightFront(LoopContact):
 
         By default the front has a site for every y, and a sample a pixel along a ray.
         """
-        if loads is None or max_penetration is not None:
-            raise ValueError("a straight front needs loads, and no max_penetration; give loads")
+        if loads is None:
+            raise ValueError("a straight front needs loads; give loads, and no max_penetration")
+        if max_penetration is not None:
+            raise ValueError(
+                f"max_penetration is {max_penetration:g}, but a straight front is at its loads; "
+                "leave max_penetration out"
+            )
         if numerics.error is not None:
             raise ValueError(
                 f"error is {numerics.error:g}, but errors of straight fronts on a given surface "
@@ -148,8 +153,12 @@ def straight_front(surface: DataArray, spring: float) -> StraightFront:
     surface : xarray.DataArray
         Surface, as of :func:`crackfront.surface`.
     spring : float
-        Length of the springs, w_int over their stiffness per area. (Units: lateral unit of the
-        surface)
+        Length of the springs, w_int over their stiffness per area. (Units: reduced lateral length)
+
+    Returns
+    -------
+    StraightFront
+        For :func:`crackfront.run_loop`.
 
     Raises
     ------
