@@ -139,10 +139,17 @@ def load_result(path: str | Path) -> xr.DataArray | xr.Dataset:
     path : str or Path
         The file.
 
+    Returns
+    -------
+    xarray.DataArray or xarray.Dataset
+        With the names, units and attributes that were saved.
+
     Raises
     ------
     ValueError
         If the file is missing, damaged, or no netCDF.
+    TypeError
+        If an argument is of another type.
     """
     dataset = read_dataset(Path(path).expanduser())
     single = [one.name for one in SURFACES.values() if [*dataset] == [one.name]]

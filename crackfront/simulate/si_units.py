@@ -127,11 +127,18 @@ def in_si_units(data: Labelled, scales: units.Scales | None = None) -> Labelled:
     scales : Scales, optional
         The sphere; by default that of the configuration, which the table of a sweep states.
 
+    Returns
+    -------
+    xarray.DataArray or xarray.Dataset
+        A copy; `units` of every variable state the unit in SI.
+
     Raises
     ------
     ValueError
         If a variable is unknown or in other units, or neither `scales` nor the data say for which
         sphere.
+    TypeError
+        If an argument is of another type.
     """
     if scales is None:
         scales = _attributes_scales(as_dataset(data), _OF_SWEEP)
@@ -186,6 +193,8 @@ def in_reduced_units(data: Labelled, scales: units.Scales) -> Labelled:
     ValueError
         If a variable is unknown, its units are not those of its quantity, or the data state
         another sphere.
+    TypeError
+        If an argument is of another type.
 
     Examples
     --------

@@ -74,6 +74,8 @@ def random_surface(
     ------
     ValueError
         If there is no such spectrum, surface or error.
+    TypeError
+        If an argument is of another type.
 
     Examples
     --------

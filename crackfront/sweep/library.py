@@ -65,6 +65,8 @@ def run_sweep(
     ------
     ValueError
         If the configuration cannot be used.
+    TypeError
+        If an argument is of another type.
     OSError
         If nothing can be stored.
     KeyboardInterrupt
