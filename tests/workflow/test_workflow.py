@@ -152,6 +152,7 @@ def seen_in_browser(page, profile):
     return done.stdout
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not shutil.which("chromium"), reason="needs chromium: apt-get install chromium")
 def test_the_report_is_one_page_that_a_browser_shows_without_a_network(tmp_path, whole):
     report = tmp_path / "report.html"

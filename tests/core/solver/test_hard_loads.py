@@ -28,7 +28,6 @@ TIGHT = 1e-12
 SAME = 1e-8
 
 every_solver = pytest.mark.parametrize("solver", sorted(SOLVERS))
-some = settings(max_examples=60)
 
 
 def random_field(seed, n_ray=24, amplitude=0.4, *, tile=False, interpolation="linear"):
@@ -86,7 +85,6 @@ def tight(front, penetration, direction, field, solver):
 
 @every_solver
 @pytest.mark.parametrize("direction", [1, -1])
-@some
 @given(field=every_kind, seed=st.integers(0, 2**32 - 1), loads=st.tuples(*2 * [st.floats(-0.6, 1)]))
 def test_no_front_passes_another_on_any_kind_of_field(solver, direction, field, seed, loads):
     rng = np.random.default_rng(seed)
@@ -100,7 +98,6 @@ def test_no_front_passes_another_on_any_kind_of_field(solver, direction, field, 
 
 @every_solver
 @pytest.mark.parametrize("direction", [1, -1])
-@some
 @given(field=every_kind, cuts=st.lists(st.floats(-0.3, 0.9), max_size=10))
 def test_the_load_steps_leave_no_trace_on_any_kind_of_field(solver, direction, field, cuts):
     front = circle(field) if direction > 0 else held(circle(field), 0.9, 1, field, solver)
@@ -142,7 +139,6 @@ def test_any_order_of_forward_moves_ends_in_the_same_front_on_cubic_pieces(
 
 
 @every_solver
-@some
 @given(
     field=every_kind,
     shares=st.lists(st.floats(0.05, 0.95), min_size=2, max_size=6),

@@ -6,7 +6,7 @@ import sys
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from scipy.ndimage import gaussian_filter
 
@@ -54,7 +54,6 @@ def stiffness_ahead(problem, radius, segment, product, reach):
     return hardening(problem, 0, radius, product, segment, reach)
 
 
-@settings(max_examples=200)
 @given(
     seed=st.integers(0, 2**32 - 1),
     share=st.floats(0.2, 0.8),
@@ -93,7 +92,6 @@ def test_no_chord_of_the_drive_is_steeper_than_the_hardening(
         assert found <= chords.max() + 0.1
 
 
-@settings(max_examples=100)
 @given(
     seed=st.integers(0, 2**32 - 1),
     n_angle=st.integers(15, 48),

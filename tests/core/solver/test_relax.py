@@ -2,7 +2,7 @@ import itertools
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from scipy.ndimage import gaussian_filter
 
@@ -20,7 +20,6 @@ TIGHT = 1e-13
 SAME = 1e-8
 
 every_solver = pytest.mark.parametrize("solver", sorted(SOLVERS))
-few = settings(max_examples=100)
 
 
 class Rays:
@@ -195,7 +194,6 @@ def test_rings_stop_the_front_at_the_first_root_of_the_scalar_equation(solver, d
 
 
 @every_solver
-@few
 @given(case=rays(), data=st.data())
 def test_any_start_between_the_first_circle_and_the_front_ends_in_the_same_front(
     solver, case, data
@@ -237,7 +235,6 @@ def test_a_circle_on_the_first_sample_that_is_driven_inward_leaves(solver):
 
 
 @every_solver
-@few
 @given(case=rays(), direction=st.sampled_from([1, -1]))
 def test_a_front_in_equilibrium_stays_where_it_is(solver, case, direction):
     front = tight(
@@ -287,7 +284,6 @@ def test_any_order_of_single_forward_moves_ends_in_the_same_front(direction, see
 
 
 @pytest.mark.parametrize("solver", sorted(set(SOLVERS) - {"reference"}))
-@few
 @given(case=rays())
 def test_every_other_solver_ends_in_the_front_of_the_reference(solver, case):
     loads = [0.0, 0.4, 0.8]
@@ -303,7 +299,6 @@ def test_every_other_solver_ends_in_the_front_of_the_reference(solver, case):
 
 
 @every_solver
-@few
 @given(case=rays(), direction=st.sampled_from([1, -1]), penetration=st.floats(-0.3, 1.0))
 def test_the_residual_recomputed_with_numpy_is_the_stated_one_and_within_the_tolerance(
     solver, case, direction, penetration
@@ -317,7 +312,6 @@ def test_the_residual_recomputed_with_numpy_is_the_stated_one_and_within_the_tol
             assert outcome.residual == pytest.approx(left, rel=1e-6, abs=1e-13)
 
 
-@few
 @given(case=rays(), penetration=st.floats(-0.5, 1.5))
 def test_the_force_is_the_equation_of_equilibrium(case, penetration):
     rng = np.random.default_rng(1)
@@ -327,7 +321,6 @@ def test_the_force_is_the_equation_of_equilibrium(case, penetration):
 
 
 @every_solver
-@few
 @given(case=rays(), penetration=st.floats(0.0, 1.0))
 def test_mean_adhesion_under_the_front_is_the_mean_release_rate(solver, case, penetration):
     states = [tight(case.circle(), penetration, 1, case.field, solver)]
@@ -342,7 +335,6 @@ def test_mean_adhesion_under_the_front_is_the_mean_release_rate(solver, case, pe
 
 
 @every_solver
-@few
 @given(case=rays(), direction=st.sampled_from([1, -1]), penetration=st.floats(-0.3, 1.0))
 def test_no_site_moves_against_the_direction_of_motion(solver, case, direction, penetration):
     start = case.circle() + (0.0 if direction > 0 else 2.0)
@@ -351,7 +343,6 @@ def test_no_site_moves_against_the_direction_of_motion(solver, case, direction, 
 
 
 @every_solver
-@few
 @given(case=rays(), direction=st.sampled_from([1, -1]), penetration=st.floats(-0.3, 1.0))
 def test_a_front_on_which_every_site_is_driven_ends_with_no_site_pushed_back(
     solver, case, direction, penetration
@@ -398,7 +389,6 @@ def test_a_looser_tolerance_stops_behind_a_tighter_one(solver):
 
 
 @every_solver
-@few
 @given(case=rays(), shift=st.integers(1, 299))
 def test_relabelling_and_mirroring_the_rays_relabel_and_mirror_the_front(solver, case, shift):
     front = tight(case.circle(), 0.6, 1, case.field, solver).front
@@ -498,7 +488,6 @@ def test_a_front_solves_the_equation_of_equilibrium_in_si(solver):
 
 
 @every_solver
-@few
 @given(case=rays(), start=st.floats(0.05, 0.8))
 def test_raising_the_load_by_two_at_once_meets_no_spurious_root_in_compression(solver, case, start):
     front = np.full(case.n_angle, max(start, case.radii[0]))

@@ -48,7 +48,8 @@ def test_figures_that_took_longer_than_a_minute_tell_about_how_long_they_take(mo
     assert len(slow) >= 4
     for name, scale, seconds in slow:
         expected = figure(name).seconds(load_figure(CONFIGURATIONS / f"{name}.yaml", scale))
-        assert float(seconds) / 4 < expected < 4 * float(seconds), name
+        # Processors differ, those of a year by a factor of two.
+        assert float(seconds) / 6 < expected < 6 * float(seconds), name
 
 
 def test_the_workflow_names_those_that_take_longest_and_those_that_move():
