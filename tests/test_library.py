@@ -322,7 +322,7 @@ def test_a_surface_that_cannot_be_is_refused(given, sentence):
         (lambda one: one.rename(None), "named None; say what its values are"),
         (lambda one: one.assign_attrs(units="nm"), "has the units 'nm'; .* in_reduced_units"),
         (lambda one: one.assign_attrs(units=FORCE), "height has the units 'pi w_int R'"),
-        (lambda one: one.drop_attrs(), "has the units None"),
+        (lambda one: one.drop_attrs(), "states no units"),
         (lambda one: one.rename(x="u"), r"dimensions \(u, y\); a tile must have x and y"),
         (lambda one: one.drop_vars("x"), "no coordinate x"),
         (lambda one: one.where(one.x > one.x[0]), "height is nan at x index 0, y index 0"),
@@ -688,6 +688,25 @@ def test_a_loop_that_cannot_be_run_is_refused(surface, run, given, sentence):
 
 def test_a_smooth_sphere_has_no_instability_before_pull_off():
     assert cf.find_instabilities(cf.surface(np.zeros((64, 64)), 4), step=0.1).instability.size == 0
+
+
+def test_truth_is_saved_as_a_number_and_what_netcdf_cannot_hold_is_refused(surface, tmp_path):
+    cf.save_result(surface.assign_attrs(periodic=True), tmp_path / "surface.nc")
+    loaded = cf.load_result(tmp_path / "surface.nc")
+    assert loaded.attrs["periodic"] == 1
+    np.testing.assert_array_equal(loaded.values, surface.values)
+    assert surface.assign_attrs(periodic=True).attrs["periodic"] is True
+    with pytest.raises(TypeError, match="attribute notes is None; give numbers or a text"):
+        cf.save_result(surface.assign_attrs(notes=None), tmp_path / "surface.nc")
+    with pytest.raises(TypeError, match="path is None; give the path of a file"):
+        cf.save_result(surface, None)
+
+
+def test_what_is_in_si_units_already_is_said_so(surface):
+    with pytest.raises(ValueError, match=r"in SI units; in_reduced_units\(data, sphere\) converts"):
+        cf.in_si_units(cf.in_si_units(surface, SPHERE), SPHERE)
+    with pytest.raises(ValueError, match="height states no units; the attribute units must be"):
+        cf.in_si_units(surface.drop_attrs(), SPHERE)
 
 
 def test_fronts_that_do_not_fit_into_memory_are_refused_before_the_loop(surface, monkeypatch):

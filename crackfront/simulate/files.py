@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import asdict, replace
+from os import PathLike
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -16,6 +19,7 @@ from crackfront.core.geometry.line import LineState
 from crackfront.core.geometry.sphere import ContactState, sphere
 from crackfront.core.outcome import Status
 from crackfront.core.variables import STEP, Variable, variables
+from crackfront.data.arguments import refuse_other_type
 from crackfront.data.files import UnreadableFileError, read_dataset, write_dataset
 from crackfront.data.labels import labelled, labelled_fields
 from crackfront.data.packs import File
@@ -122,13 +126,26 @@ def save_result(result: xr.DataArray | xr.Dataset, path: str | Path) -> None:
     ValueError
         If the array has no name.
     TypeError
-        If the result is of another type.
+        If the result is of another type, or netCDF cannot hold an attribute.
     OSError
         If the file cannot be written.
     """
-    dataset = as_dataset(result, "result", "a surface or a loop")
+    refuse_other_type("path", path, (str, PathLike), "the path of a file")
+    dataset = as_dataset(result, "result", "a surface or a loop").copy()
+    dataset.attrs = _storable(dataset.attrs)
+    for part in dataset.variables.values():
+        part.attrs = _storable(part.attrs)
     # The library of netCDF would take ~ for the home folder, and nothing else here.
     write_dataset(Path(path).expanduser(), dataset, provenance())
+
+
+def _storable(attributes: Mapping[Any, Any]) -> dict[Any, Any]:
+    """Attributes as netCDF holds them: truth as 0 or 1; TypeError if it cannot hold one."""
+    known = (str, bool, int, float, np.generic, np.ndarray, list, tuple)
+    for name, value in attributes.items():
+        refuse_other_type(f"attribute {name}", value, known, "numbers or a text, or drop it")
+    truths = {key: int(one) for key, one in attributes.items() if isinstance(one, bool | np.bool_)}
+    return {**attributes, **truths}
 
 
 def load_result(path: str | Path) -> xr.DataArray | xr.Dataset:
@@ -151,6 +168,7 @@ def load_result(path: str | Path) -> xr.DataArray | xr.Dataset:
     TypeError
         If an argument is of another type.
     """
+    refuse_other_type("path", path, (str, PathLike), "the path of a file")
     dataset = read_dataset(Path(path).expanduser())
     single = [one.name for one in SURFACES.values() if [*dataset] == [one.name]]
     return dataset[single[0]] if single else dataset
@@ -196,7 +214,10 @@ def cycle_record(dataset: xr.Dataset, place: File | str = "the dataset") -> Cycl
     end = f"end_{names[0]}"
     if missing or name not in Status.__members__ or end not in dataset.attrs:
         what = ", ".join(missing) or "a known status"
-        raise UnreadableFileError(f"{place} holds no cycle: it lacks {what}")
+        raise UnreadableFileError(
+            f"{place} is no loop: it lacks {what}; give what run_loop returned or crackfront cycle "
+            "wrote"
+        )
     pull_off = dataset.attrs.get("pull_off_energy")
     fronts = dataset.get(states.front_name)
     lost = dataset.get("dissipated_energy")

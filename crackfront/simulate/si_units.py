@@ -229,12 +229,16 @@ def _are_equal(one: units.Scales, other: units.Scales) -> bool:
 
 def refuse_other_units(data: xr.DataArray | xr.Dataset) -> None:
     """Raise ValueError if a variable is unknown or not in reduced units; places need no units."""
-    for name, part in as_dataset(data).variables.items():
+    dataset = as_dataset(data)
+    if _attributes_scales(data, _SPHERE) is not None:
+        raise ValueError("the data are in SI units; in_reduced_units(data, sphere) converts them")
+    for name, part in dataset.variables.items():
         given, needed = stated_unit(part.attrs), _reduced_unit(str(name))
         plain = "reduced" if needed in (LATERAL, VERTICAL) else needed
         if given not in (needed, plain) and not (name in ("x", "y") and given in (None, "", "1")):
+            stated = "states no units" if given is None else f"has the units {given!r}"
             raise ValueError(
-                f"{name} has the units {given!r}; the attribute units must be '{plain}': set it, "
+                f"{name} {stated}; the attribute units must be '{plain}': set it, "
                 "or convert other units by in_reduced_units"
             )
 

@@ -358,7 +358,7 @@ def test_bad_numbers_of_ranks_are_refused(tmp_path, ranks):
 
 
 def test_a_surface_in_si_units_is_refused_as_a_field(tmp_path):
-    words = "x has the units 'm'; the attribute units must be"
+    words = "the data are in SI units; in_reduced_units(data, sphere) converts them"
     surface = cf.random_surface(0.4, 0.05, side=4, error=0.05)
     cf.in_si_units(surface, cf.Scales(1e-3, 50e-3, 1e6)).to_netcdf(tmp_path / "surface.nc")
     output = ("--max-penetration", 1, "--output", tmp_path / "out.nc")

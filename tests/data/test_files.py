@@ -136,7 +136,7 @@ def test_a_simulation_is_read_back_with_its_cost(tmp_path, result):
 
 def test_a_file_of_something_else_is_refused(tmp_path):
     xr.Dataset({"a": ("x", [1.0])}).to_netcdf(tmp_path / "a.nc")
-    with pytest.raises(UnreadableFileError, match="holds no cycle: it lacks penetration"):
+    with pytest.raises(UnreadableFileError, match="is no loop: it lacks penetration"):
         cycle_record(read_dataset(tmp_path / "a.nc"))
     with pytest.raises(UnreadableFileError, match=r"a.nc lacks .*spectrum"):
         read_table(tmp_path / "a.nc")
