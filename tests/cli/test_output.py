@@ -18,7 +18,8 @@ def command(*arguments):
     return [sys.executable, "-m", "crackfront", *map(str, arguments)]
 
 
-@pytest.mark.parametrize("ranks", [1, pytest.param(2, marks=[pytest.mark.mpi, pytest.mark.slow])])
+@pytest.mark.slow
+@pytest.mark.parametrize("ranks", [1, pytest.param(2, marks=pytest.mark.mpi)])
 def test_a_sweep_is_computed_although_nobody_reads_its_lines(tmp_path, ranks):
     reader, writer = os.pipe()
     os.close(reader)

@@ -236,6 +236,7 @@ def test_a_signal_stores_what_runs_and_ends_cleanly(configuration, same, tmp_pat
     assert same(tmp_path)
 
 
+@pytest.mark.slow
 def test_a_killed_process_goes_on_from_its_last_checkpoint(same_as_made, tmp_path, monkeypatch):
     with running(TEST, tmp_path, "--checkpoint", "0", until=1) as process:
         while not any((tmp_path / "checkpoints").glob("[!.]*.nc")):
