@@ -691,11 +691,12 @@ def test_a_smooth_sphere_has_no_instability_before_pull_off():
 
 
 def test_truth_is_saved_as_a_number_and_what_netcdf_cannot_hold_is_refused(surface, tmp_path):
-    cf.save_result(surface.assign_attrs(periodic=True), tmp_path / "surface.nc")
+    given = surface.assign_attrs(periodic=True)
+    cf.save_result(given, tmp_path / "surface.nc")
     loaded = cf.load_result(tmp_path / "surface.nc")
     assert loaded.attrs["periodic"] == 1
     np.testing.assert_array_equal(loaded.values, surface.values)
-    assert surface.assign_attrs(periodic=True).attrs["periodic"] is True
+    assert given.attrs["periodic"] is True
     with pytest.raises(TypeError, match="attribute notes is None; give numbers or a text"):
         cf.save_result(surface.assign_attrs(notes=None), tmp_path / "surface.nc")
     with pytest.raises(TypeError, match="path is None; give the path of a file"):

@@ -46,10 +46,13 @@ def test_figures_that_took_longer_than_a_minute_tell_about_how_long_they_take(mo
         if float(seconds) > 60
     ]
     assert len(slow) >= 4
-    for name, scale, seconds in slow:
-        expected = figure(name).seconds(load_figure(CONFIGURATIONS / f"{name}.yaml", scale))
-        # Processors differ, those of a year by a factor of two.
-        assert float(seconds) / 6 < expected < 6 * float(seconds), name
+    ratios = {
+        name: figure(name).seconds(load_figure(CONFIGURATIONS / f"{name}.yaml", scale)) / seconds
+        for name, scale, seconds in slow
+    }
+    # The speed of the machine that measured them is common to all.
+    common = np.median([*ratios.values()])
+    assert all(1 / 3 < ratio / common < 3 for ratio in ratios.values()), ratios
 
 
 def test_the_workflow_names_those_that_take_longest_and_those_that_move():
