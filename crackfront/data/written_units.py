@@ -5,11 +5,9 @@ from __future__ import annotations
 import functools
 import math
 import re
-import shutil
 import unicodedata
 from typing import Any
 
-from crackfront.core.private_cache import private_folder
 from crackfront.data.bounds import SI, refuse_outside
 
 _QUANTITY = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(\S.*?)?\s*")
@@ -145,18 +143,11 @@ def _converted(value: float, given: str, unit: str) -> float:
 
 @functools.cache
 def _registry() -> Any:
-    """Registry of units, which pint keeps in the user's cache once it is made."""
+    """Registry of units, made once in a process."""
     import pint
 
-    folder = private_folder("pint")
-    try:
-        return pint.UnitRegistry(cache_folder=folder)
-    except Exception:
-        # A damaged file of pint's cache can raise anything.
-        if folder is None:
-            raise
-        shutil.rmtree(folder)
-        return pint.UnitRegistry(cache_folder=private_folder("pint"))
+    # Files of pint's cache name those of one environment, and fail in others once that is removed.
+    return pint.UnitRegistry()
 
 
 _PREFIXES = {-12: "p", -9: "n", -6: "u", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"}

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from crackfront.data import written_units
 from crackfront.data.written_units import is_unit, si_value, unit_value
 
 
@@ -91,17 +90,3 @@ def test_any_text_is_a_unit_or_refused_in_a_sentence(rng):
             refused.append(str(error))
     assert refused
     assert all(sentence.startswith(("it is '2", 'it is "2')) for sentence in refused)
-
-
-@pytest.mark.parametrize("harm", [lambda content: b"", lambda content: content[:100]])
-def test_units_are_read_anew_where_their_cache_is_emptied_or_truncated(tmp_path, monkeypatch, harm):
-    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
-    written_units._registry.cache_clear()
-    assert si_value("0.7MPa", "Pa", what="it") == 0.7e6
-    kept = [path for path in tmp_path.rglob("*") if path.is_file()]
-    assert kept
-    for path in kept:
-        path.write_bytes(harm(path.read_bytes()))
-    written_units._registry.cache_clear()
-    assert si_value("0.7MPa", "Pa", what="it") == 0.7e6
-    written_units._registry.cache_clear()

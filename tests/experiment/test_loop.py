@@ -12,6 +12,7 @@ from crackfront.core.units import Scales
 from crackfront.experiment.contact import penetration_at, radius_at
 from crackfront.experiment.loop import Rig, _refuse_lost_rows, _touches, analyse_loop
 from crackfront.experiment.recording import Recording
+from tests.commands import slow
 from tests.experiment.made import MODULUS, RADIUS, W_APPR, W_RETR, loop
 
 TRUTH = {"w_appr": W_APPR, "w_retr": W_RETR, "hysteresis": W_RETR - W_APPR}
@@ -66,10 +67,10 @@ def test_two_columns_suffice_with_a_displacement_of_unknown_zero(without, stiffn
         ({"without": "radius", "drift": 0.1}, 1e3),
         ({"without": "radius", "preload": 2.0, "drift": 0.3}, 1e3),
         ({"without": "radius", "preload": 3.0, "force_noise": 2e-4, "stiffness": 300.0}, 300.0),
-        ({"without": "radius", "preload": 1.2, "force_noise": 0.02}, 1e3),
-        ({"without": "radius", "n_away": 3000}, 1e3),
-        ({"without": "radius", "n_away": 8, "force_noise": 0.001}, 1e3),
-        ({"without": "radius", "drift": 0.5, "force_noise": 0.005}, 1e3),
+        slow({"without": "radius", "preload": 1.2, "force_noise": 0.02}, 1e3),
+        slow({"without": "radius", "n_away": 3000}, 1e3),
+        slow({"without": "radius", "n_away": 8, "force_noise": 0.001}, 1e3),
+        slow({"without": "radius", "drift": 0.5, "force_noise": 0.005}, 1e3),
         ({"without": "radius", "n_away": 100, "wave": 0.01}, 1e3),
         ({"without": "force", "stiffness": 300.0}, 300.0),
         ({"without": "force", "stiffness": 300.0, "preload": 3.0}, 300.0),

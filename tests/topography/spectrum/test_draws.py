@@ -31,15 +31,19 @@ def moved(one, other):
     return np.max(np.abs(one - other)) / (one[2] - one[0])
 
 
+BY_DAY = "roll-off outside", "deep scratches"
+BY_NIGHT = "optic, Gaussian", "three line scans"
 FILES = {"detail": [DETAIL], "overview": [OVERVIEW], "both": [DETAIL, OVERVIEW]}
 MEASURED = {name: lambda files=files: shipped_surface(*files) for name, files in FILES.items()} | {
     kind.name: lambda kind=kind: found_scan(kind, 0).surface
     for kind in KINDS
-    if kind.name in ("roll-off outside", "optic, Gaussian", "deep scratches", "three line scans")
+    if kind.name in BY_DAY + BY_NIGHT
 }
 
 
-@pytest.fixture(scope="module", params=MEASURED)
+@pytest.fixture(
+    scope="module", params=[slow(name) if name in BY_NIGHT else name for name in MEASURED]
+)
 def surface(request):
     return MEASURED[request.param]()
 
