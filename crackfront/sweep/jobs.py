@@ -9,7 +9,9 @@ _JOB_SECONDS = 5.0
 for. Of the five jobs of `config/default.yaml` on two cores it is 27 s. (Units: s)"""
 
 
-def cores_of_job(seconds: Sequence[float], longest: Sequence[float], n_core: int) -> int:
+def cores_of_job(
+    seconds: Sequence[float], longest: Sequence[float], n_core: int, n_held: float
+) -> int:
     """Cores of every job: all, or one where jobs side by side end earlier.
 
     Parameters
@@ -20,12 +22,17 @@ def cores_of_job(seconds: Sequence[float], longest: Sequence[float], n_core: int
         That of the longest simulation of each job, before which no job ends (Units: s).
     n_core
         Cores of the machine.
+    n_held
+        Simulations that the memory of the machine holds at once. Where these are fewer than cores,
+        no jobs run side by side; the one job then says what it lacks.
 
     Returns
     -------
     int
         1 or `n_core`.
     """
+    if n_held < n_core:
+        return n_core
     ends = [0.0] * n_core
     for one in sorted(seconds, reverse=True):
         ends[ends.index(min(ends))] += one

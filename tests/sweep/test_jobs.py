@@ -22,4 +22,5 @@ from crackfront.sweep.jobs import cores_of_job
 )
 def test_jobs_stand_side_by_side_where_that_ends_earlier(seconds, n_simulation, n_core, expected):
     longest = [one / n_simulation for one in seconds]
-    assert cores_of_job(seconds, longest, n_core) == expected
+    assert cores_of_job(seconds, longest, n_core, n_held=n_core) == expected
+    assert cores_of_job(seconds, longest, n_core, n_held=0.9 * n_core) == n_core

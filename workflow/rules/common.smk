@@ -95,18 +95,13 @@ SECONDS = {
 
 
 def chosen_ranks():
-    """Cores of a job of those shards that are left; all where memory does not allow as many jobs.
-
-    The job then says so itself.
-    """
-    n_core = workflow.resource_settings.cores or 1
-    if RANK_BYTES * n_core > memory_at_hand():
-        return n_core
+    """Cores of a job of those shards that are left."""
     left = [name for name in SHARDS if not Path(RESULTS, f"shards/{name}.nc").exists()]
     return cores_of_job(
         [SECONDS[name] for name in left or SHARDS],
         [max(TIMES[name]) for name in left or SHARDS],
-        n_core,
+        workflow.resource_settings.cores or 1,
+        memory_at_hand() / RANK_BYTES,
     )
 
 
