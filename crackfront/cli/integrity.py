@@ -45,11 +45,11 @@ def verify(place: Path, as_json: bool) -> None:
         if found.mixture and not (found.damaged or found.missing):
             raise click.ClickException(
                 f"{place} holds files that do not belong together; run crackfront simulate, "
-                "aggregate and fit with one configuration, or make"
+                "aggregate and fit with one configuration, or the workflow"
             )
         raise click.ClickException(
             f"{place}: {counted(len(found.damaged), 'damaged file')}, {len(found.missing)} "
-            "missing; make computes them anew, an archive is to be packed again"
+            "missing; the workflow computes them anew, an archive is to be packed again"
         )
 
 

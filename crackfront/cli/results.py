@@ -122,17 +122,18 @@ def summary(configuration: Path, output: Path | None) -> None:
     if kept.is_file() and fit_range(kept) != (sweep.fit, sweep.table_fingerprint):
         raise ValueError(
             f"{kept} is the fit of another range or table than those of the configuration given, "
-            "or of an older version; run crackfront fit with it, or make"
+            "or of an older version; run crackfront fit with it, or the workflow"
         )
     pictures = {text: store.folder / "figures" / f"{name}.png" for name, text in _CAPTIONS.items()}
     if absent := [path for path in pictures.values() if not path.is_file()]:
         raise ValueError(
-            f"{absent[0]} is not there; run crackfront figures with this configuration, or make"
+            f"{absent[0]} is not there; run crackfront figures with this configuration, or the "
+            "workflow"
         )
     if other := [path for path in pictures.values() if picture_subject(path) != sweep.fingerprint]:
         raise ValueError(
             f"{other[0]} was drawn with another configuration than the one given, or by an older "
-            "version; run crackfront figures with this one, or make"
+            "version; run crackfront figures with this one, or the workflow"
         )
     page = summary_page(
         f"Adhesion hysteresis: {configuration.stem}",
@@ -165,7 +166,7 @@ def archive(folder: Path, output: Path | None, no_curves: bool) -> None:
     for sentence in mixture_sentences(Store(folder)):
         raise ValueError(
             f"{sentence}; run crackfront simulate and crackfront aggregate with one configuration, "
-            "or make, before it is archived"
+            "or the workflow, before it is archived"
         )
     named = folder if folder.name not in ("", "..") else folder.resolve()
     path = named.with_name(f"{named.name}.zip") if output is None else output

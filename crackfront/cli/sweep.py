@@ -57,7 +57,7 @@ output_option = click.option(
 @click.option("--block", type=whole(COUNT), help="Realisations of a shard (a job).  [default: all]")
 @as_json
 def plan(configuration: Path, output: Path | None, block: int | None, as_json: bool) -> None:
-    """Print what a sweep would run, shard by shard, what is stored and what the rest costs."""
+    """Print what a sweep would run for each spectrum, what is stored and what the rest costs."""
     from crackfront.sweep.expectation import expectations, steady_part_warnings
     from crackfront.sweep.library import opened
     from crackfront.sweep.postprocessing import postprocessing_costs
@@ -136,6 +136,8 @@ def _plan_lines(
     )
     energies = ", ".join(f"{energy:g}" for energy in sweep.elastic_energies)
     yield f"\n{len(sweep.elastic_energies)} amplitudes e_el/w_int: {energies}"
+    lowest, highest = sweep.fit.lowest_elastic_energy, sweep.fit.highest_elastic_energy
+    yield f"the fit of k takes those from {lowest:g} to {highest:g}"
     yield f"{sweep.n_realisation} realisations; {sweep.n_simulation} simulations"
     yield f"results in {store.folder}/"
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from itertools import product
 from pathlib import Path
 from typing import Annotated, Literal
@@ -92,6 +92,8 @@ class Configuration(Section):
         lateral, vertical = (scales.lateral, scales.vertical) if scales else (1.0, 1.0)
         spectra, measured = tuple(self._spectra(lateral)), math.nan
         refuse_repeated("the name of a spectrum and its spring,", [one.name for one in spectra])
+        if scales is not None and self.load.line is None:
+            self._refuse_beyond_sphere(scales, spectra)
         surface = self.spectra[0].surface
         if self.amplitudes.measured and surface and scales:
             energy = surface.measured.conformity_energy(scales.contact_modulus).value
@@ -117,6 +119,21 @@ class Configuration(Section):
             failed_fraction=self.failed_fraction,
             fit=FitRange(*(value for _, value in self.fit)),
         )
+
+    def _refuse_beyond_sphere(self, scales: Scales, spectra: Iterable[NamedSpectrum]) -> None:
+        """Raise a ValueError if a length is none in metres: not below the radius of the sphere."""
+        deepest = self.load.max_penetration or 0.0
+        lengths = [("load.max_penetration", abs(deepest))]
+        lengths += [
+            (f"short_cutoff of {one.name}", scales.lateral * one.spectrum.short_cutoff)
+            for one in spectra
+        ]
+        for name, length in lengths:
+            if length >= scales.radius:
+                raise ConfigurationError(
+                    f"{name} is {length:g} m, and the radius of the sphere {scales.radius:g} m; "
+                    "with a section scales all lengths are in metres"
+                )
 
     def _spectra(self, lateral: float) -> Iterator[NamedSpectrum]:
         """Spectra of the sweep, those of straight fronts once for each spring."""

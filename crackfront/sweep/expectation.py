@@ -86,7 +86,7 @@ def steady_part_warnings(sweep: Sweep) -> Iterator[str]:
         }
         if needed:
             energies = ", ".join(f"{energy:g}" for energy in needed)
-            given = f"{vertical * sweep.schedule.max_penetration:.2g}{name}"
+            given = f"{vertical * sweep.schedule.max_penetration:g}{name}"
             yield (
                 f"{spectrum} may have no steady part at e_el {energies}: up to the largest "
                 f"penetration, {given}, its front does not forget where both branches begin; "

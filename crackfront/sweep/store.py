@@ -306,7 +306,7 @@ class Store:
         if about.get(SWEEP_FINGERPRINT) != sweep.table_fingerprint:
             raise ValueError(
                 f"{self.hysteresis} is the table of another configuration than the one given; run "
-                "crackfront simulate and crackfront aggregate with this one, or make"
+                "crackfront simulate and crackfront aggregate with this one, or the workflow"
             )
         return {name: str(value) for name, value in about.items()}
 
@@ -315,7 +315,7 @@ class Store:
         if not self.hysteresis.exists():
             raise ValueError(
                 f"{self.folder} holds no hysteresis.nc; run crackfront aggregate with the "
-                "configuration of the sweep, or make"
+                "configuration of the sweep, or the workflow"
             )
 
     def repair(self, configuration: Path) -> Iterator[str]:

@@ -134,6 +134,7 @@ def test_a_sweep_runs_from_its_plan_to_its_figures_and_tells_what_a_missing_loop
     output = ("--output", tmp_path / "out")
     plan = run("plan", TEST, *output)
     assert "8 simulations" in plan.output
+    assert "the fit of k takes those from 0.02 to 0.1" in plan.output
     assert "0/4" in plan.output
     simulate = run("simulate", TEST, *output)
     assert "[8/8]" in simulate.output

@@ -124,6 +124,23 @@ def test_lengths_in_metres_are_those_of_the_reduced_sweep(tmp_path):
     assert metres.scales == scales
 
 
+@pytest.mark.parametrize(
+    ("deepest", "cutoff", "sentence"),
+    [
+        (1.5, 1e-6, "load.max_penetration is 1.5 m, and the radius of the sphere 0.00125 m;"),
+        (1e-6, 0.005, "short_cutoff of flat is 0.005 m, and the radius of the sphere 0.00125 m;"),
+    ],
+)
+def test_reduced_lengths_beside_a_sphere_in_metres_are_refused(tmp_path, deepest, cutoff, sentence):
+    content = from_yaml(GOOD)
+    content["scales"] = {"radius": 1.25e-3, "work_of_adhesion": 63e-3, "contact_modulus": 0.93e6}
+    content["spectra"] = [{"name": "flat", "short_cutoff": cutoff}]
+    content["load"] = {"max_penetration": deepest, "step": 0.1 * deepest}
+    assert f"{sentence} with a section scales all lengths are in metres" in refusal(
+        tmp_path, to_yaml(content)
+    )
+
+
 def asking(error):
     """The good text with an error in the place of all that it decides."""
     start, end = GOOD.index("  angles_per_cutoff"), GOOD.index("  tile:")
@@ -189,6 +206,9 @@ def test_steady_loads_are_read_in_both_units(tmp_path):
     scales = Scales(radius=1e-3, work_of_adhesion=0.05, contact_modulus=1e6)
     content = from_yaml(text)
     content["scales"] = {"radius": 1e-3, "work_of_adhesion": 0.05, "contact_modulus": 1e6}
+    for spectrum in content["spectra"]:
+        for name in {"short_cutoff", "roll_off"} & set(spectrum):
+            spectrum[name] *= scales.lateral
     content["load"]["max_penetration"] *= scales.vertical
     content["load"]["steady"]["start"] *= scales.vertical
     metres = load_configuration(written(tmp_path, to_yaml(content))).schedule
