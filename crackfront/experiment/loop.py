@@ -235,10 +235,21 @@ def analyse_loop(recording: Recording, rig: Rig) -> MeasuredLoop:
             "The given stiffness of the machine has no part in the works of adhesion: they follow "
             "from force and contact radius."
         )
+    if estimates[1].value <= 0:
+        raise ValueError(
+            "the work of adhesion of the retraction is not positive; give --stiffness if the "
+            "machine is not far stiffer than the contact, and check the displacement, the modulus "
+            "and the radius of the sphere"
+        )
+    if rig.stiffness is None and (recording.radius is None or recording.force is None):
+        remarks.append(
+            "The machine is taken as infinitely stiff; give --stiffness unless it is far stiffer "
+            "than the contact, 2 E' a."
+        )
     errors = zero_errors
     if recording.force is None:
         # Forces that follow from radii err as their work of adhesion does.
-        errors = [first.force * (estimates[1].standard_error / max(estimates[1].value, _TINY))]
+        errors = [first.force * (estimates[1].standard_error / estimates[1].value)]
     pull_off, noise = _pull_off(first.force, branches[1], errors)
     if recording.radius is None:
         _refuse_hidden(pull_off.value, noise)
@@ -643,7 +654,8 @@ def _averaged(
     These are a given window, or what both branches pass when the edge has travelled since each
     began.
     """
-    if min(rows.size for rows in branches) == 0:
+    # The row of the turn belongs to both branches.
+    if min(rows.size for rows in branches) <= 1:
         raise ValueError("the loop has no approach or no retraction in contact; record both")
     if window is None:
         appr, retr = branches
@@ -804,8 +816,8 @@ def _refuse_lost_rows(work: Array) -> None:
     if lost > _MOST_LOST:
         raise ValueError(
             f"{lost:.0%} of the rows in contact have no work of adhesion, as noise presses more "
-            "than the contact of Hertz; average rows, use a stiffer machine, check --stiffness, or "
-            "record the contact radius"
+            "than the contact of Hertz; check the units, the modulus and --stiffness, average "
+            "rows, use a stiffer machine, or record the contact radius"
         )
 
 

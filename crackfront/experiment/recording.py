@@ -153,7 +153,11 @@ def _layout(path: Path, lines: Sequence[str]) -> tuple[str | None, int]:
             if separator != "," or _are_headed(cells, heads):
                 return separator, number
             break
-    raise ValueError(f"{path} has no line with two numbers or more; a loop is a table of columns")
+    raise ValueError(
+        f"{path} has no line with two numbers or more below a line of headings; write one heading "
+        "for each column, as in Force (uN),Contact radius (um), and semicolons between cells with "
+        "decimal commas"
+    )
 
 
 def _is_row(cells: Sequence[str], heads: Sequence[str]) -> bool:

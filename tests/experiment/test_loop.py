@@ -61,6 +61,25 @@ def test_two_columns_suffice_with_a_displacement_of_unknown_zero(without, stiffn
         assert found.hysteresis.value == pytest.approx(W_RETR - W_APPR, rel=0.05)
 
 
+def test_a_soft_machine_that_is_taken_as_stiff_is_told_or_refused():
+    soft = loop(0, without="force", stiffness=500.0)
+    told = "The machine is taken as infinitely stiff; give --stiffness"
+    assert any(told in one for one in analyse_loop(soft, Rig(RADIUS, MODULUS)).remarks)
+    given = analyse_loop(soft, Rig(RADIUS, MODULUS, stiffness=500.0))
+    assert not any(told in one for one in given.remarks)
+    softer = loop(0, without="force", stiffness=100.0)
+    with pytest.raises(ValueError, match="is not positive; give --stiffness if the machine"):
+        analyse_loop(softer, Rig(RADIUS, MODULUS))
+
+
+def test_a_branch_alone_is_refused():
+    whole = loop(0, force_noise=0.0, radius_noise=0.0)
+    approach = slice(0, int(np.argmax(whole.radius)) + 1)
+    alone = Recording(force=whole.force[approach], radius=whole.radius[approach], displacement=None)
+    with pytest.raises(ValueError, match="has no approach or no retraction in contact; record"):
+        analyse_loop(alone, Rig(RADIUS, MODULUS))
+
+
 @pytest.mark.parametrize(
     ("made", "given"),
     [
@@ -105,7 +124,7 @@ def test_the_pull_off_force_is_not_that_of_the_lowest_noise(n_row):
     [
         ({}, {"stiffness": 200.0}, "stiffness of the machine has no part"),
         ({"without": "radius"}, {"contact_modulus": 3 * MODULUS}, "pulls with up to"),
-        ({"without": "force", "stiffness": 100.0}, {}, "No force pulls in the retraction"),
+        ({"retraction": 0.3}, {}, "No force pulls in the retraction"),
     ],
 )
 def test_what_contradicts_itself_is_said(made, rig, remark):
