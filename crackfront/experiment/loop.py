@@ -235,17 +235,8 @@ def analyse_loop(recording: Recording, rig: Rig) -> MeasuredLoop:
             "The given stiffness of the machine has no part in the works of adhesion: they follow "
             "from force and contact radius."
         )
-    if estimates[1].value <= 0:
-        raise ValueError(
-            "the work of adhesion of the retraction is not positive; give --stiffness if the "
-            "machine is not far stiffer than the contact, and check the displacement, the modulus "
-            "and the radius of the sphere"
-        )
-    if rig.stiffness is None and (recording.radius is None or recording.force is None):
-        remarks.append(
-            "The machine is taken as infinitely stiff; give --stiffness unless it is far stiffer "
-            "than the contact, 2 E' a."
-        )
+    _refuse_no_adhesion(estimates[1].value)
+    remarks += _stiff_remark(recording, rig)
     errors = zero_errors
     if recording.force is None:
         # Forces that follow from radii err as their work of adhesion does.
@@ -765,6 +756,27 @@ def _scene_errors(rig: Rig) -> Iterator[tuple[float, Rig]]:
     if rig.radius_error > 0:
         larger = rig.radius * more
         yield rig.radius_error, Rig(larger, rig.contact_modulus, stiffness=rig.stiffness)
+
+
+def _refuse_no_adhesion(w_retr: float) -> None:
+    """Raise if the retraction has no work of adhesion (Units: J/m^2), as no adhesive contact has."""
+    if w_retr <= 0:
+        raise ValueError(
+            "the work of adhesion of the retraction is not positive; give --stiffness if the "
+            "machine is not far stiffer than the contact, and check the displacement, the modulus "
+            "and the radius of the sphere"
+        )
+
+
+def _stiff_remark(recording: Recording, rig: Rig) -> list[str]:
+    """A sentence where the displacement of the mount is taken as that of the sphere."""
+    is_whole = recording.radius is not None and recording.force is not None
+    if rig.stiffness is not None or is_whole:
+        return []
+    return [
+        "The machine is taken as infinitely stiff; give --stiffness unless it is far stiffer than "
+        "the contact, 2 E' a."
+    ]
 
 
 def _modulus_remark(rig: Rig, fitted: Estimate[float]) -> list[str]:
