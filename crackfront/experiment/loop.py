@@ -759,7 +759,7 @@ def _scene_errors(rig: Rig) -> Iterator[tuple[float, Rig]]:
 
 
 def _refuse_no_adhesion(w_retr: float) -> None:
-    """Raise if the retraction has no work of adhesion (Units: J/m^2), as no adhesive contact has."""
+    """Raise if the work of adhesion of the retraction (Units: J/m^2) is not positive."""
     if w_retr <= 0:
         raise ValueError(
             "the work of adhesion of the retraction is not positive; give --stiffness if the "
