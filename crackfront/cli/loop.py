@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from crackfront.cli.options import options_of
 from crackfront.cli.report import (
     FILE,
     Number,
@@ -19,6 +20,12 @@ from crackfront.cli.report import (
 )
 from crackfront.data.bounds import Range
 from crackfront.data.written_units import si_value
+from crackfront.topography.options import (
+    ReadingOptions,
+    for_files,
+    named_options,
+    reading_options,
+)
 
 if TYPE_CHECKING:
     from crackfront.experiment.loop import MeasuredLoop
@@ -74,6 +81,7 @@ def _columns(command: Any) -> Any:
     multiple=True,
     help="Scan of the surface, for a prediction. May be repeated.",
 )
+@options_of(ReadingOptions)
 @click.option("--work-of-adhesion", help="w_int of the prediction, as in 63mJ/m2.")
 @click.option("--figure", type=FILE, help="Figure of the loop; without suffix PDF and PNG.")
 @as_json
@@ -89,7 +97,7 @@ def loop(
     work_of_adhesion: str | None,
     figure: Path | None,
     as_json: bool,
-    **of_rig: Any,
+    **options: Any,
 ) -> None:
     """Evaluate a measured or simulated loop of force, contact radius and displacement.
 
@@ -98,11 +106,16 @@ def loop(
     netCDF that `crackfront cycle` or a sweep has written. Its works of adhesion are those of the
     simulation; they are in reduced units unless the file states a sphere, or --radius, --modulus
     and --work-of-adhesion name one.
+
+    Options of reading, from --channel to --longest, are those of `crackfront predict` and apply to
+    the --scans.
     """
     from crackfront.experiment.simulated import is_netcdf
 
     if scans and work_of_adhesion is None:
         raise ValueError("a prediction for --scans needs w_int; give --work-of-adhesion")
+    reading = _reading(scans, options)
+    of_rig = {name: options[name] for name in options if name not in ReadingOptions.model_fields}
     refuse_without(context, "modulus", "poisson")
     refuse_overwriting([path, *scans], {"--figure": figure})
     if figure is not None:
@@ -110,37 +123,57 @@ def loop(
     radius = None if sphere is None else si_value(sphere, "m", what="--radius")
     young = None if modulus is None else si_value(modulus, "Pa", what="--modulus")
     contact_modulus = None if young is None else young / (1 - poisson**2)
+    adhesion = (
+        None
+        if work_of_adhesion is None
+        else si_value(work_of_adhesion, "J/m^2", what="--work-of-adhesion")
+    )
     if is_netcdf(path):
         if given := [name for name, value in of_rig.items() if value]:
             option = {"radius": "contact-radius"}.get(given[0], given[0].replace("_", "-"))
             raise ValueError(f"{path} is a simulated cycle without a rig; leave out --{option}")
-        found = _simulated(path, radius, contact_modulus, work_of_adhesion)
+        found = _simulated(path, radius, contact_modulus, adhesion)
         if scans and found.reduced:
             raise ValueError(
                 f"{path} is in reduced units, and predictions are not; give --radius and --modulus"
             )
     else:
-        if work_of_adhesion is not None and not scans:
+        if adhesion is not None and not scans:
             raise ValueError("--work-of-adhesion is of a prediction; name --scans too")
         found = _measured(path, radius, contact_modulus, of_rig)
-    if not as_json:
-        # Also where nothing can be predicted.
-        click.echo(repr(found))
-    predicted = _predicted(scans, found, work_of_adhesion) if scans else None
+    predicted, failure = None, None
+    if scans and adhesion is not None:
+        try:
+            predicted = _predicted(scans, reading, found, adhesion)
+        except (ValueError, OSError) as error:
+            failure = error  # The loop is shown, drawn and printed all the same.
     if as_json:
         from crackfront.experiment.comparison import machine_readable
 
         echo_json(machine_readable(found, predicted))
-    elif predicted is not None:
+    else:
         from crackfront.experiment.comparison import comparison_lines
 
-        click.echo("\n".join(["", *comparison_lines(found, predicted)]))
+        lines = [] if predicted is None else ["", *comparison_lines(found, predicted)]
+        click.echo("\n".join([repr(found), *lines]))
     if figure is not None:
         from crackfront.experiment.drawing import loop_figure
         from crackfront.plots.style import save_figure
 
         for file in save_figure(loop_figure(found, predicted), figure):
             click.echo(f"figure: {file}", err=as_json)
+    if failure is not None:
+        raise failure
+
+
+def _reading(scans: tuple[Path, ...], options: dict[str, Any]) -> dict[str, Any]:
+    """Options of reading that a command names, refused where they are wrong or without scans."""
+    named = named_options(ReadingOptions, options)
+    if named and not scans:
+        raise ValueError(f"--{named[0].replace('_', '-')} is of scans; name --scans too")
+    given = for_files({name: options[name] for name in named}, scans)
+    reading_options(given, len(scans), "--")
+    return given
 
 
 def _measured(
@@ -168,7 +201,7 @@ def _measured(
 
 
 def _simulated(
-    path: Path, radius: float | None, contact_modulus: float | None, work_of_adhesion: str | None
+    path: Path, radius: float | None, contact_modulus: float | None, adhesion: float | None
 ) -> MeasuredLoop:
     """Loop of a simulated cycle, in SI units if its file or all three options state a sphere."""
     from crackfront.core.units import Scales
@@ -183,12 +216,11 @@ def _simulated(
         return simulated_loop(cycle, str(path))
     if stated_scales(cycle) is not None:
         raise ValueError(f"{path} states its sphere; leave out --radius and --modulus")
-    if radius is None or contact_modulus is None or work_of_adhesion is None:
+    if radius is None or contact_modulus is None or adhesion is None:
         raise ValueError(
             f"{path} is in reduced units; give --radius, --modulus and --work-of-adhesion for "
             "those of SI, or none of them"
         )
-    adhesion = si_value(work_of_adhesion, "J/m^2", what="--work-of-adhesion")
     scales = Scales(radius, adhesion, contact_modulus)
     return simulated_loop(in_si_units(cycle, scales), str(path))
 
@@ -203,12 +235,11 @@ def _window(text: str) -> tuple[float, float]:
 
 
 def _predicted(
-    scans: tuple[Path, ...], found: MeasuredLoop, work_of_adhesion: str | None
+    scans: tuple[Path, ...], reading: dict[str, Any], found: MeasuredLoop, adhesion: float
 ) -> Prediction:
     """What is predicted for the sphere on a surface of scans, by the modulus of the loop."""
     from crackfront.core.units import Scales
     from crackfront.topography.library import predict
 
-    adhesion = si_value(str(work_of_adhesion), "J/m^2", what="--work-of-adhesion")
     scales = Scales(found.sphere_radius, adhesion, found.contact_modulus.value)
-    return predict(scans, scales)
+    return predict(scans, scales, **reading)

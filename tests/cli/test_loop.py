@@ -22,6 +22,8 @@ def table(tmp_path):
 
 
 ROOT = Path(__file__).parents[2]
+SCAN = ROOT / "examples/scans/nanodiamond-detail.al3d"
+ON_SCAN = ("--radius", "1.25mm", "--scans", SCAN)
 
 
 def run(*arguments):
@@ -58,6 +60,11 @@ def test_the_example_of_the_page_has_the_simulated_hysteresis():
         (("--radius", "1.25mm", "--poisson", "0.3"), "--poisson has an effect only with --modulus"),
         (("--radius", "1.25mm", "--scans", "a.al3d"), "--work-of-adhesion"),
         (("--radius", "1.25mm", "--force", "Kraft"), "has no column 'Kraft'"),
+        (("--radius", "1.25mm", "--size", "5"), "--size is of scans; name --scans too"),
+        (
+            (*ON_SCAN, "--work-of-adhesion", "63mJ/m2", "--tip-radius", "20"),
+            "--tip-radius is '20', without a unit",
+        ),
     ],
 )
 def test_what_cannot_be_used_is_refused_with_what_to_do(table, options, sentence):
@@ -67,11 +74,7 @@ def test_what_cannot_be_used_is_refused_with_what_to_do(table, options, sentence
 
 
 def test_a_scan_beside_the_loop_gives_their_ratio(table):
-    pytest.importorskip("SurfaceTopography")
-    scan = Path(__file__).parents[2] / "examples/scans/nanodiamond-detail.al3d"
-    done = run(
-        table, "--radius", "1.25mm", "--scans", scan, "--work-of-adhesion", "63mJ/m2", "--json"
-    )
+    done = run(table, *ON_SCAN, "--work-of-adhesion", "63mJ/m2", "--json")
     assert done.exit_code == 0, done.output
     found = json.loads(done.stdout)
     assert found["predicted"]["outcome"] == "applies with reservations"
@@ -79,3 +82,23 @@ def test_a_scan_beside_the_loop_gives_their_ratio(table):
     expected = found["hysteresis"]["value"] / found["predicted"]["hysteresis"]["value"]
     assert np.isclose(ratio["value"], expected)
     assert ratio["low"] < ratio["value"] < ratio["high"]
+
+
+def test_options_of_reading_apply_to_the_scans(table):
+    adhesion = ("--work-of-adhesion", "63mJ/m2", "--json")
+    fine, coarse = (
+        json.loads(run(table, *ON_SCAN, *adhesion, "--tip-radius", radius).stdout)["predicted"]
+        for radius in ("1nm", f"{SCAN.name}=200nm")
+    )
+    assert coarse["hysteresis"]["high"] > fine["hysteresis"]["high"]
+
+
+def test_a_loop_whose_prediction_is_refused_is_kept(table, tmp_path):
+    figure = tmp_path / "loop.png"
+    done = run(table, *ON_SCAN, "--work-of-adhesion", "1uJ/m2", "--json", "--figure", figure)
+    assert done.exit_code == 2
+    assert "the theory does not apply" in done.stderr
+    found = json.loads(done.stdout)
+    assert found["w_appr"]["low"] < W_APPR < found["w_appr"]["high"]
+    assert "predicted" not in found
+    assert figure.is_file()
