@@ -128,7 +128,12 @@ def loop(
         if work_of_adhesion is None
         else si_value(work_of_adhesion, "J/m^2", what="--work-of-adhesion")
     )
-    if is_netcdf(path):
+    simulated = is_netcdf(path)
+    of_sphere = simulated and (sphere is not None or modulus is not None)
+    if adhesion is not None and not scans and not of_sphere:
+        sphere_too = ", or --radius and --modulus for SI units" if simulated else ""
+        raise ValueError(f"--work-of-adhesion is of a prediction; name --scans too{sphere_too}")
+    if simulated:
         if given := [name for name, value in of_rig.items() if value]:
             option = {"radius": "contact-radius"}.get(given[0], given[0].replace("_", "-"))
             raise ValueError(f"{path} is a simulated cycle without a rig; leave out --{option}")
@@ -138,8 +143,6 @@ def loop(
                 f"{path} is in reduced units, and predictions are not; give --radius and --modulus"
             )
     else:
-        if adhesion is not None and not scans:
-            raise ValueError("--work-of-adhesion is of a prediction; name --scans too")
         found = _measured(path, radius, contact_modulus, of_rig)
     predicted, failure = None, None
     if scans and adhesion is not None:

@@ -128,6 +128,7 @@ def test_the_command_prints_reduced_units_and_those_of_a_sphere_that_is_named(pa
     [
         (("--stiffness", "200N/m"), "a simulated cycle without a rig; leave out --stiffness"),
         (("--contact-radius", "a"), "leave out --contact-radius"),
+        (("--work-of-adhesion", "63mJ/m2"), "name --scans too, or --radius and --modulus"),
         (("--radius", "1mm"), "give --radius, --modulus and --work-of-adhesion"),
         (("--scans", "a.al3d", "--work-of-adhesion", "63mJ/m2"), "is in reduced units"),
     ],
