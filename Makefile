@@ -8,6 +8,8 @@
 #   SCALE=quick | paper         coarser lengths, or the paper's, for `make figures`
 #   VALIDATION=config/validation.yaml   sizes of `make validate`; config/validation-512.yaml
 #                               and config/validation-1024.yaml are hours
+#   PORTABLE=1                  compute as another processor would: numpy, its BLAS and numba without
+#                               vector units, BLAS on three threads
 #   PROFILE=workflow/profiles/default   profile of Snakemake; one of a cluster runs all rules there
 #   PYTHON=python3              the interpreter that .venv is made from (3.11 or newer)
 #   MPI=wheel | system          wheel (default): MPICH from the package index, no system MPI needed.
@@ -21,6 +23,7 @@ LINE   ?= config/line-quick.yaml
 SCALE  ?= quick
 VALIDATION ?= config/validation.yaml
 PROFILE ?= workflow/profiles/default
+PORTABLE ?=
 PYTHON ?= python3
 MPI    ?= $(if $(wildcard .venv/.packages-system),system,wheel)
 
@@ -41,7 +44,10 @@ FRONTS   = $(if $(filter file,$(origin SWEEP)),$(LINE))
 fronts   = $(if $(FRONTS),; of straight fronts results/$(call stem,$(LINE))/$(1))
 VALIDATED = results/$(call stem,$(VALIDATION))/
 REPORT   = results/tests/junit.xml
-IN_ENV   = PATH="$(CURDIR)/.venv/bin:$$PATH" OMP_NUM_THREADS=1
+IN_ENV   = PATH="$(CURDIR)/.venv/bin:$$PATH" OMP_NUM_THREADS=1 $(if $(PORTABLE),$(NO_VECTORS))
+DISPATCHED = from numpy._core._multiarray_umath import __cpu_dispatch__ as names; print(*names)
+NO_VECTORS = NPY_DISABLE_CPU_FEATURES="$$(.venv/bin/python -c '$(DISPATCHED)')" \
+  OPENBLAS_CORETYPE=Nehalem OPENBLAS_NUM_THREADS=3 NUMBA_CPU_NAME=generic NUMBA_CPU_FEATURES=
 SNAKE    = $(IN_ENV) .venv/bin/python workflow/run.py --profile $(call quoted,$(PROFILE))
 REPAIR   = $(IN_ENV) .venv/bin/crackfront repair
 # uv installs, or pip where uv cannot be had or where PIP_NO_INDEX says that only pip knows the files.
@@ -122,13 +128,9 @@ test: env  ## Run the tests that are not slow
 	@echo "Test report: $(REPORT)"
 	@$(IN_ENV) .venv/bin/python -m pytest $(PARALLEL) -m "not slow" --junitxml=$(REPORT)
 
-# What another processor computes: numpy, its BLAS and numba without vector units, three threads.
-DISPATCHED = from numpy._core._multiarray_umath import __cpu_dispatch__ as names; print(*names)
-PORTABLE = NPY_DISABLE_CPU_FEATURES="$$(.venv/bin/python -c '$(DISPATCHED)')" \
-  OPENBLAS_CORETYPE=Nehalem OPENBLAS_NUM_THREADS=3 NUMBA_CPU_NAME=generic NUMBA_CPU_FEATURES=
-
+test-portable: private PORTABLE = 1
 test-portable: env  ## Run the tests of predictions as on another processor (two minutes)
-	@$(IN_ENV) $(PORTABLE) .venv/bin/python -m pytest $(PARALLEL) -m "not slow" \
+	@$(IN_ENV) .venv/bin/python -m pytest $(PARALLEL) -m "not slow" \
 	  tests/topography/density tests/topography/spectrum tests/topography/prediction
 
 ON_SLURM = $(IN_ENV) tests/cluster/with-slurm.sh .venv/bin/python -m pytest -m slurm --timeout 1800 tests/cluster
