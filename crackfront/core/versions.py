@@ -1,0 +1,19 @@
+"""Versions of what a result depends on besides its parameters; golden files keep them honest.
+
+A result is stored with both. Raise a version when its golden file says that numbers moved
+(tests/golden), add a line to its history, and name the change in the commit.
+"""
+
+from __future__ import annotations
+
+PHYSICS_VERSION = 1
+"""Version of the states of a front: another one makes simulations run again.
+
+- 1: results up to November 2026.
+"""
+
+ROWS_VERSION = 1
+"""Version of rows, fits and figures: another one remakes them from stored states.
+
+- 1: results up to November 2026.
+"""
