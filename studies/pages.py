@@ -11,9 +11,9 @@ from pathlib import Path
 from typing import Any
 
 import click
+from crackfront.core.fingerprint import fingerprint
 
 from crackfront.cli.report import FILE
-from crackfront.core.fingerprint import fingerprint
 from crackfront.data.files import write_text
 from crackfront.data.provenance import provenance
 

@@ -312,12 +312,12 @@ def _checkpoint(output: Path) -> Path:
 
 
 def _key(field_file: Path, *options: object) -> str:
-    """Digits that change with the field, the options of a cycle and the sources of its solver."""
-    from crackfront.core.fingerprint import solver_fingerprint
+    """Digits that change with the field, the options of a cycle and the version of the physics."""
+    from crackfront.core.versions import PHYSICS_VERSION
 
     with field_file.open("rb") as file:
         content = hashlib.file_digest(file, "sha256").hexdigest()
-    return hashlib.sha256(repr((content, *options, solver_fingerprint())).encode()).hexdigest()
+    return hashlib.sha256(repr((content, *options, PHYSICS_VERSION)).encode()).hexdigest()
 
 
 def _draw(found: Dataset, stem: Path) -> tuple[Path, ...]:

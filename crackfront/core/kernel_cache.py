@@ -26,7 +26,6 @@ from numba.core.caching import NullCache
 from numba.core.compiler import CompileResult
 from numba.core.serialize import dumps
 
-from crackfront.core.fingerprint import solver_fingerprint
 from crackfront.core.private_cache import (
     DamagedFileError,
     private_folder,
@@ -35,6 +34,13 @@ from crackfront.core.private_cache import (
 )
 
 _logger = logging.getLogger(__name__)
+
+
+@functools.cache
+def solver_fingerprint() -> str:
+    """Digest of the sources of the core."""
+    sources = sorted(Path(__file__).parent.rglob("*.py"))
+    return hashlib.sha256(b"".join(path.read_bytes() for path in sources)).hexdigest()[:12]
 
 
 @functools.cache

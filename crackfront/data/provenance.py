@@ -14,7 +14,7 @@ from datetime import UTC, datetime
 from importlib.metadata import PackageNotFoundError, distributions, version
 from pathlib import Path
 
-from crackfront.core.fingerprint import solver_fingerprint
+from crackfront.core.versions import PHYSICS_VERSION, ROWS_VERSION
 
 PACKAGE = Path(__file__).parents[1]
 
@@ -67,12 +67,13 @@ class Provenance:
     crackfront_version: str
     git_commit: str
     """As :func:`git_commit`."""
-    solver_fingerprint: str
-    """Changes with every source that determines a result."""
     command: str
     """Command line of the process, the program without its folder."""
     configuration: str
     """Text of the configuration file, empty where there was none."""
+    physics_version: int = PHYSICS_VERSION
+    rows_version: int = ROWS_VERSION
+    """:mod:`crackfront.core.versions` of states, and of what is derived from them."""
     platform: str = f"{platform.platform()}, Python {platform.python_version()}"
     """Operating system, machine and Python."""
     processor: str = field(default_factory=_processor)
@@ -85,8 +86,9 @@ class Provenance:
 
     def here(self) -> Provenance:
         """Copy that states the machine of this process, which may be a rank on another one."""
-        sources = self.crackfront_version, self.git_commit, self.solver_fingerprint
-        return Provenance(*sources, self.command, self.configuration)
+        return Provenance(
+            self.crackfront_version, self.git_commit, self.command, self.configuration
+        )
 
 
 def provenance(configuration: str = "") -> Provenance:
@@ -99,7 +101,6 @@ def provenance(configuration: str = "") -> Provenance:
     return Provenance(
         crackfront_version=__version__,
         git_commit=git_commit(),
-        solver_fingerprint=solver_fingerprint(),
         command=words.decode("utf-8", "backslashreplace"),
         configuration=configuration,
     )

@@ -32,7 +32,13 @@ from crackfront.core.adhesion import FieldKind, correlation_length, force_correl
 from crackfront.core.arrays import Array
 from crackfront.core.field.fields import Interpolation
 from crackfront.core.spectrum import SelfAffineSpectrum, Spectrum
-from crackfront.simulate.front_sizes import LAW_CUTOFF, LAW_SIZE, sphere_size
+
+LAW_SIZE = 4000.0
+"""Size of the fronts on which the laws were measured: states times circumference over the short
+cutoff, for eight states, cutoff 0.02 and mean radius 1.6."""
+
+LAW_CUTOFF = 0.02
+"""Short cutoff of all spectra of the laws. (Units: reduced lateral length)"""
 
 SettingName = Literal["sites", "cubic", "linear", "pixels", "tolerance"]
 SETTINGS: tuple[SettingName, ...] = get_args(SettingName)
@@ -169,7 +175,7 @@ def chosen_settings(
     """Settings that leave a requested error in w_appr and w_retr: the coarsest that the laws allow.
 
     The error is the standard error of the factor k of either branch that the numerics may leave, on
-    fronts of the usual size, by default :func:`crackfront.simulate.front_sizes.sphere_size`; the
+    fronts of the usual size, by default :func:`sphere_size`; the
     elastic energy is e_el / w_int. ValueError if errors were not measured at such an e_el, or for
     spectra as narrow.
     """
@@ -354,3 +360,8 @@ def read_laws() -> Iterator[ErrorLaw]:
                 (float(row["scatter_0"]), float(row["scatter_1"])),
                 float(row["avalanche"]),
             )
+
+
+def sphere_size(spectrum: Spectrum) -> float:
+    """Size of a sphere's front for which settings are chosen: eight states, mean radius 1.6."""
+    return LAW_SIZE * (LAW_CUTOFF / spectrum.short_cutoff)

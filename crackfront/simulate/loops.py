@@ -23,13 +23,13 @@ from crackfront.core.cycle.follow import Load, front_at
 from crackfront.core.cycle.record import CycleRecord, Recorder
 from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.cycle.touch import first_touch
-from crackfront.core.fingerprint import solver_fingerprint
 from crackfront.core.geometry.base import State
 from crackfront.core.geometry.sphere import ContactState
 from crackfront.core.outcome import Direction
 from crackfront.core.solver import DEFAULT_TOLERANCE
 from crackfront.core.solver.relax import Newton, named_solver
 from crackfront.core.variables import variables
+from crackfront.core.versions import PHYSICS_VERSION
 from crackfront.data.arguments import refuse_no_numbers, refuse_other_type
 from crackfront.data.bounds import refuse_beyond_memory
 from crackfront.data.labels import labelled, labelled_fields
@@ -160,7 +160,7 @@ def run_loop(
         solver=solver,
         tolerance=setup.tolerance,
         crackfront_version=__version__,
-        solver_fingerprint=solver_fingerprint(),
+        physics_version=PHYSICS_VERSION,
     )
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Protocol
 
 from crackfront.core.adhesion import AdhesionMap, FieldKind
 from crackfront.core.cycle.record import CycleRecord, Recorder
@@ -11,7 +11,7 @@ from crackfront.core.field.fields import Interpolation, TileField
 from crackfront.core.geometry.base import Geometry, fast_site_count
 from crackfront.core.solver.relax import Solver
 from crackfront.core.spectrum import Spectrum
-from crackfront.simulate.front_sizes import sphere_size
+from crackfront.simulate.laws import sphere_size
 from crackfront.simulate.tiles import RandomSurface, gaussian_adhesion
 
 if TYPE_CHECKING:
@@ -41,7 +41,7 @@ class SweepLoad(Protocol):
         """Whether sites are independent of each other, the limit of weak disorder."""
 
     def usual_size(self, spectrum: Spectrum) -> float:
-        """Size of a front for choosing settings, as in :mod:`crackfront.simulate.front_sizes`."""
+        """Size of a front for choosing settings, as in :mod:`crackfront.simulate.laws`."""
 
     def for_surface(
         self,
@@ -63,6 +63,8 @@ class Schedule(ABC):
 
     __slots__ = ()
 
+    load_name: ClassVar[str]
+    """What keys of simulations call this kind of load, whatever its class is named."""
     max_penetration: float
     """Largest penetration of a sphere; else 0. (Units: reduced vertical length)"""
     spring: float
@@ -172,6 +174,6 @@ class Schedule(ABC):
     ) -> tuple[float, float, float]:
         """Sizes of the fronts that w_appr and w_retr average, and the longest (Units: length).
 
-        Sizes are as in :mod:`crackfront.simulate.front_sizes`; states closer than a correlation
+        Sizes are as in :mod:`crackfront.simulate.laws`; states closer than a correlation
         length of w_loc count as one.
         """

@@ -1,21 +1,18 @@
-"""What determines one simulation: its parameters, sizes, key and seed; and its field.
-
-How the sizes are chosen stands in :mod:`crackfront.simulate.sizing`: it may change without any
-simulation of known sizes being another one.
-"""
+"""One simulation: its parameters, the sizes that the numerics choose, its key, seed and field."""
 
 from __future__ import annotations
 
-import functools
 import hashlib
 import itertools
 import json
-from collections.abc import Iterable, Iterator
-from dataclasses import astuple, dataclass, fields
+import math
+from collections.abc import Collection, Iterable, Iterator
+from dataclasses import dataclass, fields
 from operator import attrgetter
-from typing import Any, cast
+from typing import Any, Literal
 
 import numpy as np
+from scipy.fft import next_fast_len
 
 from crackfront.core.adhesion import (
     AdhesionMap,
@@ -23,10 +20,11 @@ from crackfront.core.adhesion import (
     correlation_length,
 )
 from crackfront.core.field.fields import Interpolation, TileField
-from crackfront.core.fingerprint import fingerprint
 from crackfront.core.geometry.base import Geometry
-from crackfront.core.solver.relax import Solver
+from crackfront.core.solver.relax import Solver, named_solver
 from crackfront.core.spectrum import Spectrum
+from crackfront.simulate.laws import Settings
+from crackfront.simulate.numerics import Numerics
 from crackfront.simulate.schedule import Schedule
 from crackfront.simulate.tiles import RandomSurface
 
@@ -72,30 +70,44 @@ class Simulation:
     """What to record beside the curves."""
 
     @property
-    def key(self) -> str:
-        """Sixteen hexadecimal digits that change with anything that determines the result."""
-        return self.stem.rpartition("-")[2]
+    def parameters(self) -> dict[str, Any]:
+        """What determines the result, except the number of the realisation, as a JSON object.
+
+        A field with a default is left out at that default: one that is added later changes no
+        key. The limit of sweeps is not a parameter: a result that did not reach it is the same.
+        """
+        lengths, numbers = self.spectrum.identity
+        stated: dict[str, Any] = {
+            "field": self.kind,
+            "spectrum": {"lengths": lengths, "numbers": numbers},
+            "elastic_energy": self.elastic_energy,
+            "seed": self.sweep_seed,
+            "resolution": _stated(self.resolution),
+            "load": {"kind": self.schedule.load_name} | _stated(self.schedule),
+            "tolerance": self.solver.tolerance,
+        }
+        if self.solver.name != "newton":
+            stated["solver"] = self.solver.name
+        if record := [name for name, is_recorded in self._recorded if is_recorded]:
+            stated["record"] = record
+        rounded: dict[str, Any] = _rounded(stated)
+        return rounded
 
     @property
-    def parts(self) -> dict[str, str]:
-        """Eight hexadecimal digits for each part of the key, which show what has changed."""
-        return {name: _digest(part)[:8] for name, part in self._content().items()}
+    def _recorded(self) -> tuple[tuple[str, bool], ...]:
+        """What may be recorded beside the curves, and whether it is."""
+        return ("fronts", self.record_fronts), ("energy", self.record_energy)
 
-    def _content(self) -> dict[str, Any]:
-        """What determines the result, part by part."""
-        lengths, numbers = self.spectrum.identity
-        return {
-            "kind": self.kind,
-            "spectrum": (*lengths, *numbers),
-            "elastic_energy": self.elastic_energy,
-            "realisation": self.realisation,
-            "seed": self.sweep_seed,
-            "resolution": astuple(self.resolution),
-            "load": astuple(cast(Any, self.schedule)),
-            "numerics": (self.solver.tolerance, self.solver.max_sweeps, self.solver.name),
-            "record": (self.record_fronts, self.record_energy),
-            "sources": simulation_fingerprint(type(self.schedule)),
-        }
+    @property
+    def series(self) -> str:
+        """Sixteen hexadecimal digits that identify a simulation but for its realisation."""
+        text = json.dumps(self.parameters, sort_keys=True, allow_nan=False)
+        return hashlib.sha256(text.encode()).hexdigest()[:16]
+
+    @property
+    def key(self) -> str:
+        """What identifies a simulation: its series, and the number of its realisation."""
+        return f"{self.series}-{self.realisation}"
 
     @property
     def correlation_length(self) -> float:
@@ -124,7 +136,7 @@ class Simulation:
 
     @property
     def stem(self) -> str:
-        """Name of its file, without a suffix; the key ends it."""
+        """Name of its file, without a suffix; the series ends it."""
         return next(stems([self]))
 
     @property
@@ -146,21 +158,12 @@ class Simulation:
 
 
 def stems(simulations: Iterable[Simulation]) -> Iterator[str]:
-    """Names of files as :attr:`Simulation.stem`.
-
-    What realisations in sequence have in common is digested once: all but their number.
-    """
+    """Names of files as :attr:`Simulation.stem`; the series of realisations is digested once."""
     for _, alike in itertools.groupby(simulations, _WITHOUT_NUMBER):
         first = next(alike)
-        text = _text(first._content() | {"realisation": None})
-        before, number, after = text.partition('"realisation": ')
-        common = hashlib.sha256((before + number).encode())
-        rest = after.removeprefix("null")
-        name = f"{first.spectrum_name}-e{first.elastic_energy:g}-r"
-        for one in itertools.chain([first], alike):
-            digest = common.copy()
-            digest.update(f"{one.realisation}{rest}".encode())
-            yield f"{name}{one.realisation}-{digest.hexdigest()[:16]}"
+        series, name = first.series, f"{first.spectrum_name}-e{first.elastic_energy:g}"
+        for simulation in itertools.chain([first], alike):
+            yield f"{name}-r{simulation.realisation}-{series}"
 
 
 _WITHOUT_NUMBER = attrgetter(
@@ -182,17 +185,83 @@ def simulation_field(simulation: Simulation, adhesion: AdhesionMap | None = None
     return simulation.schedule.field(adhesion, sizes.n_angle, sizes.spacing, sizes.interpolation)
 
 
-def _digest(content: Any) -> str:
-    """Hexadecimal digits that change with the content."""
-    return hashlib.sha256(_text(content).encode()).hexdigest()
+def resolution(
+    spectrum: Spectrum, numerics: Numerics, settings: Settings, schedule: Schedule
+) -> Resolution:
+    """Sizes of the front and of the tile for one spectrum; those of a line are of its schedule.
+
+    Examples
+    --------
+    >>> from crackfront.core.spectrum import SelfAffineSpectrum
+    >>> from crackfront.simulate.sphere.cycle import FullCycle
+    >>> flat = SelfAffineSpectrum(short_cutoff=0.1, roll_off=0.1, hurst=1.0)
+    >>> settings = Settings(None, 2, 4, "cubic", 4, 1e-6)
+    >>> numerics = Numerics(settings, tile_roll_offs=10, tile_cutoffs=20)
+    >>> resolution(flat, numerics, settings, FullCycle(max_penetration=1.0, step=0.1))
+    Resolution(n_angle=240, spacing=0.025, interpolation='cubic', tile_side=2.0, n_point=80)
+    """
+    cutoff = spectrum.short_cutoff
+    sites = schedule.front_length / cutoff * settings.angles_per_cutoff
+    side, spacing = schedule.fitted(
+        numerics.tile_side(spectrum), cutoff / settings.samples_per_cutoff
+    )
+    points = math.ceil(side / cutoff * settings.pixels_per_cutoff * (1 - 1e-12))
+    n_point = next_fast_len(points, real=True)
+    return Resolution(
+        n_angle=schedule.site_count(settings.angles, sites, n_point),
+        spacing=spacing,
+        interpolation=settings.interpolation,
+        tile_side=side,
+        n_point=n_point,
+    )
 
 
-def _text(content: Any) -> str:
-    """Content as JSON, in one way."""
-    return json.dumps(content, sort_keys=True, allow_nan=False)
+def simulation_of(
+    kind: FieldKind,
+    spectrum: Spectrum,
+    elastic_energy: float,
+    schedule: Schedule,
+    numerics: Numerics,
+    *,
+    seed: int,
+    realisation: int = 0,
+    name: str = "single",
+    record: Collection[Literal["fronts", "energy"]] = (),
+) -> Simulation:
+    """The simulation of a surface; the largest penetration of the schedule decides its sites.
+
+    The name is that of the spectrum, the numerics are how it is resolved and solved, and `record`
+    is what is kept beside the curves; the rest is as in :class:`Simulation`.
+    """
+    settings = numerics.settings_of(kind, spectrum, elastic_energy, schedule.usual_size(spectrum))
+    return Simulation(
+        spectrum_name=name,
+        kind=kind,
+        spectrum=spectrum,
+        elastic_energy=elastic_energy,
+        realisation=realisation,
+        sweep_seed=seed,
+        resolution=resolution(spectrum, numerics, settings, schedule),
+        schedule=schedule,
+        solver=named_solver(numerics.solver, settings.tolerance, numerics.max_sweeps),
+        record_fronts="fronts" in record,
+        record_energy="energy" in record,
+    )
 
 
-@functools.cache
-def simulation_fingerprint(kind: type[Schedule]) -> str:
-    """Twelve hexadecimal digits that change with what determines a simulation of a kind of load."""
-    return fingerprint("crackfront.simulate.run", kind.__module__)
+def _stated(record: Any) -> dict[str, Any]:
+    """Fields of a dataclass by their names, without those that have their default."""
+    return {
+        item.name: getattr(record, item.name)
+        for item in fields(record)
+        if getattr(record, item.name) != item.default
+    }
+
+
+def _rounded(content: Any) -> Any:
+    """Content of JSON with numbers of twelve digits: units and processors change the last ones."""
+    if isinstance(content, dict):
+        return {name: _rounded(value) for name, value in content.items()}
+    if isinstance(content, list | tuple):
+        return [_rounded(value) for value in content]
+    return float(f"{content:.12g}") if isinstance(content, float) else content

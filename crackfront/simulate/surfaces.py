@@ -19,8 +19,7 @@ from crackfront.data.bounds import SEED, refuse_beyond_memory
 from crackfront.simulate.costs import expected_cost, refuse_oversized
 from crackfront.simulate.laws import measured_energies
 from crackfront.simulate.numerics import Numerics
-from crackfront.simulate.simulation import Simulation, simulation_adhesion
-from crackfront.simulate.sizing import simulation_of
+from crackfront.simulate.simulation import Simulation, simulation_adhesion, simulation_of
 from crackfront.simulate.sphere.cycle import FullCycle
 from crackfront.simulate.tiles import gaussian_values
 from crackfront.simulate.user_surface import surface_array

@@ -17,8 +17,10 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
+from typing import Any
 
 from crackfront.analysis.table import SweepRow
+from crackfront.core.versions import PHYSICS_VERSION, ROWS_VERSION
 from crackfront.data.files import replace_atomically, set_aside
 from crackfront.data.packs import (
     PACK,
@@ -29,7 +31,6 @@ from crackfront.data.packs import (
     members,
     record,
 )
-from crackfront.sweep.fingerprints import row_fingerprint
 
 _CURVE, _ROW = ".nc", ".json"
 """Endings of the names of curves and rows in packs."""
@@ -47,10 +48,11 @@ class Entry:
 
     stem: str
     """Name of the simulation's files without a suffix; its key ends it."""
-    parts: dict[str, str]
-    """Digests of the parts of its key, by their names."""
-    definition: str
-    """:func:`crackfront.sweep.fingerprints.row_fingerprint` of its row."""
+    parameters: dict[str, Any]
+    """Parameters that its series is the digest of."""
+    physics_version: int
+    rows_version: int
+    """:mod:`crackfront.core.versions` of its states and of its row."""
     row: SweepRow | None
     """Its row, if rows have the same definition now."""
     arithmetic: str = ""
@@ -139,7 +141,7 @@ def _entry(member: Member) -> Entry | None:
     if not values.keys() >= Entry.__dataclass_fields__.keys():
         return None  # of another version
     values = {name: values[name] for name in Entry.__dataclass_fields__}
-    known = values["definition"] == row_fingerprint()
+    known = values["rows_version"] == ROWS_VERSION
     return Entry(**values | {"row": SweepRow(**values["row"]) if known else None})
 
 
@@ -164,7 +166,7 @@ class RowIndex:
         """Entry of a simulation with a row, if there is one and its curve is as that says."""
         for member in self._members.get(stem + _ROW, ()):
             entry = _entry(member)
-            if entry is None or entry.row is None:
+            if entry is None or entry.row is None or entry.physics_version != PHYSICS_VERSION:
                 continue
             if not entry.row.curve or self._has_curve(stem):
                 return entry

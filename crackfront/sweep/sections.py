@@ -37,7 +37,7 @@ from crackfront.data.section import (
     resolved_path,
 )
 from crackfront.simulate.laws import Settings
-from crackfront.simulate.line.loads import LAW_LENGTH, LineLoad, SpringUnit
+from crackfront.simulate.line.schedule import LAW_LENGTH, LineLoad, SpringUnit
 from crackfront.simulate.numerics import Numerics
 from crackfront.simulate.schedule import SweepLoad
 from crackfront.simulate.sphere.cycle import FullCycle

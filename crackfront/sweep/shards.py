@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -12,6 +13,7 @@ from numpy.typing import NDArray
 
 from crackfront.analysis.table import PLACE, SweepRow
 from crackfront.core.variables import variables
+from crackfront.core.versions import PHYSICS_VERSION, ROWS_VERSION
 from crackfront.data.digests import file_digest, stated_digest
 from crackfront.data.files import (
     read_dataset,
@@ -21,7 +23,7 @@ from crackfront.data.files import (
     write_digest,
 )
 from crackfront.data.provenance import Provenance
-from crackfront.sweep.fingerprints import shard_fingerprint
+from crackfront.simulate.simulation import Simulation
 from crackfront.sweep.rows import COMPLETE
 from crackfront.sweep.sweep import Shard, Sweep
 from crackfront.sweep.table import rows_dataset
@@ -38,13 +40,23 @@ class FinishedShard:
     spectrum: str
     realisations: range
     fingerprint: str
-    """:func:`~crackfront.sweep.fingerprints.shard_fingerprint` when it was written."""
+    """:func:`shard_request` when it was written."""
     failed: int
     """Simulations without a value."""
     cpu_seconds: float
     """Processor time of all simulations. (Units: s)"""
     arithmetic: frozenset[str]
     """Those of the origins of the rows."""
+
+
+def shard_request(one_per_amplitude: Sequence[Simulation], realisations: range) -> str:
+    """Twelve hexadecimal digits that change with the simulations of a shard and with the versions.
+
+    The first realisation of each amplitude says what all realisations share.
+    """
+    series = [simulation.series for simulation in one_per_amplitude]
+    text = repr((series, realisations, PHYSICS_VERSION, ROWS_VERSION))
+    return hashlib.sha256(text.encode()).hexdigest()[:12]
 
 
 def write_shard(
@@ -63,7 +75,7 @@ def write_shard(
     alone = replace(sweep, spectra=(shard.item,))
     about = {
         "spectrum_name": shard.item.name,
-        "fingerprint": shard_fingerprint(sweep.one_per_amplitude(shard.item), shard.realisations),
+        "fingerprint": shard_request(sweep.one_per_amplitude(shard.item), shard.realisations),
         "first_realisation": np.int64(shard.realisations.start),
         "last_realisation": np.int64(shard.realisations.stop - 1),
         "failed": np.int64(sum(row.status not in COMPLETE for row in rows)),

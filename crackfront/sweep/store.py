@@ -6,6 +6,7 @@ import contextlib
 import functools
 import hashlib
 import itertools
+import json
 import os
 from collections import Counter, defaultdict
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
@@ -16,6 +17,7 @@ from typing import Any
 from zipfile import ZIP_DEFLATED, ZIP_STORED, ZipFile, ZipInfo
 
 from crackfront.analysis.table import SweepRow, SweepTable
+from crackfront.core.versions import PHYSICS_VERSION
 from crackfront.data.bounds import counted
 from crackfront.data.digests import (
     SUMS,
@@ -41,8 +43,7 @@ from crackfront.simulate.costs import expected_cost
 from crackfront.simulate.files import read_simulation
 from crackfront.simulate.run import SimulationResult
 from crackfront.simulate.simulation import Simulation, stems
-from crackfront.sweep.fingerprints import shard_fingerprint
-from crackfront.sweep.result_packs import RowIndex, new_pack, pack_paths, repair_packs
+from crackfront.sweep.result_packs import Entry, RowIndex, new_pack, pack_paths, repair_packs
 from crackfront.sweep.rows import COMPLETE, sweep_row
 from crackfront.sweep.shards import (
     FinishedShard,
@@ -50,6 +51,7 @@ from crackfront.sweep.shards import (
     curve_names,
     finished_shard,
     shard_columns,
+    shard_request,
     write_shard,
 )
 from crackfront.sweep.sweep import NamedSpectrum, Shard, Sweep
@@ -157,7 +159,7 @@ class Store:
     def is_finished(self, sweep: Sweep, shard: Shard) -> bool:
         """Whether the file of a shard is there, by its fingerprint alone."""
         found = finished_shard(self.shard_path(shard))
-        wanted = shard_fingerprint(sweep.one_per_amplitude(shard.item), shard.realisations)
+        wanted = shard_request(sweep.one_per_amplitude(shard.item), shard.realisations)
         return found is not None and found.fingerprint == wanted
 
     def finished(
@@ -171,7 +173,7 @@ class Store:
             for one in found
             if one is not None
             and one.spectrum == item.name
-            and one.fingerprint == shard_fingerprint(one_per_amplitude, one.realisations)
+            and one.fingerprint == shard_request(one_per_amplitude, one.realisations)
         )
         chosen, left, position = covering(known, sweep.n_realisation), [], 0
         for _, taken in chosen:
@@ -475,10 +477,19 @@ def _stored_result(simulation: Simulation, stem: str, index: RowIndex) -> Stored
         else:
             arithmetic = alike[-1].arithmetic if alike else ""
             return StoredResult(simulation, row, "", arithmetic=arithmetic)
-    now = simulation.parts
-    changes = [[name for name, part in now.items() if part != one.parts.get(name)] for one in alike]
+    changes = [_changed_parameters(simulation, one) for one in alike]
     nearest = min(changes, key=len) if changes else []
     return StoredResult(simulation, None, unreadable, tuple(nearest))
+
+
+def _changed_parameters(simulation: Simulation, entry: Entry) -> list[str]:
+    """Names of what differs between a simulation and one of its name that is stored."""
+    if entry.physics_version != PHYSICS_VERSION:
+        return [f"version of the physics (now {PHYSICS_VERSION})"]
+    # As JSON reads it back.
+    now = json.loads(json.dumps(simulation.parameters))
+    names = sorted(now.keys() | entry.parameters.keys())
+    return [name for name in names if now.get(name) != entry.parameters.get(name)]
 
 
 def expected_seconds(simulations: Iterable[Simulation]) -> float:

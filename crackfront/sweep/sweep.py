@@ -14,8 +14,7 @@ from crackfront.core.units import Scales
 from crackfront.data.arguments import nearest_name
 from crackfront.simulate.numerics import Numerics
 from crackfront.simulate.schedule import SweepLoad
-from crackfront.simulate.simulation import Simulation
-from crackfront.simulate.sizing import simulation_of
+from crackfront.simulate.simulation import Simulation, simulation_of
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,6 +11,7 @@ from pathlib import Path
 from numba.core.errors import NumbaError
 
 from crackfront.core.outcome import DefectError
+from crackfront.core.versions import PHYSICS_VERSION, ROWS_VERSION
 from crackfront.data.bounds import TooLargeError
 from crackfront.data.digests import forget_sums
 from crackfront.data.files import dataset_content, leftover_parts, write_text
@@ -22,7 +23,6 @@ from crackfront.simulate.run import PartialRun, SimulationResult, compile_solver
 from crackfront.simulate.simulation import Simulation
 from crackfront.sweep import parallel
 from crackfront.sweep.checkpoints import CheckpointFile
-from crackfront.sweep.fingerprints import row_fingerprint
 from crackfront.sweep.result_packs import Entry
 from crackfront.sweep.rows import failed_row, sweep_row
 from crackfront.sweep.store import Store
@@ -188,8 +188,15 @@ def _run(task: _Task) -> _TaskResult:
     else:
         curve = dataset_content(simulation_dataset(result), origin)
         row, sentence, seconds = sweep_row(result), wrong, result.measures.seconds
-    named = simulation.stem, simulation.parts, row_fingerprint()
-    files = Entry(*named, row, origin.arithmetic).files(curve)
+    entry = Entry(
+        simulation.stem,
+        simulation.parameters,
+        PHYSICS_VERSION,
+        ROWS_VERSION,
+        row,
+        origin.arithmetic,
+    )
+    files = entry.files(curve)
     left = task.store.checkpoint(simulation)
     checkpoint = left if left.exists() else None
     return _TaskResult(SimulationOutcome(row.status, seconds, sentence), files, checkpoint)

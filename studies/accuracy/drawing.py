@@ -11,8 +11,7 @@ from matplotlib.ticker import LogLocator, NullFormatter
 
 from crackfront.plots import style
 from crackfront.plots.parts import label_decimals, label_panel
-from crackfront.simulate.front_sizes import LAW_SIZE
-from crackfront.simulate.laws import SETTINGS, ErrorLaw, SettingName
+from crackfront.simulate.laws import LAW_SIZE, SETTINGS, ErrorLaw, SettingName
 from studies.accuracy.fitting import setting_errors
 from studies.accuracy.report import Measured
 from studies.accuracy.scenes import Scene

@@ -13,8 +13,7 @@ from crackfront.core.arrays import Array
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.simulate.laws import MEASURED, SETTINGS, SettingName, Settings, chosen_settings
 from crackfront.simulate.numerics import Numerics
-from crackfront.simulate.simulation import Simulation
-from crackfront.simulate.sizing import simulation_of
+from crackfront.simulate.simulation import Simulation, simulation_of
 from crackfront.simulate.sphere.cycle import FullCycle
 
 Progress = Callable[[str], None]

@@ -18,7 +18,7 @@ from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.data.files import read_dataset
 from crackfront.simulate.numerics import Numerics
 from crackfront.simulate.run import run_simulation
-from crackfront.simulate.sizing import simulation_of
+from crackfront.simulate.simulation import simulation_of
 from crackfront.simulate.sphere.steady import SteadySchedule
 from crackfront.sweep.rows import sweep_row
 from crackfront.sweep.sweep import Sweep

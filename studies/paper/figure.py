@@ -6,9 +6,8 @@ config/figures with _ for -: parameters, computation, checks and drawing stand i
 
 from __future__ import annotations
 
-import functools
-import hashlib
 import importlib
+import sys
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, fields
 from pathlib import Path
@@ -18,7 +17,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crackfront.analysis.estimate import with_error
-from crackfront.core.fingerprint import fingerprint
 from crackfront.data.section import ConfigurationError, Section, validated, yaml_mapping
 
 if TYPE_CHECKING:
@@ -138,30 +136,14 @@ def figure(name: str) -> Figure:
     return found
 
 
-_DRAWING = "crackfront.plots", "studies.paper.drawing"
-"""Modules that draw, and compute no number of a figure."""
+def figure_sources(name: str) -> tuple[Path, Path]:
+    """Files of the modules that compute the data of a figure, and that draw it.
 
-
-@functools.cache
-def figure_fingerprint(name: str) -> str:
-    """Twelve hexadecimal digits that change with what the data of a figure come from.
-
-    It is that of the module in which the figure is computed. Where the figure is drawn in it as
-    well, a change of the drawing counts; a figure that takes minutes is computed in a module of its
-    own.
+    Both are one file where the data take no more than a moment.
     """
-    return fingerprint(figure(name).compute.__module__, without=_DRAWING)
-
-
-@functools.cache
-def drawing_fingerprint(name: str) -> str:
-    """Twelve hexadecimal digits that change with the drawing and the animation of a figure."""
-    return fingerprint(_module_name(name))
-
-
-def checks_fingerprint() -> str:
-    """Twelve hexadecimal digits that change with the checks of any figure."""
-    return fingerprint(*map(_module_name, FIGURES), without=_DRAWING)
+    module = importlib.import_module(_module_name(name))
+    computing = sys.modules[module.FIGURE.compute.__module__]
+    return Path(str(computing.__file__)), Path(str(module.__file__))
 
 
 def _module_name(name: str) -> str:
@@ -209,9 +191,6 @@ def sweep_of_figure(path: Path, scale: str) -> Path:
         raise
 
 
-def settings_fingerprint(path: Path, scale: str) -> str:
-    """Twelve hexadecimal digits that change with the parameters, and the files that they name."""
-    parameters = load_figure(path, scale)
-    files = [value for _, value in parameters if isinstance(value, Path) and value.is_file()]
-    content = b"".join(file.read_bytes() for file in files)
-    return hashlib.sha256(repr(parameters).encode() + content).hexdigest()[:12]
+def files_of_figure(parameters: Section) -> list[Path]:
+    """Files that the parameters of a figure name."""
+    return [value for _, value in parameters if isinstance(value, Path) and value.is_file()]

@@ -28,8 +28,12 @@ from crackfront.simulate.laws import chosen_settings, measured_energies
 from crackfront.simulate.numerical_errors import missed_error
 from crackfront.simulate.numerics import Numerics
 from crackfront.simulate.run import compile_solver
-from crackfront.simulate.simulation import Simulation, simulation_adhesion, simulation_field
-from crackfront.simulate.sizing import simulation_of
+from crackfront.simulate.simulation import (
+    Simulation,
+    simulation_adhesion,
+    simulation_field,
+    simulation_of,
+)
 from crackfront.simulate.sphere.cycle import FullCycle
 from studies.paper.figure import Check
 

@@ -19,10 +19,9 @@ from crackfront.core.outcome import Status
 from crackfront.core.solver.relax import Solver
 from crackfront.data.section import Positive, Section
 from crackfront.simulate.laws import Settings
-from crackfront.simulate.line.loads import LineLoad
+from crackfront.simulate.line.schedule import LineLoad
 from crackfront.simulate.numerics import Numerics
-from crackfront.simulate.simulation import simulation_adhesion, simulation_field
-from crackfront.simulate.sizing import simulation_of
+from crackfront.simulate.simulation import simulation_adhesion, simulation_field, simulation_of
 from studies.paper.rough import flat_spectrum
 
 _KIND: FieldKind = "roughness"

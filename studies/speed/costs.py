@@ -22,8 +22,7 @@ from crackfront.simulate.costs import Features, features, law_coefficients, law_
 from crackfront.simulate.laws import Settings
 from crackfront.simulate.numerics import Numerics
 from crackfront.simulate.run import run_simulation
-from crackfront.simulate.simulation import Simulation
-from crackfront.simulate.sizing import simulation_of
+from crackfront.simulate.simulation import Simulation, simulation_of
 from crackfront.simulate.sphere.cycle import FullCycle
 from crackfront.simulate.sphere.steady import SteadySchedule
 

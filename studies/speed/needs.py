@@ -31,8 +31,7 @@ from crackfront.simulate.files import cycle_dataset, simulation_dataset
 from crackfront.simulate.laws import Settings
 from crackfront.simulate.numerics import Numerics
 from crackfront.simulate.run import compile_solver, run_simulation
-from crackfront.simulate.simulation import Simulation, simulation_field
-from crackfront.simulate.sizing import simulation_of
+from crackfront.simulate.simulation import Simulation, simulation_field, simulation_of
 from crackfront.simulate.sphere.cycle import FullCycle
 from crackfront.simulate.sphere.steady import SteadySchedule
 from studies.pages import markdown_table

@@ -25,6 +25,7 @@ from crackfront.analysis.table import SweepRow
 from crackfront.cli import main
 from crackfront.core.arrays import Array
 from crackfront.core.memory import peak_memory
+from crackfront.core.versions import PHYSICS_VERSION, ROWS_VERSION
 from crackfront.data.files import dataset_content, write_text
 from crackfront.data.provenance import provenance
 from crackfront.simulate.costs import Cost, expected_cost
@@ -32,7 +33,6 @@ from crackfront.simulate.files import simulation_dataset
 from crackfront.simulate.run import run_simulation
 from crackfront.simulate.simulation import stems
 from crackfront.sweep.configuration import load_configuration
-from crackfront.sweep.fingerprints import row_fingerprint
 from crackfront.sweep.parallel import default_launcher
 from crackfront.sweep.postprocessing import postprocessing_costs
 from crackfront.sweep.result_packs import Entry
@@ -238,7 +238,8 @@ def synthetic(folder: Path, n_simulation: int, *, packed: bool = True) -> Path:
                 w_appr = row.w_appr * rng.normal(1, 0.01)
                 rows.append(replace(row, w_appr=w_appr, seed=one.seed, curve=f"{stem}.nc"))
                 if packed:
-                    entry = Entry(stem, one.parts, row_fingerprint(), rows[-1], origin.arithmetic)
+                    versions = PHYSICS_VERSION, ROWS_VERSION
+                    entry = Entry(stem, one.parameters, *versions, rows[-1], origin.arithmetic)
                     packs[one.spectrum_name].append(entry.files(curve))
         write_shard(store.shard_path(shard), sweep, shard, rows, [origin.arithmetic], origin)
     return path

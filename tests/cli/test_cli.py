@@ -28,9 +28,9 @@ from crackfront.core import jkr
 from crackfront.core.outcome import DefectError, Status
 from crackfront.core.solver.relax import named_solver
 from crackfront.core.units import WORK_OF_ADHESION
+from crackfront.core.versions import PHYSICS_VERSION, ROWS_VERSION
 from crackfront.plots.style import save_figure
 from crackfront.sweep.configuration import load_configuration
-from crackfront.sweep.fingerprints import row_fingerprint
 from crackfront.sweep.result_packs import Entry, new_pack
 from crackfront.sweep.rows import failed_row
 from tests.commands import curves, refused, run
@@ -243,7 +243,7 @@ def test_the_status_counts_what_is_done_failed_and_left(tmp_path, copy_store):
     copy_store("rough", tmp_path)
     flat = tuple(sweep.simulations(sweep.spectra[0]))
     refused_row = failed_row(flat[0], "refused", "too rough")
-    entry = Entry(flat[0].stem, flat[0].parts, row_fingerprint(), refused_row)
+    entry = Entry(flat[0].stem, flat[0].parameters, PHYSICS_VERSION, ROWS_VERSION, refused_row)
     pack = new_pack(tmp_path / "curves", "flat", range(2))
     pack.append(entry.files())
     result = run("status", tmp_path)

@@ -10,9 +10,9 @@ from itertools import cycle
 from pathlib import Path
 
 import pytest
+from crackfront.core.fingerprint import ROOT, module_digests, solver_fingerprint
 
 from crackfront.core import compiled, kernel_cache
-from crackfront.core.fingerprint import ROOT, module_digests, solver_fingerprint
 
 
 def quotient(a, b):

@@ -51,7 +51,7 @@ from crackfront.sweep.rows import sweep_row
 from crackfront.sweep.table import read_statuses, read_table, rows_dataset
 
 SWEEP = load_configuration(Path(__file__).parents[2] / "config/test.yaml")
-ORIGIN = Provenance("1.2.3", "abc", "f00", "crackfront test", "seed: 1\n")
+ORIGIN = Provenance("1.2.3", "abc", "crackfront test", "seed: 1\n")
 
 
 @pytest.fixture(scope="module")
@@ -393,7 +393,7 @@ def test_files_are_whole_where_locks_are_absent(tmp_path):
     source.write_text(NO_LOCKS)
     subprocess.run(["cc", "-shared", "-fPIC", "-o", library, source], check=True)
     folder = tmp_path / "results"
-    write_dataset(folder / "file.nc", xr.Dataset({"a": 1.0}), Provenance(*"abcde"))
+    write_dataset(folder / "file.nc", xr.Dataset({"a": 1.0}), Provenance(*"abcd"))
     environment = os.environ | {"LD_PRELOAD": str(library)}
     environment.pop("HDF5_USE_FILE_LOCKING", None)
 

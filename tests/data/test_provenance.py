@@ -7,7 +7,7 @@ from unittest.mock import Mock
 import pytest
 
 from crackfront import __version__
-from crackfront.core.fingerprint import solver_fingerprint
+from crackfront.core.versions import PHYSICS_VERSION, ROWS_VERSION
 from crackfront.data import provenance as module
 from crackfront.data.provenance import git_commit, provenance
 
@@ -30,7 +30,7 @@ def test_the_command_does_not_name_the_folders_of_a_machine(monkeypatch, program
 def test_the_origin_names_version_sources_and_configuration():
     origin = provenance("seed: 1\n")
     assert origin.crackfront_version == __version__
-    assert origin.solver_fingerprint == solver_fingerprint()
+    assert (origin.physics_version, origin.rows_version) == (PHYSICS_VERSION, ROWS_VERSION)
     assert origin.configuration == "seed: 1\n"
 
 

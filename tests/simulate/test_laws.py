@@ -9,8 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from crackfront.core.spectrum import SelfAffineSpectrum, TabulatedSpectrum
-from crackfront.simulate.front_sizes import LAW_SIZE
-from crackfront.simulate.laws import SETTINGS, chosen_settings, combined_error, read_laws
+from crackfront.simulate.laws import LAW_SIZE, SETTINGS, chosen_settings, combined_error, read_laws
 from crackfront.simulate.numerical_errors import numerical_error
 from studies.accuracy.scenes import SCENES, with_setting
 

@@ -13,7 +13,7 @@ from crackfront.core.units import Scales
 from crackfront.simulate.laws import Settings
 from crackfront.simulate.numerics import Numerics
 from crackfront.simulate.run import run_simulation
-from crackfront.simulate.sizing import simulation_of
+from crackfront.simulate.simulation import simulation_of
 from crackfront.simulate.sphere.cycle import FullCycle
 from crackfront.simulate.sphere.steady import SteadySchedule
 from crackfront.sweep.expectation import expectation

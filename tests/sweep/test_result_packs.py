@@ -1,21 +1,22 @@
 """Packs: whole files count, torn and changed ones do not, and two writers do not meet."""
 
+import json
 import socket
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
+from crackfront.core.versions import PHYSICS_VERSION, ROWS_VERSION
 from crackfront.data.packs import LONGEST_NAME, checked, record
 from crackfront.sweep.configuration import load_configuration
-from crackfront.sweep.fingerprints import row_fingerprint
 from crackfront.sweep.result_packs import Entry, RowIndex, new_pack, pack_paths, repair_packs
 from crackfront.sweep.rows import failed_row
 
 SWEEP = load_configuration(Path(__file__).parents[2] / "config/test.yaml")
 ONE = next(SWEEP.simulations())
 ROW = failed_row(ONE, "refused", "too rough: 1 > 0.999")
-ENTRY = Entry(ONE.stem, ONE.parts, row_fingerprint(), ROW)
+ENTRY = Entry(ONE.stem, ONE.parameters, PHYSICS_VERSION, ROWS_VERSION, ROW)
 OTHER = replace(ENTRY, stem="flat-e0.1-r1-0123456789abcdef")
 CURVE = b"curve" * 999
 
@@ -40,7 +41,7 @@ def test_what_is_appended_is_read_back_in_order_and_to_the_last_bit(tmp_path, pa
     assert names(tmp_path) == (expected, 0)
     index = RowIndex(tmp_path, "flat", range(2))
     assert index.entry(ONE.stem).row.w_appr == 0.1 + 0.2
-    assert next(index.alike(ONE.stem)).parts == ONE.parts
+    assert next(index.alike(ONE.stem)).parameters == json.loads(json.dumps(ONE.parameters))
 
 
 @pytest.mark.parametrize("left", [1, 300, 512, 700, 5000, -1])
@@ -130,7 +131,7 @@ def test_a_row_of_another_definition_does_not_count(tmp_path, pack):
     pack.append(replace(ENTRY, definition="earlier").files())
     index = RowIndex(tmp_path, "flat", range(2))
     assert index.entry(ONE.stem) is None
-    assert next(index.alike(ONE.stem)).parts == ONE.parts
+    assert next(index.alike(ONE.stem)).parameters == json.loads(json.dumps(ONE.parameters))
 
 
 def test_what_the_disk_does_not_take_leaves_nothing(tmp_path, monkeypatch, pack):

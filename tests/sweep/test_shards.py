@@ -6,14 +6,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from crackfront.core.versions import ROWS_VERSION
 from crackfront.data.digests import digest_path, file_digest
 from crackfront.data.files import damaged_files, read_dataset
 from crackfront.data.provenance import provenance
-from crackfront.sweep import fingerprints
 from crackfront.sweep.configuration import load_configuration
-from crackfront.sweep.fingerprints import shard_fingerprint
 from crackfront.sweep.rows import failed_row
-from crackfront.sweep.shards import covering, finished_shard, write_shard
+from crackfront.sweep.shards import covering, finished_shard, shard_request, write_shard
 from crackfront.sweep.store import Store, lost_curves
 
 SWEEP = load_configuration(Path(__file__).parents[2] / "config/test.yaml")
@@ -22,7 +21,7 @@ FLAT, ROUGH = SWEEP.shards()
 
 def fingerprint(sweep=SWEEP, shard=FLAT):
     """Fingerprint of a shard of a sweep."""
-    return shard_fingerprint(sweep.one_per_amplitude(shard.item), shard.realisations)
+    return shard_request(sweep.one_per_amplitude(shard.item), shard.realisations)
 
 
 def rows(shard=FLAT):
@@ -54,7 +53,7 @@ def test_the_fingerprint_of_a_shard_changes_with_its_simulations_alone():
 
 def test_the_fingerprint_of_a_shard_changes_with_the_definition_of_rows(monkeypatch):
     before = fingerprint()
-    monkeypatch.setattr(fingerprints, "row_fingerprint", lambda: "newer")
+    monkeypatch.setattr("crackfront.sweep.shards.ROWS_VERSION", ROWS_VERSION + 1)
     assert fingerprint() != before
 
 

@@ -20,6 +20,7 @@ from numba.core.errors import NumbaError
 from crackfront.cli import main
 from crackfront.cli.results import _loop_example
 from crackfront.core.outcome import DefectError
+from crackfront.core.versions import PHYSICS_VERSION, ROWS_VERSION
 from crackfront.data.bounds import TooLargeError
 from crackfront.data.comparison import comparison
 from crackfront.data.digests import SUMS
@@ -31,7 +32,6 @@ from crackfront.simulate.files import write_checkpoint
 from crackfront.simulate.run import run_simulation
 from crackfront.sweep import tasks
 from crackfront.sweep.configuration import load_configuration
-from crackfront.sweep.fingerprints import row_fingerprint
 from crackfront.sweep.result_packs import Entry, RowIndex, new_pack, pack_paths
 from crackfront.sweep.rows import failed_row
 from crackfront.sweep.store import Store
@@ -126,9 +126,9 @@ def test_added_realisations_are_all_that_is_missing(store):
 @pytest.mark.parametrize(
     ("change", "part"),
     [
-        ({"solver": replace(FLAT[0].solver, tolerance=1e-7)}, "numerics"),
+        ({"solver": replace(FLAT[0].solver, tolerance=1e-7)}, "tolerance"),
         ({"sweep_seed": 2}, "seed"),
-        ({"solver": replace(FLAT[0].solver, max_sweeps=7)}, "numerics"),
+        ({"solver": replace(FLAT[0].solver, tolerance=1e-6)}, "tolerance"),
     ],
 )
 def test_what_is_stale_is_told_with_what_has_changed(store, change, part):
@@ -148,12 +148,15 @@ def test_the_reason_is_by_the_stored_key_that_is_nearest(store):
         assert sentence == "1 stored simulations are stale: 1 as seed changed"
 
 
-def test_a_new_solver_makes_all_stale_by_its_sources(store, monkeypatch):
+def test_a_new_version_of_the_physics_runs_all_again_and_says_so(store, monkeypatch):
     run_and_store(store, FLAT[:2])
-    monkeypatch.setattr("crackfront.simulate.simulation.simulation_fingerprint", lambda _: "newer")
+    for module in ("store", "result_packs"):
+        monkeypatch.setattr(f"crackfront.sweep.{module}.PHYSICS_VERSION", PHYSICS_VERSION + 1)
     inventory = store.inventory(FLAT)
     assert len(inventory.missing) == 4
-    assert inventory.stale_sentence() == "2 stored simulations are stale: 2 as sources changed"
+    assert inventory.stale_sentence() == (
+        "2 stored simulations are stale: 2 as version of the physics (now 2) changed"
+    )
 
 
 def test_a_store_of_mixed_origin_is_told_where_it_is_planned_and_verified(store):
@@ -163,7 +166,7 @@ def test_a_store_of_mixed_origin_is_told_where_it_is_planned_and_verified(store)
     assert store.inventory(FLAT).arithmetic == {here}
     for one in FLAT[1:]:
         row = failed_row(one, "refused", "")
-        entry = Entry(one.stem, one.parts, row_fingerprint(), row, "another")
+        entry = Entry(one.stem, one.parameters, PHYSICS_VERSION, ROWS_VERSION, row, "another")
         new_pack(store.curves, "flat", range(2)).append(entry.files())
     words = f"and may in their last digits: another; {here}"
     plan = ["plan", str(TEST), "--output", str(store.folder)]
@@ -171,14 +174,6 @@ def test_a_store_of_mixed_origin_is_told_where_it_is_planned_and_verified(store)
     store.finish_shard(SWEEP, SWEEP.shards()[0], provenance())
     for command in (plan, ["verify", str(store.folder)]):
         assert words in CliRunner().invoke(main, command).stdout
-
-
-def test_a_part_that_keys_did_not_have_before_is_told_as_changed(store):
-    old = Entry(f"{FLAT[0].stem[:-16]}{0:016}", {"kind": FLAT[0].parts["kind"]}, "older", None)
-    store.curves.mkdir(parents=True)
-    new_pack(store.curves, "flat", range(1)).append(old.files())
-    [stale] = store.inventory(FLAT[:1]).stale
-    assert set(stale) == set(FLAT[0].parts) - {"kind"}
 
 
 def test_spectra_of_one_shape_and_two_names_have_rows_of_their_own(store, monkeypatch):

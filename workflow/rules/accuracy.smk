@@ -43,7 +43,7 @@ rule accuracy_study:
         mem_mb=2000,
         runtime=240,
     params:
-        sources=fingerprint("studies.accuracy.files", "studies.accuracy.scenes"),
+        versions=(PHYSICS_VERSION, ROWS_VERSION),
         # At weak disorder few surfaces have an avalanche, on which the laws depend.
         surfaces=lambda wildcards: (
             24
@@ -91,7 +91,7 @@ rule accuracy_report:
         mem_mb=2000,
         runtime=60,
     params:
-        sources=fingerprint("studies.accuracy.drawing"),
+        versions=ROWS_VERSION,
         results=folder,
     shell:
         f"{STUDIES} accuracy report --output {{params.results:q}}{LOGGED}"

@@ -12,7 +12,7 @@ rule aggregate:
         mem_mb=megabytes(POSTPROCESSING["aggregate"].memory),
         runtime=minutes(POSTPROCESSING["aggregate"].seconds),
     params:
-        sources=fingerprint("crackfront.sweep.table"),
+        versions=(PHYSICS_VERSION, ROWS_VERSION),
         sweep=SWEEP.fingerprint,
         configuration=configuration,
         results=folder,

@@ -12,24 +12,22 @@ gc.disable()
 BASE = Path(workflow.current_basedir).parents[1]
 sys.path.insert(0, str(BASE))  # where the studies stand
 
-from crackfront.core.fingerprint import fingerprint
+from crackfront.core.versions import PHYSICS_VERSION, ROWS_VERSION
 from crackfront.data.bounds import memory_at_hand
 from crackfront.simulate.costs import expected_cost
 from crackfront.sweep.configuration import load_configuration, results_folder
-from crackfront.sweep.fingerprints import shard_fingerprint
 from crackfront.sweep.jobs import cores_of_job
 from crackfront.sweep.postprocessing import postprocessing_costs
+from crackfront.sweep.shards import shard_request
 from crackfront.sweep.watching import SweepBar
 from studies.boundary_elements.parameters import load_validation
 from studies.paper.figure import (
     FIGURES,
     SCALES,
-    checks_fingerprint,
-    drawing_fingerprint,
     figure,
-    figure_fingerprint,
+    figure_sources,
+    files_of_figure,
     load_figure,
-    settings_fingerprint,
     sweep_of_figure,
 )
 
@@ -126,10 +124,26 @@ LONGEST = [
 ]
 
 
-def settings_of(wildcards):
-    """What the data of a figure of the paper are computed from beside the sources."""
+def figure_parameters(wildcards):
+    """Parameters of a figure of the paper."""
     name = getattr(wildcards, "figure", "si-5")
-    return settings_fingerprint(Path(FIGURE_SETTINGS, f"{name}.yaml"), SCALE)
+    return load_figure(Path(FIGURE_SETTINGS, f"{name}.yaml"), SCALE)
+
+
+def figure_settings(wildcards):
+    """The same as a text, for Snakemake to compare."""
+    return repr(figure_parameters(wildcards))
+
+
+def figure_inputs(wildcards):
+    """What the data of a figure are computed with: its module, and files of its parameters."""
+    name = getattr(wildcards, "figure", "si-5")
+    return [figure_sources(name)[0], *files_of_figure(figure_parameters(wildcards))]
+
+
+def figure_drawing_module(wildcards):
+    """Module that draws and checks a figure of the paper."""
+    return figure_sources(wildcards.figure)[1]
 
 
 def figure_file(wildcards, output):

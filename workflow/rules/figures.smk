@@ -21,12 +21,7 @@ rule sweep_figures:
         mem_mb=megabytes(POSTPROCESSING["figures"].memory),
         runtime=minutes(POSTPROCESSING["figures"].seconds),
     params:
-        sources=fingerprint(
-            "crackfront.analysis.steady",
-            "crackfront.analysis.sweep",
-            "crackfront.plots.loop",
-            "crackfront.plots.sweep",
-        ),
+        versions=(PHYSICS_VERSION, ROWS_VERSION),
         sweep=SWEEP.fingerprint,
         configuration=configuration,
         results=folder_above,

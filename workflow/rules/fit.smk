@@ -12,11 +12,7 @@ rule fit:
         mem_mb=megabytes(POSTPROCESSING["fit"].memory),
         runtime=minutes(POSTPROCESSING["fit"].seconds),
     params:
-        sources=fingerprint(
-            "crackfront.analysis.sweep",
-            "crackfront.sweep.fit_files",
-            "crackfront.sweep.table",
-        ),
+        versions=(PHYSICS_VERSION, ROWS_VERSION),
         sweep=SWEEP.fingerprint,
         configuration=configuration,
         results=folder,
@@ -45,11 +41,7 @@ rule summary:
         mem_mb=megabytes(POSTPROCESSING["summary"].memory),
         runtime=minutes(POSTPROCESSING["summary"].seconds),
     params:
-        sources=fingerprint(
-            "crackfront.analysis.sweep",
-            "crackfront.analysis.report",
-            "crackfront.sweep.summary",
-        ),
+        versions=(PHYSICS_VERSION, ROWS_VERSION),
         sweep=SWEEP.fingerprint,
         configuration=configuration,
         results=folder,

@@ -21,6 +21,8 @@ rule figures:
 
 
 rule figure_data:
+    input:
+        figure_inputs,
     output:
         f"{PAPER}/{{figure}}.nc",
     log:
@@ -32,8 +34,8 @@ rule figure_data:
         mem_mb=4000,
         runtime=lambda wildcards: minutes(expected_seconds(wildcards.figure)),
     params:
-        sources=lambda wildcards: figure_fingerprint(wildcards.figure),
-        settings=settings_of,
+        versions=(PHYSICS_VERSION, ROWS_VERSION),
+        settings=figure_settings,
         file=figure_file,
         results=folder_above,
     shell:
@@ -51,7 +53,8 @@ use rule figure_data as longest_figure_data with:
 
 rule figure_of_sweep:
     input:
-        f"results/{Path(SWEEPS[SCALE]).stem}/hysteresis.nc",
+        figure_inputs,
+        table=f"results/{Path(SWEEPS[SCALE]).stem}/hysteresis.nc",
     output:
         f"{PAPER}/si-5.nc",
     log:
@@ -63,9 +66,8 @@ rule figure_of_sweep:
         mem_mb=megabytes(POSTPROCESSING["fit"].memory),
         runtime=minutes(POSTPROCESSING["fit"].seconds),
     params:
-        sources=lambda wildcards: figure_fingerprint("si-5"),
-        fit=lambda wildcards: fingerprint("crackfront.analysis.sweep"),
-        settings=settings_of,
+        versions=ROWS_VERSION,
+        settings=figure_settings,
         sweep=lambda wildcards: load_configuration(Path(SWEEPS[SCALE])).fingerprint,
         file=figure_file,
         results=folder_above,
@@ -79,7 +81,8 @@ ruleorder: figure_of_sweep > longest_figure_data > figure_data
 
 rule figure_drawing:
     input:
-        f"{PAPER}/{{figure}}.nc",
+        figure_drawing_module,
+        data=f"{PAPER}/{{figure}}.nc",
     output:
         f"{PAPER}/{{figure}}.pdf",
         f"{PAPER}/{{figure}}.png",
@@ -92,15 +95,15 @@ rule figure_drawing:
         mem_mb=4000,
         runtime=30,
     params:
-        sources=lambda wildcards: drawing_fingerprint(wildcards.figure),
-        settings=settings_of,
+        settings=figure_settings,
     shell:
-        f"{STUDIES} paper draw {{input:q}}{LOGGED}"
+        f"{STUDIES} paper draw {{input.data:q}}{LOGGED}"
 
 
 rule figure_animation:
     input:
-        f"{PAPER}/{{figure}}.nc",
+        figure_drawing_module,
+        data=f"{PAPER}/{{figure}}.nc",
     output:
         f"{PAPER}/{{figure}}.pdf",
         f"{PAPER}/{{figure}}.png",
@@ -116,15 +119,15 @@ rule figure_animation:
         mem_mb=4000,
         runtime=30,
     params:
-        sources=lambda wildcards: drawing_fingerprint(wildcards.figure),
-        settings=settings_of,
+        settings=figure_settings,
     shell:
-        f"{STUDIES} paper draw {{input:q}}{LOGGED}"
+        f"{STUDIES} paper draw {{input.data:q}}{LOGGED}"
 
 
 rule figure_checks:
     input:
         expand("{results}/{figure}.nc", results=PAPER, figure=FIGURES),
+        lambda wildcards: [figure_sources(name)[1] for name in FIGURES],
     output:
         "results/figures/checks.md",
     log:
@@ -136,7 +139,6 @@ rule figure_checks:
         mem_mb=4000,
         runtime=30,
     params:
-        sources=lambda wildcards: checks_fingerprint(),
         scale=SCALE,
         results=folder,
     shell:

@@ -18,8 +18,8 @@ rule simulate:
         mem_mb_per_cpu=megabytes(RANK_BYTES),
         runtime=240,
     params:
-        # Changes with everything that determines the rows, the solver's sources included.
-        fingerprint=lambda wildcards: shard_fingerprint(
+        # Changes with the parameters of the simulations and with the versions.
+        request=lambda wildcards: shard_request(
             FIRSTS[SHARDS[wildcards.shard].item.name],
             SHARDS[wildcards.shard].realisations,
         ),

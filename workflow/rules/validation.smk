@@ -23,7 +23,7 @@ rule validate:
         mem_mb=8000,
         runtime=1440,
     params:
-        sources=fingerprint("studies.boundary_elements.study"),
+        versions=(PHYSICS_VERSION, ROWS_VERSION),
         settings=lambda wildcards: repr(load_validation(Path(VALIDATION))),
         configuration=lambda wildcards, output: VALIDATION,
         results=folder,

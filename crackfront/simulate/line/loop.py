@@ -17,8 +17,7 @@ from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.data.arguments import refuse_no_numbers
 from crackfront.data.bounds import NUMBER, refuse_outside
 from crackfront.simulate.costs import affordable_seconds
-from crackfront.simulate.line.loads import LAW_LENGTH
-from crackfront.simulate.line.schedule import LineSchedule
+from crackfront.simulate.line.schedule import LAW_LENGTH, LineSchedule
 from crackfront.simulate.loop_setup import (
     LoopContact,
     LoopNumerics,

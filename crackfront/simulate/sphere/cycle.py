@@ -82,6 +82,8 @@ class FullCycle(SphereSchedule, LoadSchedule):
     Parameters and refusals are those of :class:`crackfront.core.cycle.schedule.LoadSchedule`.
     """
 
+    load_name = "full cycle"
+
     def run(
         self, field: Field, solver: Solver | None, recorder: Recorder, **_: float
     ) -> CycleRecord:

@@ -64,6 +64,8 @@ class SteadySchedule(SphereSchedule):
     penetration.
     """
 
+    load_name = "steady branches"
+
     start: float
     """Penetration at which the approach begins. (Units: reduced vertical length)"""
     max_penetration: float

@@ -17,13 +17,12 @@ from crackfront.core.adhesion import larkin_length
 from crackfront.core.spectrum import TabulatedSpectrum
 from crackfront.core.units import Scales
 from crackfront.simulate.costs import expected_cost
-from crackfront.simulate.line.loads import LineLoad
+from crackfront.simulate.line.schedule import LineLoad
 from crackfront.simulate.numerical_errors import numerical_error
 from crackfront.simulate.numerics import Numerics
 from crackfront.simulate.run import run_simulation
 from crackfront.simulate.schedule import Schedule
-from crackfront.simulate.simulation import Simulation
-from crackfront.simulate.sizing import simulation_of
+from crackfront.simulate.simulation import Simulation, simulation_of
 from crackfront.simulate.sphere.steady import SteadySchedule
 from crackfront.topography.prediction.conditions import zero_load_radius
 from crackfront.topography.prediction.prediction import Prediction

@@ -7,8 +7,7 @@ from dataclasses import asdict
 import numpy as np
 import pytest
 
-from crackfront.simulate.front_sizes import LAW_SIZE
-from crackfront.simulate.laws import read_laws
+from crackfront.simulate.laws import LAW_SIZE, read_laws
 from studies.accuracy.drawing import laws_figure
 from studies.accuracy.fitting import fit_laws, laws_text
 from studies.accuracy.scenes import HELD_OUT, SCENES

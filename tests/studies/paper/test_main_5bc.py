@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from studies.paper.figure import figure, settings_fingerprint
+from studies.paper.figure import figure, files_of_figure, load_figure
 from studies.paper.perimeters import advances
 from tests.studies.paper.made import (
     computed,
@@ -103,13 +103,10 @@ def test_measured_points_are_fitted_checked_and_drawn(tmp_path):
     assert {"measured, approach", "measured, retraction"} <= set(labels)
 
 
-def test_a_measured_file_decides_what_a_figure_is_made_of_and_a_comment_does_not(tmp_path):
+def test_a_measured_file_is_one_of_the_files_that_a_figure_is_computed_from(tmp_path):
     configuration = with_measured(tmp_path, "main-5bc", MEASURED)
-    before = settings_fingerprint(configuration, "paper")
-    configuration.write_text(f"# a remark\n{configuration.read_text()}")
-    assert settings_fingerprint(configuration, "paper") == before
-    with_measured(tmp_path, "main-5bc", MEASURED.replace("0.5,110", "0.5,111"))
-    assert settings_fingerprint(configuration, "paper") != before
+    [measured] = files_of_figure(load_figure(configuration, "paper"))
+    assert measured.read_text() == MEASURED
 
 
 @pytest.mark.parametrize(
