@@ -8,8 +8,10 @@ from pathlib import Path
 import click
 
 from crackfront.cli import Commands
-from crackfront.cli.report import examples
+from crackfront.cli.report import announce_compilation, examples
 from crackfront.data.files import write_text
+from crackfront.simulate.run import compile_solver
+from studies.pages import keep_option
 
 STUDIES = {
     "paper": "Figures of the paper: compute their data, draw them, compare them with the paper.",
@@ -62,6 +64,44 @@ def pages() -> None:
         if (new := renewed(text, studies)) != text:
             write_text(path, new)
             click.echo(f"page: {path}")
+
+
+@main.command(
+    epilog=examples(
+        "python -m studies canaries",
+        "python -m studies canaries law paper",
+        "python -m studies canaries --keep",
+    )
+)
+@click.argument("studies", nargs=-1)
+@keep_option
+def canaries(studies: tuple[str, ...], keep: bool) -> None:
+    """Measure some numbers of all STUDIES again, and compare them with the stored ones.
+
+    Ends with 1 if a number has moved by more than its error. With --keep the numbers are stored.
+    """
+    from studies.canaries import chosen_canaries, measured
+    from studies.numbers import store
+
+    chosen = chosen_canaries(studies)
+    announce_compilation()
+    compile_solver("newton")
+    moved, seconds, count = [], 0.0, 0
+    for result in measured(chosen):
+        seconds, count = seconds + result.seconds, count + len(result.numbers)
+        click.echo(f"{result.study}, {result.name}: {result.seconds:.1f} s")
+        if keep:
+            store(result.study, canaries=result.numbers)
+        for comparison in result.comparisons():
+            click.echo(f"  {comparison}")
+            if comparison.has_moved:
+                moved.append(comparison)
+    summary = f"{len(moved)} moved by more than their error"
+    click.echo(f"{count} numbers in {seconds:.0f} s of one core: {summary}")
+    for comparison in moved:
+        click.echo(f"MOVED: {comparison}")
+    if moved:
+        raise SystemExit(1)
 
 
 if __name__ == "__main__":
