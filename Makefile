@@ -68,7 +68,7 @@ BEGAN   := $(shell date +%s)
 ended    = echo "$$(date +%s) $(1)" >> .venv/.times
 
 .DEFAULT_GOAL := all
-.PHONY: all env test test-portable test-cluster nightly law accuracy validate benchmark timings reproduce reproduce-fronts reproduce-scans \
+.PHONY: all env test test-portable test-cluster nightly law accuracy validate benchmark canaries timings reproduce reproduce-fronts reproduce-scans \
   reproduce-boundary figures report docs lint lock clean help
 
 all: env  ## Run the sweep SWEEP to its figure and fit; by default with quick straight fronts
@@ -138,11 +138,15 @@ ON_SLURM = $(IN_ENV) tests/cluster/with-slurm.sh .venv/bin/python -m pytest -m s
 test-cluster: env  ## Run the tests that need a Slurm, on one started for them (5 minutes)
 	@$(ON_SLURM)
 
-nightly: env  ## Run all tests, the slow ones and those on a Slurm too
+nightly: env  ## Run all tests, the slow ones and those on a Slurm too, and the canaries
 	@mkdir -p $(dir $(REPORT))
 	@echo "Test report: $(REPORT)"
-	@$(IN_ENV) .venv/bin/python -m pytest --junitxml=$(REPORT); passed=$$?; \
-	  [ $$passed -le 1 ] && $(ON_SLURM) && exit $$passed
+	@$(IN_ENV) .venv/bin/python -m studies canaries; canaries=$$?; \
+	  $(IN_ENV) .venv/bin/python -m pytest --junitxml=$(REPORT); passed=$$?; \
+	  [ $$passed -le 1 ] && $(ON_SLURM) && [ $$passed = 0 ] && exit $$canaries
+
+canaries: env  ## Measure some numbers of every study again, and compare them with the stored ones (a minute)
+	@$(IN_ENV) .venv/bin/python -m studies canaries
 
 benchmark: env  ## Solvers against the reference, what requests cost, how sweeps scale (an hour)
 	$(IN_ENV) .venv/bin/python -m studies speed solvers
@@ -151,16 +155,16 @@ benchmark: env  ## Solvers against the reference, what requests cost, how sweeps
 	$(IN_ENV) .venv/bin/python -m studies speed scaling
 	@echo "Results: results/benchmark/"
 
-timings: env  ## What depends on the machine, for the pages (an hour)
+timings: env  ## For a release: what depends on the machine (an hour)
 	$(IN_ENV) .venv/bin/python -m studies speed solvers --keep
 	$(IN_ENV) .venv/bin/python -m studies speed profile --keep
 	$(IN_ENV) .venv/bin/python -m studies speed needs --keep
 	$(IN_ENV) .venv/bin/python -m studies speed scaling --keep
 	$(IN_ENV) .venv/bin/python -m studies pages
 
-# It resumes: rules that are done are not run again, and boundary elements keep every load step. The
-# studies of scans begin again, each in minutes.
-reproduce: env  ## The numbers and figures of the pages, but for timings and reproduce-boundary (4 core hours)
+# For a release. It resumes: rules that are done are not run again, and boundary elements keep every
+# load step. The studies of scans begin again, each in minutes.
+reproduce: env  ## For a release: numbers and figures of the pages, but for timings and reproduce-boundary (4 core hours)
 	$(MAKE) --no-print-directory --jobs 2 reproduce-fronts reproduce-scans
 	$(MAKE) --no-print-directory accuracy
 	cp results/accuracy/laws.png results/accuracy/work-precision.png docs/figures/
@@ -174,6 +178,7 @@ reproduce: env  ## The numbers and figures of the pages, but for timings and rep
 	$(IN_ENV) .venv/bin/python -m studies boundary-elements numbers --keep
 	$(IN_ENV) .venv/bin/python -m studies law figure
 	$(IN_ENV) .venv/bin/python -m studies law numbers --keep
+	$(IN_ENV) .venv/bin/python -m studies canaries --keep
 	$(IN_ENV) .venv/bin/crackfront predict examples/scans/nanodiamond-*.al3d --modulus 0.7MPa --poisson 0.5 \
 	  --radius 1.25mm --work-of-adhesion 63mJ/m2 --figure docs/figures/prediction.png
 	$(IN_ENV) .venv/bin/crackfront predict examples/scans/nanodiamond-*.al3d --modulus 0.7MPa --poisson 0.5 \
@@ -212,7 +217,7 @@ KEPT = docs/reference
 PAPER = main-3cd main-5bc si-5 beyond-avalanches beyond-roughness
 LARGE = 512 1024 series strong fine edges
 
-reproduce-boundary: env  ## The numbers and figures of large boundary elements (a day of one core)
+reproduce-boundary: env  ## For a release: the numbers and figures of large boundary elements (a day of one core)
 	set -e; for name in $(LARGE); do $(MAKE) --no-print-directory validate VALIDATION=config/validation-$$name.yaml; done
 	cp results/validation-512/differences.nc $(KEPT)/validation/differences-512.nc
 	cp results/validation-512/picture.nc $(KEPT)/validation/picture-512.nc
@@ -253,13 +258,12 @@ docs: env  ## Pages in docs/_build/html, examples executed, warnings as errors (
 	@$(IN_ENV) .venv/bin/python -m sphinx -W --keep-going --quiet -b html docs docs/_build/html
 	@echo "Documentation: docs/_build/html/index.html"
 
-lint: env  ## Style, format, types, import layers, format of the rules, numbers of the pages
+lint: env  ## Style, format, types, import layers, format of the rules
 	.venv/bin/ruff check
 	.venv/bin/ruff format --check
 	.venv/bin/mypy
 	.venv/bin/lint-imports
 	.venv/bin/snakefmt --check Snakefile workflow
-	$(IN_ENV) .venv/bin/python -m studies pages --check
 
 lock:  ## Resolve requirements.in and pyproject.toml anew into requirements.lock
 	@tools=$$(mktemp -d) && trap 'rm -rf "$$tools"' EXIT \

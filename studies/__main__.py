@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-import contextlib
 import importlib
 from pathlib import Path
 
 import click
 
 from crackfront.cli import Commands
-from crackfront.cli.report import FILE, examples
+from crackfront.cli.report import announce_compilation, examples
 from crackfront.data.files import write_text
-from studies.pages import keep_option, tell
+from crackfront.simulate.run import compile_solver
+from studies.pages import keep_option
 
 STUDIES = {
     "paper": "Figures of the paper: compute their data, draw them, compare them with the paper.",
@@ -49,50 +49,59 @@ class _Studies(Commands):
 
 @click.group(cls=_Studies, context_settings={"help_option_names": ["-h", "--help"]})
 def main() -> None:
-    """Measure the numbers and figures of the pages anew."""
+    """Measure the numbers and figures of the pages."""
 
 
-@main.command(epilog=examples("python -m studies pages", "python -m studies pages --check"))
-@click.option("--check", is_flag=True, help="Write nothing; list numbers of older sources.")
-def pages(check: bool) -> None:
-    """Write the stored tables and numbers of studies into README.md, paper.md and docs.
+@main.command(epilog=examples("python -m studies pages"))
+def pages() -> None:
+    """Write the stored tables and numbers of all studies into docs."""
+    from studies.numbers import stored
+    from studies.pages import renewed
 
-    With --check a page whose numbers are not the stored ones is refused.
-    """
-    from studies.pages import kept_parts, renewed, stale
-
-    parts = kept_parts()
-    for path in (Path("README.md"), Path("paper.md"), *sorted(Path("docs").rglob("*.md"))):
+    studies = {name: stored(name) for name in STUDIES}
+    for path in sorted(Path("docs").rglob("*.md")):
         text = path.read_text(encoding="utf-8")
-        if (new := renewed(text, parts)) == text:
-            continue
-        if check:
-            raise ValueError(f"{path} has not what was measured; run python -m studies pages")
-        write_text(path, new)
-        click.echo(f"page: {path}")
-    for told in stale(parts):
-        click.echo(told)
+        if (new := renewed(text, studies)) != text:
+            write_text(path, new)
+            click.echo(f"page: {path}")
 
 
-@main.command(epilog=examples("python -m studies differences ../other-clone"))
-@click.argument("clone", type=FILE)
-@click.option("--machine", help="What computed there, if it is the machine that computed here.")
+@main.command(
+    epilog=examples(
+        "python -m studies canaries",
+        "python -m studies canaries law paper",
+        "python -m studies canaries --keep",
+    )
+)
+@click.argument("studies", nargs=-1)
 @keep_option
-def differences(clone: Path, machine: str | None, keep: bool) -> None:
-    """Compare the numbers of the pages with those that the same studies gave in another CLONE.
+def canaries(studies: tuple[str, ...], keep: bool) -> None:
+    """Measure some numbers of all STUDIES again, and compare them with the stored ones.
 
-    A number differs if it has moved by more than its own error.
+    Ends with 1 if a number has moved by more than its error. With --keep the numbers are stored.
     """
-    from studies.differences import differences_text
-    from studies.pages import KEPT, kept_parts
+    from studies.canaries import chosen_canaries, measured
+    from studies.numbers import store
 
-    here = kept_parts()
-    with contextlib.chdir(clone):
-        there = kept_parts()
-    if not there:
-        raise ValueError(f"{clone} has no numbers in {KEPT}; give the folder of a clone")
-    text = differences_text(here, there, machine)
-    tell("differences", {"processors": text}, "studies.differences", keep=keep)
+    chosen = chosen_canaries(studies)
+    announce_compilation()
+    compile_solver("newton")
+    moved, seconds, count = [], 0.0, 0
+    for result in measured(chosen):
+        seconds, count = seconds + result.seconds, count + len(result.numbers)
+        click.echo(f"{result.study}, {result.name}: {result.seconds:.1f} s")
+        if keep:
+            store(result.study, canaries=result.numbers)
+        for comparison in result.comparisons():
+            click.echo(f"  {comparison}")
+            if comparison.has_moved:
+                moved.append(comparison)
+    summary = f"{len(moved)} moved by more than their error"
+    click.echo(f"{count} numbers in {seconds:.0f} s of one core: {summary}")
+    for comparison in moved:
+        click.echo(f"MOVED: {comparison}")
+    if moved:
+        raise SystemExit(1)
 
 
 if __name__ == "__main__":

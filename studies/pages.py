@@ -1,55 +1,29 @@
-"""What studies write into pages: tables, marked blocks, and the machine that measured."""
+"""What studies write into pages: tables, numbers, and where both were measured."""
 
 from __future__ import annotations
 
 import functools
-import json
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass
-from pathlib import Path
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 import click
-from crackfront.core.fingerprint import fingerprint
 
+from crackfront.analysis.estimate import with_error
 from crackfront.cli.report import FILE
-from crackfront.data.files import write_text
-from crackfront.data.provenance import provenance
-
-KEPT = Path("docs/reference/parts")
-"""Folder of what studies keep for the pages, a file for each study."""
+from studies.numbers import STORED, Number, Origin, Stored, store
 
 _BLOCK = re.compile(
     r"<!-- (?P<study>[\w-]+): (?P<name>.*?) -->(?P<text>.*?)<!-- end -->", re.DOTALL
 )
 
-keep_option = click.option("--keep", is_flag=True, help=f"Store the tables for pages in {KEPT}.")
+_ORIGINS = re.compile(r"\n*<!-- measured -->.*?<!-- end -->\n", re.DOTALL)
+"""Last line of a page, which says where its numbers come from."""
+
+keep_option = click.option("--keep", is_flag=True, help=f"Store numbers and tables in {STORED}.")
 
 output_option = functools.partial(click.option, "--output", type=FILE, show_default=True)
 """Option for the folder that a command writes into."""
-
-
-@dataclass(frozen=True, slots=True)
-class Part:
-    """A table or a number of the pages, and where it was measured."""
-
-    text: str
-    command: str
-    commit: str
-    machine: str
-    sources: Sequence[str]
-    """Modules that it comes from."""
-    fingerprint: str
-    """:func:`sources_fingerprint` of them, as they were."""
-
-
-def sources_fingerprint(*sources: str) -> str:
-    """Twelve hexadecimal digits that change with the modules that a part comes from.
-
-    Commands do not count: what they print decides no number.
-    """
-    return fingerprint(*sources, without=["crackfront.cli"])
 
 
 def markdown_table(header: str, rows: Iterable[str | Sequence[str]]) -> str:
@@ -68,92 +42,59 @@ def markdown_table(header: str, rows: Iterable[str | Sequence[str]]) -> str:
     return "\n".join(f"| {text} |" for text in texts)
 
 
-def keep_parts(
-    study: str, texts: Mapping[str, str], *sources: str, data: Mapping[str, Any] | None = None
-) -> None:
-    """Keep what a study has measured, in Markdown; what it has kept else stays.
-
-    The attributes of a file of data say where they were measured, if that is not here.
-    """
-    here = asdict(provenance())
-    where = here if data is None else data
-    is_here = where["git_commit"] == here["git_commit"]
-    origin: dict[str, Any] = {
-        "command": str(where["command"]),
-        "commit": str(where["git_commit"]),
-        "machine": str(where.get("processor", "unknown")),
-        "sources": sources,
-        "fingerprint": sources_fingerprint(*sources) if is_here else "",
-    }
-    known = kept_parts().get(study, {})
-    known |= {name: Part(text, **origin) for name, text in texts.items()}
-    listed = {name: asdict(known[name]) for name in sorted(known)}
-    write_text(KEPT / f"{study}.json", json.dumps(listed, indent=1, ensure_ascii=False) + "\n")
-
-
 def tell(
     study: str,
-    texts: Mapping[str, str],
-    *sources: str,
+    tables: Mapping[str, str],
+    *,
     keep: bool,
+    numbers: Mapping[str, Number] | None = None,
     data: Mapping[str, Any] | None = None,
 ) -> None:
-    """Print what a study has measured, and keep it for the pages if that is asked for."""
-    click.echo("\n\n".join(texts.values()))
+    """Print the tables of a study, and store them with its numbers if that is asked for."""
+    click.echo("\n\n".join(tables.values()))
     if keep:
-        keep_parts(study, texts, *sources, data=data)
-        click.echo("kept for the pages, which python -m studies pages writes")
+        store(study, tables=tables, numbers=numbers, data=data)
+        click.echo(f"stored: {STORED / study}.json; python -m studies pages writes the pages")
 
 
-def kept_parts() -> dict[str, dict[str, Part]]:
-    """All parts by study and name."""
-    files = {path.stem: json.loads(path.read_text("utf-8")) for path in KEPT.glob("*.json")}
-    return {
-        study: {name: Part(**one) for name, one in listed.items()}
-        for study, listed in files.items()
-    }
+def renewed(page: str, studies: Mapping[str, Stored]) -> str:
+    r"""Page with all of its blocks and its last line written again from what is stored.
 
-
-def stale(parts: Mapping[str, Mapping[str, Part]]) -> Iterator[str]:
-    """Parts whose sources have changed since they were measured, a sentence for each command."""
-    commands: dict[tuple[str, str], list[str]] = {}
-    for study, listed in parts.items():
-        for name, part in listed.items():
-            if part.fingerprint != sources_fingerprint(*part.sources):
-                commands.setdefault((part.command, part.commit[:7]), []).append(f"{study}: {name}")
-    for (command, commit), names in commands.items():
-        yield f"of other sources than today's, commit {commit}, `{command}`: {', '.join(names)}"
-
-
-def renewed(page: str, parts: Mapping[str, Mapping[str, Part]]) -> str:
-    r"""Page with all blocks written anew, each with its commit and command.
-
-    A block stands between `<!-- STUDY: PART -->` and `<!-- end -->`, on lines of its own or within
-    one, where it is a number alone. `<!-- STUDY: PART / ROW / COLUMN -->` is a cell of a table, in
-    the row that begins with ROW, counted from 1. What was not measured is a ValueError.
+    A block is a table between `<!-- STUDY: TABLE -->` and `<!-- end -->`, or a number within a line
+    between `<!-- STUDY: NUMBER -->` and `<!-- end -->`. `<!-- STUDY: TABLE / ROW / COLUMN -->` is a
+    cell of a table, in the row that begins with ROW; columns count from 1. A ValueError names a
+    block that was not measured.
 
     Examples
     --------
-    >>> part = Part("8", "studies speed", "1a2b3c4d", "", (), "")
-    >>> renewed("<!-- speed: ratio -->7<!-- end --> times", {"speed": {"ratio": part}})
-    '<!-- speed: ratio -->8<!-- end --> times'
+    >>> known = {"speed": Stored(numbers={"ratio": Number(8.1, 0.5, commit="1a2b", command="x")})}
+    >>> renewed("<!-- speed: ratio -->7<!-- end --> times\n", known).splitlines()[0]
+    '<!-- speed: ratio -->8.10 ± 0.50<!-- end --> times'
     """
+    used: list[Origin] = []
 
     def block(found: re.Match[str]) -> str:
         study, (name, *place) = found["study"], found["name"].split(" / ")
-        if name not in parts.get(study, {}):
-            raise ValueError(
-                f"there is a block {name!r} of the study {study}, which has not measured it; there "
-                f"are {', '.join(parts.get(study, {})) or 'none'}"
-            )
-        part = parts[study][name]
-        text = _cell(part.text, *place) if place else part.text
+        known = studies.get(study, Stored())
+        if table := known.tables.get(name):
+            used.append(table)
+            text = _cell(table.text, *place) if place else table.text
+        elif number := known.numbers.get(name):
+            used.append(number)
+            text = _number_text(number)
+        else:
+            raise ValueError(f"the study {study} has not measured {name!r}; run it with --keep")
         if "\n" in found["text"]:
-            machine = "" if part.machine == "unknown" else f", {part.machine}"
-            text = f"\n\n{text}\n\n*Commit {part.commit[:7]}{machine}: `{part.command}`*\n\n"
+            text = f"\n\n{text}\n\n"
         return f"<!-- {study}: {found['name']} -->{text}<!-- end -->"
 
-    return _BLOCK.sub(block, page)
+    text = _BLOCK.sub(block, _ORIGINS.sub("\n", page))
+    return f"{text}\n{_measured_line(used)}" if used else page
+
+
+def _number_text(number: Number) -> str:
+    """Number with its error, if it is known."""
+    return f"{number.value:g}" if number.error is None else with_error(number.value, number.error)
 
 
 def _cell(table: str, row: str, column: str) -> str:
@@ -162,3 +103,14 @@ def _cell(table: str, row: str, column: str) -> str:
         if line.startswith(f"| {row} |"):
             return line.split("|")[int(column)].strip()
     raise ValueError(f"no row of the table begins with {row!r}")
+
+
+def _measured_line(origins: Iterable[Origin]) -> str:
+    """Commands, commits and machines that the numbers of a page come from, as its last line."""
+    commands: dict[tuple[str, str], dict[str, None]] = {}
+    for origin in origins:
+        machine = "" if origin.machine == "unknown" else f", {origin.machine}"
+        place = f"commit {origin.commit[:7]}{machine}", origin.date[:10]
+        commands.setdefault(place, {})[f"`{origin.command}`"] = None
+    parts = (f"{', '.join(names)} ({commit}, {date})" for (commit, date), names in commands.items())
+    return f"<!-- measured -->\n*Numbers of this page: {'; '.join(parts)}.*\n<!-- end -->\n"

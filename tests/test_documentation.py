@@ -16,6 +16,7 @@ from crackfront import __all__
 from crackfront.cli import main
 from crackfront.sweep.configuration import Configuration
 from crackfront.topography.options import ReadingOptions
+from studies.numbers import stored
 
 ROOT = Path(__file__).parents[1]
 DOCS = ROOT / "docs"
@@ -118,7 +119,13 @@ def test_the_readme_begins_with_who_has_a_surface_and_has_two_commands_to_set_up
     assert predict.startswith(".venv/bin/crackfront predict")
     assert len(text.splitlines()) < 75
     # What comes out and what is left out stand before the commands, the law after them.
-    words = ("works of adhesion", "prediction-force.png", "viscoelasticity", "make test", "finding")
+    words = (
+        "works of adhesion",
+        "prediction-force.png",
+        "viscoelasticity",
+        "make test",
+        "vanishing disorder",
+    )
     places = [text.index(word) for word in words]
     assert places == sorted(places)
 
@@ -130,6 +137,80 @@ def test_every_link_of_a_page_to_a_file_leads_to_one(page):
     links = re.findall(r"\]\(([^)#\s]+)", text)
     here = [link for link in links if not re.match(r"\w+:", link)]
     assert [link for link in here if not (path.parent / link).exists()] == []
+
+
+QUOTED = [
+    # page, text with {} for the number, study, name, format of its value and error
+    *(
+        (page, *quote)
+        for page in ("README.md", "docs/index.md", "paper.md")
+        for quote in (
+            ("k is {} at vanishing", "law", "k at vanishing disorder", "{:.2f} ± {:.2f}"),
+            ("{} for a flat spectrum", "law", "k at s = 0.84, a flat spectrum", "{:.2f} ± {:.2f}"),
+            (
+                "{} for H = 0.8",
+                "law",
+                "k at s = 0.84, H = 0.8 over three octaves",
+                "{:.2f} ± {:.2f}",
+            ),
+            ("at g = {} with", "law", "g of k = 3 at vanishing disorder", "{:.1f}"),
+            (
+                "s = {} in the infinite",
+                "law",
+                "s of k = 3 in the infinite contact",
+                "{:.2f} ± {:.2f}",
+            ),
+            ("the {} of 90 pairs", "law", "spheres with g above 1", "{:g}"),
+            ("of {} pairs", "law", "spheres", "{:g}"),
+            ("agree with it to {} rms", "law", "rms difference of spheres", "{:.1%}"),
+        )
+    ),
+    ("README.md", "has {} times the", "paper", "nanodiamond, measured over prediction", "{:.1f}"),
+    ("README.md", "is {} at the rough", "boundary-elements", "ratio at e_el = 0.177", "{:.2f}"),
+    (
+        "paper.md",
+        "takes {} times less time, at an error of 1%",
+        "accuracy",
+        "times faster than the authors, chemical-0.04, 1%",
+        "{:.0f}",
+    ),
+    (
+        "paper.md",
+        "take {} times less time",
+        "speed",
+        "newton faster, flat 0.02, w_rms 0.05, N 4096, step 0.1",
+        "{:.1f}",
+    ),
+    (
+        "paper.md",
+        "and {} times less at the 0.84",
+        "speed",
+        "newton faster, flat 0.02, w_rms 0.84, N 4096, step 0.1",
+        "{:.1f}",
+    ),
+    ("paper.md", "by {} of the", "boundary-elements", "median difference of the force", "{:.2%}"),
+    ("paper.md", "and {} of 54 jumps", "boundary-elements", "shared jumps of the front", "{:g}"),
+    ("paper.md", "of {} jumps", "boundary-elements", "jumps of the front", "{:g}"),
+    ("paper.md", "c = {}, a factor", "boundary-elements", "coefficient", "{:.2f} ± {:.2f}"),
+    ("paper.md", "of {} at 0.18", "boundary-elements", "ratio at e_el = 0.177", "{:.2f}"),
+    ("paper.md", "in {} of the hardest", "accuracy", "coverage of the hardest scans", "{:.0%}"),
+    ("paper.md", "gives {} $", "paper", "nanodiamond, front", "{:.1f} ± {:.1f}"),
+    ("paper.md", "elements, {} $", "paper", "nanodiamond, prediction", "{:.0f} ± {:.0f}"),
+]
+"""Numbers of the pages without blocks."""
+
+
+@pytest.mark.parametrize(("page", "text", "study", "name", "form"), QUOTED)
+def test_a_quoted_number_is_the_stored_one(page, text, study, name, form, monkeypatch):
+    monkeypatch.chdir(ROOT)
+    number = stored(study).numbers[name]
+    words = " ".join(Path(page).read_text().split())
+    assert text.format(form.format(number.value, number.error)) in words
+
+
+def test_the_first_pages_have_plain_numbers():
+    for page in ("README.md", "docs/index.md", "paper.md"):
+        assert "<!--" not in (ROOT / page).read_text()
 
 
 def test_numbers_of_all_pages_have_as_many_decimals_as_their_errors():

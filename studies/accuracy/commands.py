@@ -33,9 +33,10 @@ from studies.accuracy import scans as instrument
 from studies.accuracy.drawing import figures
 from studies.accuracy.files import STUDIES
 from studies.accuracy.fitting import fit_laws, laws_text
-from studies.accuracy.report import error_tables, measured
+from studies.accuracy.report import compared_numbers, error_tables, measured
 from studies.accuracy.scenes import SCENES
-from studies.pages import keep_option, keep_parts, output_option, tell
+from studies.numbers import store
+from studies.pages import keep_option, output_option, tell
 
 commands = click.Group()
 
@@ -95,10 +96,10 @@ def report(output: Path, keep: bool) -> None:
             click.echo(f"figure: {path}")
     write_sums(output)
     if keep:
-        sources = "studies.accuracy.report", "studies.accuracy.files"
         page = (Path(__file__).parents[2] / "docs/experiments/numerics.md").read_text("utf-8")
         shown = {name: text for name, text in tables.items() if f"accuracy: {name} -->" in page}
-        keep_parts("accuracy", shown, *sources, data=read_attributes(min(output.glob("*.nc"))))
+        data = read_attributes(min(output.glob("*.nc"))) | {"command": "make accuracy"}
+        store("accuracy", tables=shown, numbers=compared_numbers(found), data=data)
 
 
 @commands.command(epilog=examples("python -m studies accuracy predictions"))
@@ -107,7 +108,7 @@ def predictions(keep: bool) -> None:
     """Compare predictions from scans with simulations of the surfaces; print a table."""
     shown = with_progress(films.comparisons(), len(films.FILMS), "films")
     parts = {"Predictions": films.comparison_table(shown)}
-    tell("accuracy", parts, "studies.accuracy.predictions", keep=keep)
+    tell("accuracy", parts, keep=keep)
 
 
 @commands.command(epilog=examples("python -m studies accuracy energies --scans 12"))
@@ -132,7 +133,8 @@ def energies(scans: int, keep: bool) -> None:
         name: synthetic.energy_table({kind: found[kind] for kind in kinds})
         for name, kinds in tables.items()
     }
-    tell("accuracy", parts, "studies.accuracy.energies", keep=keep)
+    numbers = {"coverage of the hardest scans": synthetic.hardest_coverage(found)}
+    tell("accuracy", parts, numbers=numbers, keep=keep)
 
 
 @commands.command(epilog=examples("python -m studies accuracy movement examples/scans/*.al3d"))
@@ -150,7 +152,7 @@ def movement(scans: tuple[Path, ...], keep: bool) -> None:
     shown = with_progress(surfaces.items(), len(surfaces), "scans")
     found = [(name, settled.movement(one)) for name, one in shown]
     parts = {"Movement": settled.movement_table(found)}
-    tell("accuracy", parts, "studies.accuracy.movement", keep=keep)
+    tell("accuracy", parts, keep=keep)
 
 
 @commands.command(epilog=examples("python -m studies accuracy scans"))
@@ -168,7 +170,7 @@ def energy_balance(keep: bool) -> None:
     """Compare the dissipated energy of cycles with the work of their steps; print a table."""
     announce_compilation()
     parts = {"Energy balance": balance.energy_table()}
-    tell("accuracy", parts, "studies.accuracy.energy_balance", keep=keep)
+    tell("accuracy", parts, keep=keep)
 
 
 @commands.command(epilog=examples("python -m studies accuracy loops --loops 40"))
@@ -184,4 +186,4 @@ def loops(loops: int, keep: bool) -> None:
         shown = with_progress(rigs.cycles(loops, press), loops, "loops")
         found |= rigs.coverage(shown, instruments)
     parts = {"Measured loops": rigs.coverage_table(found)}
-    tell("accuracy", parts, "studies.accuracy.loops", keep=keep)
+    tell("accuracy", parts, keep=keep)

@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 from scipy.ndimage import grey_dilation
 
-from crackfront.analysis.estimate import Estimate
+from crackfront.analysis.estimate import REACH, Estimate
 from crackfront.core.adhesion import rough_adhesion
 from crackfront.core.arrays import Array
 from crackfront.core.spectrum import SelfAffineSpectrum, Spectrum, TabulatedSpectrum
@@ -24,6 +24,7 @@ from crackfront.topography.options import ReadingOptions
 from crackfront.topography.scan.reading import read_measurements
 from crackfront.topography.spectrum.measures import MeasuredSurface, measured_surface
 from studies.accuracy.scans import scanned
+from studies.numbers import Number
 from studies.pages import markdown_table
 
 Distortion = Callable[[Array, np.random.Generator], Array]
@@ -238,6 +239,9 @@ HELD_OUT = (
 )
 """Scans that had no part in any choice."""
 
+_HARDEST = "roll-off of two sides, H = 1"
+"""Kind of scans whose intervals contain the truth least often."""
+
 
 def found_scan(kind: Kind, number: int) -> Found:
     """What is found for a scan of a kind."""
@@ -313,3 +317,13 @@ def energy_table(found: Mapping[Kind, Sequence[Found]]) -> str:
         f"found / true {np.exp(np.mean(np.log(ratios))):.2f}, {covered:.1%} of the "
         "intervals hold the truth"
     )
+
+
+def hardest_coverage(found: Mapping[Kind, Sequence[Found]]) -> Number:
+    """Share of the intervals that contain the truth, of the scans that show their roll-off least.
+
+    The error is half of the 95% interval of the binomial distribution, taken as normal.
+    """
+    (scans,) = (scans for kind, scans in found.items() if kind.name == _HARDEST)
+    share = float(np.mean([scan.covers for scan in scans]))
+    return Number(share, REACH * math.sqrt(share * (1 - share) / len(scans)))

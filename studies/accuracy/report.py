@@ -14,6 +14,7 @@ from studies.accuracy.averages import Coverage, Sample
 from studies.accuracy.files import read_errors, read_study
 from studies.accuracy.scenes import SCENES, Scene
 from studies.accuracy.study import Errors, SceneErrors, pareto_front, rms
+from studies.numbers import Number
 from studies.pages import markdown_table
 
 Found = TypeVar("Found")
@@ -80,6 +81,21 @@ def error_tables(found: Measured) -> dict[str, str]:
     return made
 
 
+def compared_numbers(found: Measured) -> dict[str, Number]:
+    """How much faster an error is reached than by the authors' code, where that is known."""
+    numbers = {}
+    for study in found.scenes.values():
+        if study.scene.authors_seconds is None:
+            continue
+        seconds, error = study.work_and_precision()
+        for target in _TARGETS:
+            best = _cheapest(seconds, error, target)
+            if best is not None:
+                name = f"times faster than the authors, {study.scene.name}, {100 * target:g}%"
+                numbers[name] = Number(float(study.scene.authors_seconds / seconds[best]))
+    return numbers
+
+
 def _stored(folder: Path, study: str, read: Callable[[Path], Found]) -> dict[str, Found]:
     """What a folder holds of a study, by the names of its scenes."""
     paths = {name: folder / f"{study}-{name}.nc" for name in SCENES}
@@ -99,6 +115,12 @@ def _of_k(study: SceneErrors, errors: Errors) -> list[str]:
     return [f"{rms(column) / study.scene.elastic_energy:.2g}" for column in errors.adhesion.T]
 
 
+def _cheapest(seconds: Array, error: Array, target: float) -> int | None:
+    """Index of the fastest setting with a small enough error; None if there is none."""
+    enough = np.flatnonzero(error <= target)
+    return int(enough[np.argmin(seconds[enough])]) if enough.size else None
+
+
 def _target_table(studies: Iterable[SceneErrors]) -> str:
     """Seconds of the cheapest setting for every error."""
     rows = []
@@ -106,11 +128,10 @@ def _target_table(studies: Iterable[SceneErrors]) -> str:
         seconds, error = study.work_and_precision()
         entries = []
         for target in _TARGETS:
-            enough = np.flatnonzero(error <= target)
-            if enough.size == 0:
+            best = _cheapest(seconds, error, target)
+            if best is None:
                 entries.append("-")
                 continue
-            best = enough[np.argmin(seconds[enough])]
             entry = f"{seconds[best]:.3g} s ({100 * error[best]:.2g}%)"
             if study.scene.authors_seconds is not None:
                 entry += f", {study.scene.authors_seconds / seconds[best]:.0f} times"

@@ -80,5 +80,5 @@ def numbers(keep: bool) -> None:
     if keep:
         table = validity_text(kept_validity(kept_surfaces()))
         write_text(Path("crackfront/analysis/validity.csv"), table)
-    for parts, data in page_parts():
-        tell("boundary-elements", parts, "studies.boundary_elements.page", keep=keep, data=data)
+    for parts, numbers, data in page_parts():
+        tell("boundary-elements", parts, numbers=numbers, keep=keep, data=data)

@@ -1,7 +1,8 @@
-"""What the pages show of the comparisons that are kept, for `<!-- boundary-elements: PART -->`."""
+"""What the pages show of the comparisons that are kept: tables and numbers."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from operator import attrgetter
 from pathlib import Path
@@ -15,26 +16,35 @@ from studies.boundary_elements.averages import brought_to_no_range, rows_by_zone
 from studies.boundary_elements.differences import Differences
 from studies.boundary_elements.edges import EdgeForces
 from studies.boundary_elements.hysteresis import Hysteresis
+from studies.numbers import Number
 
 REFERENCES = Path("docs/reference/validation")
+
+_QUOTED = "512"
+"""Points along a side of the loops whose numbers the pages quote."""
+
+_NANODIAMOND = 0.177
+"""e_el of the paper's nanodiamond. (Units: w_int)"""
 
 SHORT_CUTOFFS = {"strong": 0.15, "fine": 0.05}
 """Shortest wavelength of the surfaces of `config/validation-<name>.yaml`."""
 
 
-def page_parts() -> Iterator[tuple[dict[str, str], dict[str, Any]]]:
-    """Parts from each kept file, and what the file says of its origin."""
+def page_parts() -> Iterator[tuple[dict[str, str], dict[str, Number], dict[str, Any]]]:
+    """Tables and numbers from each kept file, and what the file says of its origin."""
     kept = kept_surfaces()
-    origins = [read_attributes(REFERENCES / f"hysteresis-{name}.nc") for name in kept]
-    yield from zip((_strong_parts(kept["strong"]), _common_parts(kept)), origins, strict=True)
+    strong, fine = (read_attributes(REFERENCES / f"hysteresis-{name}.nc") for name in kept)
+    yield *_strong_parts(kept["strong"]), strong
+    yield *_common_parts(kept), fine
     for name in ("256", "512", "series"):
         path = REFERENCES / f"differences-{name}.nc"
         loops = read_records(path, Differences, "case")
         tables = {f"{part} {name}": text for part, text in report.loop_tables(loops).items()}
-        yield tables, read_attributes(path)
+        numbers = _loop_numbers(loops) if name == _QUOTED else {}
+        yield tables, numbers, read_attributes(path)
     path = REFERENCES / "edges.nc"
     forces = read_records(path, EdgeForces, "case")
-    yield {"edges": report.edge_table(forces)}, read_attributes(path)
+    yield {"edges": report.edge_table(forces)}, {}, read_attributes(path)
 
 
 def kept_surfaces() -> dict[str, Sequence[Hysteresis]]:
@@ -50,26 +60,44 @@ def kept_validity(kept: Mapping[str, Sequence[Hysteresis]]) -> list[ValidityRow]
     return [*limits, *brought_to_no_range(fine, strong)]
 
 
-def _strong_parts(rows: Sequence[Hysteresis]) -> dict[str, str]:
+def _strong_parts(rows: Sequence[Hysteresis]) -> tuple[dict[str, str], dict[str, Number]]:
     """Tables and numbers of the surfaces of several amplitudes."""
     finest = max(rows, key=attrgetter("n_point"))
     alone = [row for row in rows if row.seed == finest.seed]
-    return {
+    tables = {
         "averages": report.surface_tables(rows)["averages"],
         "one surface": report.surface_tables(alone)["settings"],
         "orders": report.order_table(rows),
-        "saddles": f"{sum(row.saddles for row in rows)}",
     }
+    return tables, {"saddles": Number(sum(row.saddles for row in rows))}
 
 
-def _common_parts(kept: Mapping[str, Sequence[Hysteresis]]) -> dict[str, str]:
+def _common_parts(
+    kept: Mapping[str, Sequence[Hysteresis]],
+) -> tuple[dict[str, str], dict[str, Number]]:
     """Tables and numbers of the finer surfaces, and of all together."""
     told = kept_validity(kept)
     slope, error = excess_coefficient(told)
     zones = [rows_by_zone(rows, SHORT_CUTOFFS[name]) for name, rows in kept.items()]
-    return {
+    tables = {
         "fine": report.surface_tables(kept["fine"])["settings"],
         "ratios": report.ratio_table(told),
         "sizes": report.size_table(zones),
-        "coefficient": f"{slope:.2f} ± {error:.2f}",
+    }
+    ratio = math.exp(slope * _NANODIAMOND)
+    numbers = {
+        "coefficient": Number(slope, error, reason="standard error"),
+        f"ratio at e_el = {_NANODIAMOND:g}": Number(ratio, ratio * error * _NANODIAMOND),
+    }
+    return tables, numbers
+
+
+def _loop_numbers(loops: Sequence[Differences]) -> dict[str, Number]:
+    """Differences of the front whose crack turns from the only rough loop."""
+    (loop,) = (one for one in loops if one.elastic_energy > 0 and one.rotated)
+    unit = "pull-off force of the smooth sphere"
+    return {
+        "median difference of the force": Number(loop.force_median / report.PULL_OFF, unit=unit),
+        "jumps of the front": Number(loop.jumps_front),
+        "shared jumps of the front": Number(loop.jumps_shared),
     }

@@ -16,7 +16,7 @@ from studies.boundary_elements.edges import EdgeForces
 from studies.boundary_elements.hysteresis import Hysteresis
 from studies.pages import markdown_table
 
-_PULL_OFF = 1.5
+PULL_OFF = 1.5
 """Magnitude of the pull-off force of a smooth sphere (Units: pi w_int R)."""
 
 
@@ -144,7 +144,7 @@ _CRACK_CELLS = "{n_point} | {interaction_range:g} | {elastic_energy:.4f} | {crac
 def _cell_values(row: Differences) -> dict[str, Any]:
     """Values of a row, with forces relative to the pull-off force and the name of the crack."""
     known = asdict(row)
-    forces = {name: value / _PULL_OFF for name, value in known.items() if "force" in name}
+    forces = {name: value / PULL_OFF for name, value in known.items() if "force" in name}
     return known | forces | {"crack": "turns" if row.rotated else "fixed"}
 
 

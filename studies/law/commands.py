@@ -21,7 +21,7 @@ from crackfront.sweep.sweep import Sweep
 from studies.law.cells import LawCell, Row, csv_rows, csv_text, law_cells, measured_cells
 from studies.law.drawing import law_figure, spectra_points
 from studies.law.fitting import fitted_law
-from studies.law.page import law_parts
+from studies.law.page import law_numbers, law_parts
 from studies.law.spheres import (
     read_spheres,
     reference_rows,
@@ -133,5 +133,5 @@ def figure(tables: tuple[Path, ...], output: Path) -> None:
 @keep_option
 def numbers(tables: tuple[Path, ...], keep: bool) -> None:
     """Print the numbers of the law for the pages."""
-    parts = law_parts(read_spheres(tables))
-    tell("law", parts, "studies.law.page", "studies.law.spheres", keep=keep)
+    rows = read_spheres(tables)
+    tell("law", law_parts(rows), numbers=law_numbers(rows), keep=keep)

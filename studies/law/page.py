@@ -1,4 +1,4 @@
-"""Numbers of the law of k for the blocks `<!-- law: PART -->` of pages."""
+"""Numbers and tables of the law of k for the pages."""
 
 from __future__ import annotations
 
@@ -13,8 +13,7 @@ from crackfront.analysis.finding import (
     PAPER_FACTOR,
     STRONG,
     crossing,
-    departure_of_spheres,
-    finding,
+    least_size,
     stated_breadths,
 )
 from crackfront.analysis.law import (
@@ -22,11 +21,13 @@ from crackfront.analysis.law import (
     WEAKEST,
     Departure,
     Law,
+    PinningFactor,
     pinning_factor,
     shipped_law,
 )
 from studies.law.cells import HELD_OUT, LawCell, measured_cells
 from studies.law.spheres import SphereRow, departures, is_within, sphere_table
+from studies.numbers import Number
 from studies.pages import markdown_table
 
 DISORDERS = (WEAKEST, 0.2, 0.4, STRONG)
@@ -35,8 +36,6 @@ DISORDERS = (WEAKEST, 0.2, 0.4, STRONG)
 
 def law_parts(spheres: Sequence[SphereRow]) -> dict[str, str]:
     """All parts, of the law of the package, what it is fitted to, and spheres."""
-    apart = departures(spheres)
-    rms = float(np.sqrt(np.mean(np.square(apart))))
     return {
         "coefficients": coefficients_part(shipped_law()),
         "limit": limit_part(),
@@ -44,8 +43,31 @@ def law_parts(spheres: Sequence[SphereRow]) -> dict[str, str]:
         "shapes": shapes_part(measured_cells()),
         "fronts": fronts_part(measured_cells()),
         "spheres": sphere_table(spheres),
-        "finding": _wrapped(finding(departure_of_spheres(rms, len(apart), len(spheres)))),
     }
+
+
+def law_numbers(spheres: Sequence[SphereRow]) -> dict[str, Number]:
+    """Numbers that README and the paper quote; errors are half of the 95% intervals."""
+    apart = departures(spheres)
+    s, low, high = crossing()
+    strong = {
+        f"k at s = {STRONG:g}, {name}": _half(pinning_factor(STRONG, math.inf, breadth=breadth))
+        for name, breadth in stated_breadths().items()
+    }
+    return {
+        "k at vanishing disorder": _half(pinning_factor(WEAKEST, math.inf)),
+        **strong,
+        f"g of k = {PAPER_FACTOR:g} at vanishing disorder": Number(least_size()),
+        f"s of k = {PAPER_FACTOR:g} in the infinite contact": Number(s, (high - low) / 2),
+        "spheres": Number(len(spheres)),
+        "spheres with g above 1": Number(len(apart)),
+        "rms difference of spheres": Number(float(np.sqrt(np.mean(np.square(apart))))),
+    }
+
+
+def _half(pinning: PinningFactor) -> Number:
+    """Factor k with half of its interval."""
+    return Number(pinning.factor.value, (pinning.factor.high - pinning.factor.low) / 2)
 
 
 def coefficients_part(law: Law) -> str:

@@ -108,9 +108,9 @@ SCENES = (
 )
 
 
-def scene_rows(realisations: int = 3) -> Iterator[SphereRow]:
-    """The scenes, simulated."""
-    for scene in SCENES:
+def scene_rows(scenes: Sequence[Scene] = SCENES, realisations: int = 3) -> Iterator[SphereRow]:
+    """Scenes, simulated."""
+    for scene in scenes:
         surface = scene.kind, scene.spectrum, scene.elastic_energy
         first = simulation_of(*surface, scene.schedule, Numerics(0.015), seed=20261122)
         runs = [

@@ -23,9 +23,15 @@ from crackfront.data.files import read_attributes, write_text
 from crackfront.data.provenance import provenance
 from crackfront.data.records import read_record, write_record
 from crackfront.plots.style import save_figure, save_picture
-from studies.pages import keep_option, keep_parts, output_option, tell
+from studies.numbers import store
+from studies.pages import keep_option, output_option, tell
 from studies.paper.drawing import save_animation
-from studies.paper.experiment import hystereses, hystereses_figure, hystereses_table
+from studies.paper.experiment import (
+    hystereses,
+    hystereses_figure,
+    hystereses_numbers,
+    hystereses_table,
+)
 from studies.paper.figure import FIGURES, SCALES, Figure, Result, checks_table, figure, load_figure
 
 commands = click.Group()
@@ -148,8 +154,8 @@ def gallery(output: Path, pictures: Path) -> None:
             f"Scale {data['scale']}, {float(data['cpu_seconds']):.0f} s of one core.",
             "\n".join(checks_table(shown.checks(record))),
         ]
-        sources = f"studies.paper.{name.replace('-', '_')}"
-        keep_parts("paper", {name: "\n\n".join(parts)}, sources, data=data)
+        data["command"] = f"make figures SCALE={data['scale']}"
+        store("paper", tables={name: "\n\n".join(parts)}, data=data)
         click.echo(f"figure: {picture}")
 
 
@@ -163,8 +169,7 @@ def experiment(output: Path, keep: bool) -> None:
     shown = hystereses(_figure_and_record(path)[1])
     save_picture(hystereses_figure(shown), output / "experiment.png")
     parts = {"experiment": hystereses_table(shown)}
-    sources = ("studies.paper.experiment", "crackfront.analysis.validity")
-    tell("paper", parts, *sources, keep=keep)
+    tell("paper", parts, numbers=hystereses_numbers(shown), keep=keep)
 
 
 def _data_of_figures(folder: Path) -> list[Path]:

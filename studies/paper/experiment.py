@@ -11,6 +11,7 @@ from crackfront.analysis.estimate import REACH, Estimate
 from crackfront.analysis.finding import PAPER_FACTOR
 from crackfront.analysis.validity import front_excess
 from crackfront.plots.style import BLACK, BLUE, COLUMN, GREEN, VERMILION, blank_figure, house_style
+from studies.numbers import Number
 from studies.pages import markdown_table
 from studies.paper.main_5bc import MEASURED
 from studies.paper.nanodiamond import NanodiamondContact
@@ -61,6 +62,20 @@ def hystereses_table(shown: tuple[Hysteresis, ...]) -> str:
         (" ".join(one.name.split()), one.text, f"{measured / one.value.value:.1f}") for one in shown
     ]
     return markdown_table("nanodiamond | hysteresis (mJ/m2) | measured / this", rows)
+
+
+def hystereses_numbers(shown: tuple[Hysteresis, ...]) -> dict[str, Number]:
+    """Hysteresis of the front and of the prediction, and the measured one over the latter."""
+    measured, _, front, prediction = (one.value for one in shown)
+    reach = (prediction.high - prediction.low) / 2
+    ratio = measured.value / prediction.value
+    ratio_reach = measured.value * (1 / prediction.low - 1 / prediction.high) / 2
+    unit = "mJ/m2"
+    return {
+        "nanodiamond, front": Number(1e3 * front.value, 1e3 * (front.high - front.value), unit),
+        "nanodiamond, prediction": Number(1e3 * prediction.value, 1e3 * reach, unit),
+        "nanodiamond, measured over prediction": Number(ratio, ratio_reach),
+    }
 
 
 def hystereses_figure(shown: tuple[Hysteresis, ...]) -> Figure:

@@ -14,6 +14,7 @@ from crackfront.data.files import write_text
 from crackfront.data.provenance import provenance
 from crackfront.data.records import write_records
 from crackfront.simulate.run import compile_solver
+from studies.numbers import Number
 from studies.pages import keep_option, output_option, tell
 from studies.speed import costs as cost_model
 from studies.speed import needs as requests
@@ -29,7 +30,13 @@ _output = output_option(default=Path("results/benchmark"), help="Folder of the r
 
 
 def _write(
-    path: Path, title: str, parts: Mapping[str, str], rows: Sequence[Any] = (), *, keep: bool
+    path: Path,
+    title: str,
+    parts: Mapping[str, str],
+    rows: Sequence[Any] = (),
+    *,
+    keep: bool,
+    numbers: Mapping[str, Number] | None = None,
 ) -> None:
     """Write and print parts of pages, and the rows of their tables as netCDF, without a suffix."""
     origin = provenance()
@@ -38,7 +45,7 @@ def _write(
     write_text(path.with_suffix(".md"), page)
     if rows:
         write_records(path.with_suffix(".nc"), rows, "row", origin, title=title)
-    tell("speed", parts, f"studies.speed.{path.name}", keep=keep)
+    tell("speed", parts, numbers=numbers, keep=keep)
     click.echo(f"results: {path.with_suffix('.md')}")
 
 
@@ -67,7 +74,9 @@ def solvers(groups: tuple[Group, ...], repeats: int, seed: int, output: Path, ke
             rows.append(row := in_fresh_process(pairs.measured, problem, seed, repeats))
             click.echo(f"{row.label}: {row.ratio:.1f} times, error {row.error:.1e}")
     parts = {"solvers": "\n\n".join(pairs.sections(rows, repeats))}
-    _write(output / "solvers", "The solvers against the reference", parts, rows, keep=keep)
+    numbers = {f"newton faster, {row.label}": Number(row.ratio) for row in rows}
+    title = "The solvers against the reference"
+    _write(output / "solvers", title, parts, rows, keep=keep, numbers=numbers)
 
 
 @commands.command(epilog=examples("python -m studies speed profile"))

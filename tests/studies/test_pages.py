@@ -1,59 +1,77 @@
-"""Pages that studies write into."""
+"""What studies store, and the pages that show it."""
 
-import re
 from pathlib import Path
 
 import pytest
 from click.testing import CliRunner
 
-from studies.__main__ import main
-from studies.pages import Part, keep_parts, kept_parts, renewed, stale
+from studies.__main__ import STUDIES, main
+from studies.numbers import Number, Stored, Table, store, stored
+from studies.pages import renewed
 
 ROOT = Path(__file__).parents[2]
-PAGE = "<!-- law: limit -->\nold\n<!-- end -->\nAfter <!-- speed: limit -->7<!-- end --> times\n"
+PAGE = "<!-- law: limit -->\nold\n<!-- end -->\nAfter <!-- speed: ratio -->7<!-- end --> times\n"
+ORIGIN = {"command": "studies law", "commit": "1a2b3c4d5e", "machine": "EPYC", "date": "2026-11-28"}
 
 
-def part(text):
-    return Part(text, "studies law", "1a2b3c4d5e", "EPYC", ["studies.pages"], "")
-
-
-def test_blocks_are_written_with_their_origin_and_numbers_within_a_line_alone():
-    parts = {"law": {"limit": part("| 3 |")}, "speed": {"limit": part("8")}}
-    text = renewed(PAGE, parts)
-    assert "-->\n\n| 3 |\n\n*Commit 1a2b3c4, EPYC: `studies law`*\n\n<!--" in text
-    assert "After <!-- speed: limit -->8<!-- end --> times" in text
-    assert renewed(text, parts) == text
-    table = {"law": {"limit": part("| a | b |\n| --- | --- |\n| 1 | 2 |\n| 1 | 3 |")}}
-    cell = "k is <!-- law: limit / 1 | 3 / 2 -->0<!-- end -->"
-    assert renewed(cell, table) == cell.replace(">0<", ">3<")
-    with pytest.raises(ValueError, match="no row of the table begins with '4'"):
-        renewed(cell.replace("1 | 3", "4"), table)
-    with pytest.raises(ValueError, match="'limit' of the study speed, which has not measured it"):
-        renewed(PAGE, {"law": parts["law"]})
-
-
-def test_parts_of_other_sources_are_told_until_they_are_measured_anew(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    keep_parts("law", {"limit": "3"}, "studies.pages", data={"command": "a", "git_commit": "b"})
-    assert [*stale(kept_parts())] == ["of other sources than today's, commit b, `a`: law: limit"]
-    keep_parts("law", {"limit": "4", "more": "5"}, "studies.pages")
-    assert [*stale(kept_parts())] == []
-    assert kept_parts()["law"]["limit"].text == "4"
-
-
-def test_the_pages_hold_what_was_kept(monkeypatch):
-    monkeypatch.chdir(ROOT)
-    done = CliRunner().invoke(main, ["pages", "--check"])
-    assert done.exit_code == 0, done.output  # Otherwise: python -m studies pages
-    known = {(study, name) for study, parts in kept_parts().items() for name in parts}
-    pages = [Path("README.md"), *Path("docs").rglob("*.md")]
-    blocks = {
-        block
-        for page in pages
-        for block in re.findall(r"<!-- ([\w-]+): (.*?) -->", page.read_text())
+def known(table):
+    """Stored table of one study and number of another."""
+    number = Number(8.0, 0.5, command="studies speed", commit="9f8e7d6c5b", date="2026-11-27")
+    return {
+        "law": Stored(tables={"limit": Table(table, **ORIGIN)}),
+        "speed": Stored(numbers={"ratio": number}),
     }
-    begun = [
-        page for page in pages if re.search(r"^<!-- .*<!-- end", page.read_text(), re.MULTILINE)
-    ]
-    assert begun == []  # Markdown would end the paragraph there.
-    assert {(study, name.split(" / ")[0]) for study, name in blocks} == known
+
+
+def test_a_page_has_its_blocks_and_one_last_line_that_says_where_they_were_measured():
+    text = renewed(PAGE, known("| 3 |"))
+    assert "-->\n\n| 3 |\n\n<!--" in text
+    assert "After <!-- speed: ratio -->8.00 ± 0.50<!-- end --> times" in text
+    assert "`studies law` (commit 1a2b3c4, EPYC, 2026-11-28)" in text.splitlines()[-2]
+    assert text.count("Numbers of this page") == 1
+    assert renewed(text, known("| 3 |")) == text
+
+
+def test_a_block_may_be_a_cell_of_a_table():
+    table = "| a | b |\n| --- | --- |\n| 1 | 2 |\n| 1 | 3 |"
+    cell = "k is <!-- law: limit / 1 | 3 / 2 -->0<!-- end -->\n"
+    assert renewed(cell, known(table)).startswith(cell.replace(">0<", ">3<"))
+    with pytest.raises(ValueError, match="no row of the table begins with '4'"):
+        renewed(cell.replace("1 | 3", "4"), known(table))
+
+
+def test_a_block_that_was_not_measured_is_refused_by_its_name():
+    with pytest.raises(ValueError, match="the study speed has not measured 'ratio'"):
+        renewed(PAGE, {"law": known("| 3 |")["law"]})
+
+
+def test_what_is_stored_is_read_again_and_leaves_the_rest(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    origin = {"command": "a", "git_commit": "b", "processor": "EPYC", "date": "2026-11-28"}
+    store("law", numbers={"k": Number(3.7, 0.1)}, tables={"limit": "| 3 |"}, data=origin)
+    store("law", numbers={"k": Number(3.8, 0.1)}, canaries={"fit, k": Number(3.7, 0.1)})
+    found = stored("law")
+    assert (found.numbers["k"].value, found.canaries["fit, k"].value) == (3.8, 3.7)
+    assert (found.tables["limit"].text, found.tables["limit"].commit) == ("| 3 |", "b")
+    assert found.numbers["k"].date[:2] == "20"
+
+
+def test_the_pages_hold_what_is_stored(monkeypatch):
+    monkeypatch.chdir(ROOT)
+    studies = {name: stored(name) for name in STUDIES}
+    pages = {path: path.read_text() for path in Path("docs").rglob("*.md")}
+    assert [path for path, text in pages.items() if renewed(text, studies) != text] == []
+    shown = " ".join(pages.values())
+    tables = {(study, name) for study, known in studies.items() for name in known.tables}
+    assert {
+        (study, name) for study, name in tables if f"<!-- {study}: {name}" not in shown
+    } == set()
+
+
+def test_the_command_writes_the_blocks_of_all_pages(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    store("law", tables={"limit": "| 3 |"})
+    Path("docs/law.md").write_text(PAGE.splitlines()[0] + "\nold\n<!-- end -->\n")
+    done = CliRunner().invoke(main, ["pages"])
+    assert done.output == "page: docs/law.md\n"
+    assert "| 3 |" in Path("docs/law.md").read_text()

@@ -10,7 +10,7 @@ from studies.__main__ import main
 from studies.accuracy.files import STUDIES
 from studies.accuracy.scenes import SCENES
 from studies.accuracy.study import scene_errors, trial_seconds
-from studies.pages import kept_parts
+from studies.numbers import stored
 
 
 def run(*arguments):
@@ -48,8 +48,7 @@ def test_one_measured_scene_is_reported_and_kept(study, tables, tmp_path, monkey
     text = (tmp_path / "accuracy.md").read_text()
     assert set(re.findall("^## (.*)", text, re.MULTILINE)) - {"Settings, small-0.04"} == tables
     assert "| small-0.04 | 0.01 |" in text
-    kept = kept_parts()["accuracy"]
-    assert tables == kept.keys()
+    assert tables == stored("accuracy").tables.keys()
 
 
 @pytest.mark.parametrize("study", STUDIES)

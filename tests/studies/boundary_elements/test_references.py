@@ -29,7 +29,7 @@ from studies.boundary_elements.hysteresis import Hysteresis
 from studies.boundary_elements.page import kept_validity, page_parts
 from studies.boundary_elements.parameters import load_validation, validation_cases
 from studies.boundary_elements.picture import ValidationPicture, hysteresis_figure
-from studies.pages import kept_parts
+from studies.numbers import stored
 
 ROOT = Path(__file__).parents[3]
 REFERENCES = ROOT / "docs/reference/validation"
@@ -131,12 +131,15 @@ def test_a_ratio_of_one_surface_is_drawn_without_a_bar(kept):
 
 def test_the_pages_show_the_kept_comparisons_with_their_commits(monkeypatch):
     monkeypatch.chdir(ROOT)
-    known = kept_parts()["boundary-elements"]
-    shown = {}
-    for parts, data in page_parts():
-        shown |= parts
-        assert {known[name].commit for name in parts} == {data["git_commit"]}
-    assert shown == {name: part.text for name, part in known.items()}
+    known = stored("boundary-elements")
+    shown, numbers = {}, {}
+    for tables, quoted, data in page_parts():
+        shown |= tables
+        numbers |= {name: (number.value, number.error) for name, number in quoted.items()}
+        entries = [known.tables[name] for name in tables] + [known.numbers[name] for name in quoted]
+        assert {entry.commit for entry in entries} == {data["git_commit"]}
+    assert shown == {name: table.text for name, table in known.tables.items()}
+    assert numbers == {name: (number.value, number.error) for name, number in known.numbers.items()}
     assert shown["ratios"].count("\n") == 15
     assert shown["averages"].count("| 0 | 0.1 |") == 9
 

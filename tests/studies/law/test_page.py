@@ -7,18 +7,19 @@ import pytest
 
 from crackfront.analysis.finding import crossing, stated_breadths
 from crackfront.analysis.law import law_value, pinning_factor, shipped_law
-from studies.law.page import law_parts, limit_part
+from studies.law.page import law_numbers, law_parts, limit_part
 from studies.law.spheres import read_spheres
-from studies.pages import kept_parts
+from studies.numbers import stored
 
 
 def test_what_is_kept_for_the_pages_are_the_numbers_of_the_law(monkeypatch):
     monkeypatch.chdir(Path(__file__).parents[3])
-    spheres = [Path("docs/reference") / name for name in ("spheres.csv", "held-out.csv")]
+    paths = [Path("docs/reference") / name for name in ("spheres.csv", "held-out.csv")]
+    spheres, known = read_spheres(paths), stored("law")
     # Otherwise: python -m studies law numbers --keep
-    assert {name: one.text for name, one in kept_parts()["law"].items()} == law_parts(
-        read_spheres(spheres)
-    )
+    assert {name: table.text for name, table in known.tables.items()} == law_parts(spheres)
+    for name, number in law_numbers(spheres).items():
+        assert known.numbers[name].value == pytest.approx(number.value, rel=1e-9)
 
 
 def test_the_table_of_the_limit_holds_its_values_and_where_k_is_that_of_the_paper():

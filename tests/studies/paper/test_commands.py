@@ -10,7 +10,7 @@ import pytest
 from click.testing import CliRunner
 
 from studies.__main__ import STUDIES, main
-from studies.pages import kept_parts
+from studies.numbers import stored
 from studies.paper.figure import Check, figure
 from tests.studies.paper.made import CONFIGURATIONS
 
@@ -30,7 +30,7 @@ def test_commands_compute_draw_check_and_keep_a_figure(tmp_path, monkeypatch):
     assert "4 of 4 agree, 0 differ" in (output / "checks.md").read_text()
     monkeypatch.chdir(tmp_path)
     assert run("gallery", "--output", output).exit_code == 0
-    kept = kept_parts()["paper"]["main-1d"]
+    kept = stored("paper").tables["main-1d"]
     assert "![Main Fig. 1d" in kept.text
     assert Path("docs/experiments/figures/main-1d.png").stat().st_size > 1000
 

@@ -13,7 +13,7 @@ from crackfront.data.files import UnreadableFileError, read_attributes
 from crackfront.data.provenance import provenance
 from crackfront.data.records import read_record, write_record
 from crackfront.data.section import ConfigurationError
-from studies.pages import kept_parts
+from studies.numbers import stored
 from studies.paper.figure import (
     FIGURES,
     SCALES,
@@ -37,7 +37,7 @@ def test_figures_that_took_longer_than_a_minute_tell_about_how_long_they_take(mo
     monkeypatch.chdir(REFERENCES.parents[1])
     told = {
         name: re.search(r"Scale (\w+), (\d+) s of one core", part.text).groups()
-        for name, part in kept_parts()["paper"].items()
+        for name, part in stored("paper").tables.items()
         if name in FIGURES
     }
     slow = [
