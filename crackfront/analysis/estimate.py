@@ -14,6 +14,7 @@ from scipy.special import stdtrit
 from crackfront.core.arrays import Array
 
 Other = TypeVar("Other")
+FloatOrArray = TypeVar("FloatOrArray", float, Array)
 
 if TYPE_CHECKING:
     from typing_extensions import TypeVar as DefaultTypeVar
@@ -96,8 +97,8 @@ def with_interval(estimate: Estimate[Any]) -> str:
     return f"{value:.2f} ({low:.2f} to {high:.2f})"
 
 
-def normal_estimate(value: float, standard_error: float) -> Estimate[float]:
-    """Estimate with the interval of the normal distribution."""
+def normal_estimate(value: FloatOrArray, standard_error: FloatOrArray) -> Estimate[FloatOrArray]:
+    """Estimate with the interval of the normal distribution, of a number or of an array."""
     reach = REACH * standard_error
     return Estimate(value, standard_error, value - reach, value + reach)
 

@@ -17,8 +17,8 @@ from __future__ import annotations
 import functools
 import json
 import math
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, fields
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, fields, replace
 from importlib.resources import files
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -120,6 +120,18 @@ class Departure(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True)
+class PinningFactors:
+    """Factors k of straight fronts, arrays of one shape."""
+
+    factor: Estimate
+    """With the 95% intervals of statistical, numerical and model error together."""
+    statistical: Array
+    numerical: Array
+    model: Array
+    """The three standard errors of k."""
+
+
+@dataclass(frozen=True, slots=True)
 class PinningFactor:
     """Factor k of a straight front, with a sentence where it is not measured."""
 
@@ -141,12 +153,15 @@ def law_value(
     disorder: ArrayLike,
     size: ArrayLike,
     breadth: ArrayLike = TYPICAL_BREADTH,
-    exponent: float = FINITE_SIZE_EXPONENT,
+    exponent: ArrayLike = FINITE_SIZE_EXPONENT,
 ) -> Array:
-    """Values of k, for arrays of s, g (infinity for the infinite contact) and the breadth."""
+    """Values of k, for arrays of s, g (infinity for the infinite contact) and the breadth.
+
+    The coefficients and the exponent may be arrays too; all of them broadcast.
+    """
     k_0, *series, a, b, _, _, e, _ = coefficients
     s = np.asarray(disorder, dtype=float)
-    x = effective_size(coefficients, s, size, breadth) ** -exponent
+    x = effective_size(coefficients, s, size, breadth) ** -np.asarray(exponent)
     fall = 1 + a * s**b * (TYPICAL_BREADTH / np.asarray(breadth, dtype=float)) ** e
     return np.asarray(k_0 / fall / (1 + x * np.polyval(series[::-1], x)))
 
@@ -187,15 +202,14 @@ def spectral_breadth(kind: FieldKind, spectrum: Spectrum) -> float:
     return _NARROWEST + float(step * np.sum(variance) ** 2 / np.sum(variance**2))
 
 
-def _slope(
+def law_slope(
     coefficients: Sequence[float] | Array, disorder: ArrayLike, size: ArrayLike, breadth: ArrayLike
 ) -> Array:
-    """Change of k with ln g."""
+    """Changes of k with ln g, for arrays of s, g and the breadth."""
     g, step = np.asarray(size, dtype=float), 1e-4
-    one, other = (
-        law_value(coefficients, disorder, g * math.exp(sign * step), breadth) for sign in (1, -1)
-    )
-    return np.asarray((one - other) / (2 * step))
+    above = law_value(coefficients, disorder, g * math.exp(step), breadth)
+    below = law_value(coefficients, disorder, g * math.exp(-step), breadth)
+    return np.asarray((above - below) / (2 * step))
 
 
 def model_error(
@@ -208,7 +222,7 @@ def model_error(
     """Standard error of k by errors of ln k and of ln g."""
     factor, length = model
     value = law_value(coefficients, disorder, size, breadth)
-    return np.hypot(factor * value, length * _slope(coefficients, disorder, size, breadth))
+    return np.hypot(factor * value, length * law_slope(coefficients, disorder, size, breadth))
 
 
 @functools.cache
@@ -279,32 +293,67 @@ def pinning_factor(
                 f"breadth is {breadth:g}; it must be finite and at least {_NARROWEST:g}, that of a "
                 "single wavelength"
             )
-    law = shipped_law()
+    factors = pinning_factors(w_rms, size, breadth)
     place = w_rms, size, TYPICAL_BREADTH if breadth is None else breadth
-    value = float(law_value(law.coefficients, *place))
-    statistical = _statistical_error(
-        law, lambda coefficients, exponent: float(law_value(coefficients, *place, exponent))
-    )
-    errors = law.model_factor, law.model_length
-    model = float(model_error(law.coefficients, *place, errors))
-    if breadth is None:
-        ends = [float(law_value(law.coefficients, w_rms, size, end)) for end in law.breadth]
-        model = math.hypot(model, (max(ends) - min(ends)) / math.sqrt(12))
-    numerical = law.numerical * value
-    outside, warning = _outside(law, *place)
-    error = math.hypot(statistical, numerical, model, outside * value)
-    found = normal_estimate(value, error)
-    low, high = max(found.low, 0.0), found.high
-    if size < law.size[0]:
-        low = 0.0
+    sentences = _sentences_outside(shipped_law(), *place)
     return PinningFactor(
-        factor=Estimate(value, error, low, high),
-        statistical=statistical,
-        numerical=numerical,
-        model=model,
+        factor=factors.factor.each(float),
+        statistical=float(factors.statistical),
+        numerical=float(factors.numerical),
+        model=float(factors.model),
         negative_share=float(ndtr(-mean_w_loc(kind, w_rms**2 / 4) / w_rms)),
-        warning=warning,
+        warning="; ".join(sentences),
     )
+
+
+def pinning_factors(
+    w_rms: ArrayLike, size: ArrayLike, breadth: ArrayLike | None = None
+) -> PinningFactors:
+    """Factors k of straight fronts, by the measured law, for arrays that broadcast.
+
+    Parameters
+    ----------
+    w_rms : array
+        Rms of the local work of adhesion, between 0 and 2. (Units: w_int)
+    size : array
+        g, as of :func:`pinning_factor`.
+    breadth : array, optional
+        That of the spectrum. By default k is that of a typical one, and the intervals cover the
+        others.
+
+    Returns
+    -------
+    PinningFactors
+        k with its errors; NaN where a number is NaN.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> pinning_factors(np.array([0.2, 0.4]), float("inf")).factor.value.round(1).tolist()
+    [3.3, 2.9]
+    """
+    law = shipped_law()
+    s, g = np.asarray(w_rms, dtype=float), np.asarray(size, dtype=float)
+    beta = np.asarray(TYPICAL_BREADTH if breadth is None else breadth, dtype=float)
+    value = law_value(law.coefficients, s, g, beta)
+    model = model_error(law.coefficients, s, g, beta, (law.model_factor, law.model_length))
+    if breadth is None:
+        narrow, broad = (law_value(law.coefficients, s, g, end) for end in law.breadth)
+        # That of a uniform distribution between k of the narrowest and of the broadest spectrum.
+        model = np.hypot(model, (broad - narrow) / math.sqrt(12))
+    statistical = _statistical_error(
+        law,
+        lambda coefficients, exponent: law_value(
+            coefficients, s[..., None], g[..., None], beta[..., None], exponent
+        ),
+    )
+    numerical = law.numerical * value
+    outside = _error_outside(_octaves_outside(law, s, g, beta)) * value
+    error = np.sqrt(statistical**2 + numerical**2 + model**2 + outside**2)
+    factor = normal_estimate(value, error)
+    # Hysteresis begins at the smallest size of the law.
+    low = np.where(g < law.size[0], 0.0, np.maximum(factor.low, 0.0))
+    return PinningFactors(replace(factor, low=low), statistical, numerical, model)
 
 
 def mean_w_loc(kind: FieldKind, elastic_energy: float) -> float:
@@ -312,79 +361,107 @@ def mean_w_loc(kind: FieldKind, elastic_energy: float) -> float:
     return 1 - elastic_energy if kind == "roughness" else 1.0
 
 
-def infinite_ratio(w_rms: float, size: float, breadth: float = TYPICAL_BREADTH) -> Estimate[float]:
-    """Ratio of k in the infinite contact to k at a size, by the law; it extrapolates measured k.
+def infinite_ratio(
+    w_rms: ArrayLike, size: ArrayLike, breadth: ArrayLike = TYPICAL_BREADTH
+) -> Estimate:
+    """Ratios of k in the infinite contact to k at a size, by the law; they extrapolate measured k.
 
-    Arguments are as of :func:`pinning_factor`. Below the smallest size of the law it is NaN.
+    Arguments are as of :func:`pinning_factors`. Below the smallest size of the law it is NaN.
 
     Examples
     --------
     >>> ratio = infinite_ratio(0.2, 10.0)
-    >>> 1.0 < ratio.low < ratio.value < ratio.high < 1.3
+    >>> bool(1.0 < ratio.low < ratio.value < ratio.high < 1.3)
     True
     """
     law = shipped_law()
-    if not size >= law.size[0]:
-        return Estimate(*(math.nan,) * 4)
+    s, g, beta = (np.asarray(number, dtype=float) for number in (w_rms, size, breadth))
+    finite = law_value(law.coefficients, s, g, beta)
+    value = law_value(law.coefficients, s, math.inf, beta) / finite
 
-    def ratio(
-        coefficients: Sequence[float] | Array, exponent: float = FINITE_SIZE_EXPONENT
-    ) -> float:
-        sizes = np.array([math.inf, size])
-        infinite, finite = law_value(coefficients, w_rms, sizes, breadth, exponent)
-        return float(infinite / finite)
+    def ratio(coefficients: Array, exponent: Array) -> Array:
+        disorder, broadness = s[..., None], beta[..., None]
+        infinite = law_value(coefficients, disorder, math.inf, broadness, exponent)
+        return infinite / law_value(coefficients, disorder, g[..., None], broadness, exponent)
 
-    value = ratio(law.coefficients)
-    finite = float(law_value(law.coefficients, w_rms, size, breadth))
-    slope = float(_slope(law.coefficients, w_rms, size, breadth)) / finite
-    error = math.hypot(_statistical_error(law, ratio), law.model_length * slope * value)
-    return normal_estimate(value, error)
+    slope = law_slope(law.coefficients, s, g, beta) / finite
+    error = np.hypot(_statistical_error(law, ratio), law.model_length * slope * value)
+    return normal_estimate(value, error).only(g >= law.size[0])
 
 
-def _statistical_error(law: Law, function: Callable[[Array, float], float]) -> float:
-    """Standard error of a function of the coefficients and the exponent by their covariance."""
+def _statistical_error(law: Law, function: Callable[[Array, Array], Array]) -> Array:
+    """Standard errors of a function of the coefficients and the exponent by their covariance.
+
+    The last axis of its values is that of the numbers in its arguments, one for each trial.
+    """
     place = np.array([*law.coefficients, FINITE_SIZE_EXPONENT])
     steps = 1e-5 * np.maximum(np.abs(place), 1e-3)
-
-    def at(values: Array) -> float:
-        return function(values[:-1], float(values[-1]))
-
-    gradient = np.array(
-        [
-            (at(place + shift) - at(place)) / step
-            for shift, step in zip(np.diag(steps), steps, strict=True)
-        ]
-    )
-    return math.sqrt(float(gradient @ np.array(law.covariance) @ gradient))
+    # One trial as fitted, then one for every coefficient with this one shifted.
+    trials = place[:, None] + np.diag(steps, k=1)[:-1]
+    values = function(trials[:-1], trials[-1])
+    gradient = (values[..., 1:] - values[..., :1]) / steps
+    variance = np.sum((gradient @ np.array(law.covariance)) * gradient, axis=-1)
+    return np.asarray(np.sqrt(variance))
 
 
-def _outside(law: Law, w_rms: float, size: float, breadth: float) -> tuple[float, str]:
-    """Additional relative error outside of the measured ranges, and a sentence for each of them.
+class _Octaves(NamedTuple):
+    """How many octaves numbers lie outside of the measured ranges, arrays; zero inside.
 
     Weak disorder and large sizes are safe: the law has its limits there.
     """
-    _, strongest = law.disorder
-    smallest, _ = law.size
+
+    strong: Array
+    """By how much the disorder is above the strongest."""
+    small: Array
+    """By how much the size is below the smallest."""
+    broad: Array
+    narrow: Array
+    """By how much the spectrum is broader, or narrower, than any; zero if it is little."""
+
+
+def _octaves_outside(law: Law, w_rms: ArrayLike, size: ArrayLike, breadth: ArrayLike) -> _Octaves:
+    """How far numbers lie outside of the measured ranges."""
     narrowest, broadest = law.breadth
+
+    def octaves(ratio: ArrayLike, allowed: float = 1.0) -> Array:
+        return np.log2(np.where(np.asarray(ratio) > allowed, ratio, 1.0))
+
+    return _Octaves(
+        strong=octaves(np.asarray(w_rms) / law.disorder[1]),
+        small=octaves(law.size[0] / np.asarray(size)),
+        broad=octaves(np.asarray(breadth) / broadest, _BROADER),
+        narrow=octaves(narrowest / np.asarray(breadth), _BROADER),
+    )
+
+
+def _error_outside(octaves: _Octaves) -> Array:
+    """Additional relative errors outside of the measured ranges."""
+    strong, broad, narrow = 0.25 * octaves.strong, 0.1 * octaves.broad, 0.1 * octaves.narrow
+    small = np.where(octaves.small > 0, 0.5, 0.0)
+    return np.asarray(np.sqrt(strong**2 + small**2 + broad**2 + narrow**2))
+
+
+def _sentences_outside(law: Law, w_rms: float, size: float, breadth: float) -> Iterator[str]:
+    """A sentence for each number outside of the measured ranges."""
+    octaves = _octaves_outside(law, w_rms, size, breadth)
     extrapolated = ": k is extrapolated and its interval widened"
-    found = []
-    if w_rms > strongest:
-        sentence = f"w_rms {w_rms:.3g} w_int is above the strongest disorder that was measured "
-        error = 0.25 * math.log2(w_rms / strongest)
-        found.append((error, f"{sentence}({strongest:.3g}){extrapolated}"))
-    if size < smallest:
-        sentence = (
-            f"size g {size:.3g} is below the smallest of the law ({smallest:.3g}), where "
+    if octaves.strong > 0:
+        yield (
+            f"w_rms {w_rms:.3g} w_int is above the strongest disorder that was measured "
+            f"({law.disorder[1]:.3g}){extrapolated}"
+        )
+    if octaves.small > 0:
+        yield (
+            f"size g {size:.3g} is below the smallest of the law ({law.size[0]:.3g}), where "
             "hysteresis begins: the interval of k reaches down to zero"
         )
-        found.append((0.5, sentence))
-    if breadth > _BROADER * broadest:
-        sentence = f"breadth {breadth:.3g} of the spectrum is above the largest that was measured "
-        error = 0.1 * math.log2(breadth / broadest)
-        found.append((error, f"{sentence}({broadest:.3g}){extrapolated}"))
-    if breadth * _BROADER < narrowest:
-        sentence = f"breadth {breadth:.3g} of the spectrum is below the smallest that was measured "
-        error = 0.1 * math.log2(narrowest / breadth)
-        found.append((error, f"{sentence}({narrowest:.3g}){extrapolated}"))
-    errors, sentences = [error for error, _ in found], [sentence for _, sentence in found]
-    return math.hypot(*errors), "; ".join(sentences)
+    if octaves.broad > 0:
+        yield (
+            f"breadth {breadth:.3g} of the spectrum is above the largest that was measured "
+            f"({law.breadth[1]:.3g}){extrapolated}"
+        )
+    if octaves.narrow > 0:
+        yield (
+            f"breadth {breadth:.3g} of the spectrum is below the smallest that was measured "
+            f"({law.breadth[0]:.3g}){extrapolated}"
+        )

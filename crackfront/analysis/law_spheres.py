@@ -2,24 +2,28 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 from collections.abc import Callable
 from dataclasses import astuple, dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
+import numpy as np
 import scipy
 
-from crackfront.analysis.estimate import Estimate, normal_estimate
+from crackfront.analysis.estimate import Estimate, FloatOrArray, normal_estimate
 from crackfront.analysis.law import (
     PinningFactor,
     law_value,
     mean_w_loc,
     pinning_factor,
+    pinning_factors,
     shipped_law,
     spectral_breadth,
 )
 from crackfront.core import jkr
 from crackfront.core.adhesion import FieldKind, larkin_length
+from crackfront.core.arrays import Array
 from crackfront.data.bounds import LENGTH, refuse_outside
 
 if TYPE_CHECKING:
@@ -73,6 +77,38 @@ def sphere_factors(
     >>> 2.0 < found.both.value < 2.3
     True
     """
+    spring = _spring_of_a_sphere(elastic_energy, contact_radius)
+    held = held_factors(kind, spectrum, elastic_energy, spring)
+    approach, retraction = _on_a_circle(held.approach), _on_a_circle(held.retraction)
+    both = _mean(approach.factor, retraction.factor)
+    return replace(held, approach=approach, retraction=retraction, both=both)
+
+
+def sphere_estimates(
+    kind: FieldKind, spectrum: Spectrum, elastic_energy: Array, contact_radius: Array
+) -> tuple[Estimate, Array]:
+    """Mean factors k of both branches and sizes g, of spheres on surfaces of one shape.
+
+    Arguments are as of :func:`sphere_factors`, e_el and radius of shape (n,), as are the results.
+    They are NaN where it raises a ValueError, as of a contact so close to pull-off that nothing
+    holds its edge.
+    """
+    breadth = spectral_breadth(kind, spectrum)
+    sizes = np.full((3, elastic_energy.size), np.nan)
+    for place, (energy, radius) in enumerate(zip(elastic_energy, contact_radius, strict=True)):
+        with contextlib.suppress(ValueError):
+            spring = _spring_of_a_sphere(float(energy), float(radius))
+            held = _held_sizes(kind, spectrum, float(energy), spring, breadth)
+            sizes[:, place] = held.approach, held.retraction, held.smooth
+    w_rms = 2 * np.sqrt(np.where(np.isfinite(sizes[0]), elastic_energy, np.nan))
+    approach, retraction = (
+        _widened_on_a_circle(pinning_factors(w_rms, size, breadth).factor) for size in sizes[:2]
+    )
+    return _mean(approach, retraction), sizes[2]
+
+
+def _spring_of_a_sphere(elastic_energy: float, contact_radius: float) -> Callable[[float], float]:
+    """Length of the spring that holds the edge of a sphere, by the work of adhesion."""
     if not 0 < elastic_energy < 1:
         raise ValueError(
             f"energy of full conformity is {elastic_energy:.4g} w_int; the factors k need one "
@@ -85,10 +121,7 @@ def sphere_factors(
     def spring(work_of_adhesion: float) -> float:
         return jkr.spring(contact_radius, work_of_adhesion)
 
-    found = held_factors(kind, spectrum, elastic_energy, spring)
-    approach, retraction = _on_a_circle(found.approach), _on_a_circle(found.retraction)
-    both = _mean(approach.factor, retraction.factor)
-    return replace(found, approach=approach, retraction=retraction, both=both)
+    return spring
 
 
 def held_factors(
@@ -102,34 +135,69 @@ def held_factors(
     The function `spring` returns this length L_kappa (Units: that of the spectrum), and raises a
     ValueError where nothing holds the front. The errors are those of a straight front.
     """
+    breadth = spectral_breadth(kind, spectrum)
+    held = _held_sizes(kind, spectrum, elastic_energy, spring, breadth)
+    w_rms = 2 * math.sqrt(elastic_energy)
+    approach, retraction = (
+        pinning_factor(w_rms, size, kind, breadth) for size in (held.approach, held.retraction)
+    )
+    both = _mean(approach.factor, retraction.factor)
+    return SphereFactors(approach, retraction, both, held.spring, held.larkin_length, held.smooth)
+
+
+def _mean(
+    approach: Estimate[FloatOrArray], retraction: Estimate[FloatOrArray]
+) -> Estimate[FloatOrArray]:
+    """Mean of the factors of both branches, whose errors are the same."""
+    branches = zip(astuple(approach), astuple(retraction), strict=True)
+    return Estimate(*((below + above) / 2 for below, above in branches))
+
+
+def _on_a_circle(straight: PinningFactor) -> PinningFactor:
+    """Factor of a straight front with the additional model error of a circular one."""
+    factor = _widened_on_a_circle(straight.factor.each(np.asarray)).each(float)
+    model = math.hypot(straight.model, _CIRCLE * factor.value)
+    return replace(straight, factor=factor, model=model)
+
+
+def _widened_on_a_circle(factor: Estimate) -> Estimate:
+    """Factors of straight fronts with the additional model error of circular ones."""
+    error = np.hypot(factor.standard_error, _CIRCLE * factor.value)
+    wider = normal_estimate(factor.value, error)
+    # An interval that reaches down to zero still does.
+    low = np.where(factor.low == 0, 0.0, np.maximum(wider.low, 0.0))
+    return replace(wider, low=low)
+
+
+class _HeldSizes(NamedTuple):
+    """Sizes g of a front that springs hold, and the lengths of which they are the ratio."""
+
+    approach: float
+    retraction: float
+    smooth: float
+    """That without disorder."""
+    spring: float
+    larkin_length: float
+    """L_kappa of the smooth contact, and the Larkin length."""
+
+
+def _held_sizes(
+    kind: FieldKind,
+    spectrum: Spectrum,
+    elastic_energy: float,
+    spring: Callable[[float], float],
+    breadth: float,
+) -> _HeldSizes:
+    """Sizes g of both branches, as of :func:`held_factors`; ValueError where nothing holds one."""
     w_rms = 2 * math.sqrt(elastic_energy)
     larkin = larkin_length(kind, spectrum, w_rms)
     mean = mean_w_loc(kind, elastic_energy)
-    breadth = spectral_breadth(kind, spectrum)
     # Contact is lost in retraction at the larger radius, which a refusal names.
     retraction, approach = (
-        pinning_factor(
-            w_rms, _branch_size(w_rms, larkin, mean, sign, spring, breadth), kind, breadth
-        )
-        for sign in (1, -1)
+        _branch_size(w_rms, larkin, mean, sign, spring, breadth) for sign in (1, -1)
     )
-    both, smooth = _mean(approach.factor, retraction.factor), spring(mean)
-    return SphereFactors(approach, retraction, both, smooth, larkin, smooth / larkin)
-
-
-def _mean(one: Estimate[float], other: Estimate[float]) -> Estimate[float]:
-    """Mean of the factors of both branches, whose errors are the same."""
-    branches = zip(astuple(one), astuple(other), strict=True)
-    return Estimate(*((left + right) / 2 for left, right in branches))
-
-
-def _on_a_circle(found: PinningFactor) -> PinningFactor:
-    """Factor of a straight front with the additional model error of a circular one."""
-    value, low = found.factor.value, found.factor.low
-    error = math.hypot(found.factor.standard_error, _CIRCLE * value)
-    wider = normal_estimate(value, error)
-    factor = replace(wider, low=max(wider.low, 0.0) if low > 0 else 0.0)
-    return replace(found, factor=factor, model=math.hypot(found.model, _CIRCLE * value))
+    smooth = spring(mean)
+    return _HeldSizes(approach, retraction, smooth / larkin, smooth, larkin)
 
 
 def _branch_size(

@@ -11,19 +11,17 @@ from crackfront.analysis.estimate import REACH, Estimate, mean_estimate
 from crackfront.analysis.law import (
     WEAKEST,
     infinite_ratio,
-    pinning_factor,
+    pinning_factors,
     shipped_law,
     spectral_breadth,
 )
-from crackfront.analysis.law_spheres import sphere_factors
+from crackfront.analysis.law_spheres import sphere_estimates
 from crackfront.analysis.table import SweepTable
 from crackfront.core.adhesion import FieldKind, larkin_length
 from crackfront.core.arrays import Array
 
 LARGE = 1.0
 """Size g above which measured k are compared with the law."""
-
-_UNKNOWN = Estimate(*(math.nan,) * 4)
 
 _CURVE = 40
 """Points of the curve of a spectrum."""
@@ -53,32 +51,30 @@ class SweepLaw:
         radius = mean_estimate(np.where(table.finite, table.contact_radius, np.nan))[0].value
         return np.where(np.isfinite(table.spring), table.spring, radius)
 
-    def factor(self, index: int, energy: float, support: float) -> tuple[Estimate[float], float]:
-        """Factor k of a spectrum at an e_el and a spring or contact radius, and g; else NaN."""
-        if not (0 < energy < 1 and 0 < support < math.inf):
-            return _UNKNOWN, math.nan
+    def factors(self, index: int, energies: Array, supports: Array) -> tuple[Estimate, Array]:
+        """Factors k of a spectrum and sizes g at arrays of e_el and of springs or contact radii.
+
+        They are NaN where a number is out of range, or nothing holds the edge of a sphere.
+        """
         spectrum = self.table.shape_of(index)
-        if self.table.on_springs:
-            w_rms = 2 * math.sqrt(energy)
-            size = support / larkin_length(self.kind, spectrum, w_rms)
-            disorder = WEAKEST if self.uncorrelated else w_rms
-            breadth = spectral_breadth(self.kind, spectrum)
-            return pinning_factor(disorder, size, self.kind, breadth).factor, size
-        try:
-            found = sphere_factors(self.kind, spectrum, energy, support)
-        except ValueError:
-            # So close to pull-off that nothing holds the edge.
-            return _UNKNOWN, math.nan
-        return found.both, found.size
+        if not self.table.on_springs:
+            return sphere_estimates(self.kind, spectrum, energies, supports)
+        known = (energies > 0) & (energies < 1) & (supports > 0) & (supports < math.inf)
+        w_rms = 2 * np.sqrt(np.where(known, energies, np.nan))
+        sizes = supports * w_rms**2 / larkin_length(self.kind, spectrum, 1.0)
+        breadth = spectral_breadth(self.kind, spectrum)
+        return pinning_factors(self._disorder(w_rms), sizes, breadth).factor, sizes
+
+    def _disorder(self, w_rms: Array) -> Array:
+        """Disorder s of the law at some rms of w_loc."""
+        return np.full(w_rms.shape, WEAKEST) if self.uncorrelated else w_rms
 
     def cells(self) -> tuple[Estimate, Array]:
         """Factors k and sizes g at every spectrum and amplitude, (n_spectrum, n_amplitude)."""
-        energies, supports = self.energy, self.support_lengths
-        values, sizes = np.empty((4, *energies.shape)), np.empty(energies.shape)
-        for cell in np.ndindex(energies.shape):
-            found, sizes[cell] = self.factor(cell[0], float(energies[cell]), float(supports[cell]))
-            values[:, cell[0], cell[1]] = astuple(found)
-        return Estimate(*values), sizes
+        rows = zip(self.energy, self.support_lengths, strict=True)
+        spectra = [self.factors(index, *row) for index, row in enumerate(rows)]
+        factors = np.stack([astuple(factor) for factor, _ in spectra], axis=1)
+        return Estimate(*factors), np.stack([sizes for _, sizes in spectra])
 
     def curve(self, index: int) -> tuple[Array, Array]:
         """Values of e_el and factors k of a spectrum between its amplitudes; empty without two.
@@ -93,12 +89,9 @@ class SweepLaw:
         order = np.argsort(energies[known])
         places, lengths = np.log(energies[known][order]), np.log(supports[known][order])
         between = np.linspace(places[0], places[-1], _CURVE)
-        factors, least = np.full(_CURVE, np.nan), shipped_law().size[0]
-        for number, support in enumerate(np.interp(between, places, lengths)):
-            found, size = self.factor(index, math.exp(between[number]), math.exp(support))
-            if size >= least:
-                factors[number] = found.value
-        return np.exp(between), factors
+        curve = np.exp(between)
+        factor, sizes = self.factors(index, curve, np.exp(np.interp(between, places, lengths)))
+        return curve, np.where(sizes >= shipped_law().size[0], factor.value, np.nan)
 
     def infinite(self, factor: Estimate, size: Array) -> Estimate:
         """Measured k of every cell extrapolated to the infinite contact.
@@ -106,17 +99,13 @@ class SweepLaw:
         The gain is the ratio of the law's k in the infinite contact to that at the size. The
         half-widths of the intervals of the measured k and of the gain are added in quadrature.
         """
-        energies, values = self.energy, np.full((4, *size.shape), np.nan)
-        for cell in np.ndindex(size.shape):
-            w_rms = WEAKEST if self.uncorrelated else 2 * math.sqrt(energies[cell])
-            breadth = spectral_breadth(self.kind, self.table.shape_of(cell[0]))
-            gain = infinite_ratio(w_rms, float(size[cell]), breadth)
-            measured, own_error = float(factor.value[cell]), float(factor.standard_error[cell])
-            value, relative = measured * gain.value, measured * gain.standard_error
-            error = math.hypot(own_error * gain.value, relative)
-            reach = math.hypot((float(factor.high[cell]) - measured) * gain.value, REACH * relative)
-            values[:, cell[0], cell[1]] = value, error, value - reach, value + reach
-        return Estimate(*values)
+        shapes = map(self.table.shape_of, range(self.table.spectrum.size))
+        breadth = np.array([spectral_breadth(self.kind, shape) for shape in shapes])[:, None]
+        gain = infinite_ratio(self._disorder(2 * np.sqrt(self.energy)), size, breadth)
+        value, relative = factor.value * gain.value, factor.value * gain.standard_error
+        error = np.hypot(factor.standard_error * gain.value, relative)
+        reach = np.hypot((factor.high - factor.value) * gain.value, REACH * relative)
+        return Estimate(value, error, value - reach, value + reach)
 
 
 def law_departure(factor: Estimate, law: Estimate, size: Array) -> tuple[int, float]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import functools
 import math
 import os
 import resource
@@ -114,12 +115,20 @@ def refuse_beyond_time(what: str, seconds: float, remedy: str) -> None:
 
 def memory_at_hand() -> float:
     """Memory that this process may have, of the machine, its group and its own limit, in bytes."""
-    limits = [float(os.sysconf("SC_PAGE_SIZE")) * os.sysconf("SC_PHYS_PAGES"), *_group_limits()]
+    shared = _machine_and_group_limit()
     own, _ = resource.getrlimit(resource.RLIMIT_AS)
-    if own != resource.RLIM_INFINITY:
-        pages = int(Path("/proc/self/statm").read_text().split()[0])
-        limits.append(float(own - pages * resource.getpagesize()))
-    return max(min(limits), 0.0)
+    if own == resource.RLIM_INFINITY:
+        return shared
+    pages = int(Path("/proc/self/statm").read_text().split()[0])
+    return max(min(shared, float(own - pages * resource.getpagesize())), 0.0)
+
+
+# A process may lower its own limit, but those of its machine and job are set before it starts.
+@functools.cache
+def _machine_and_group_limit() -> float:
+    """Memory of the machine, or of the control groups of this process where that is less."""
+    physical = float(os.sysconf("SC_PAGE_SIZE")) * os.sysconf("SC_PHYS_PAGES")
+    return min([physical, *_group_limits()])
 
 
 def _group_limits() -> Iterator[float]:

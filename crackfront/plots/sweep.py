@@ -8,7 +8,7 @@ fronts of one spectrum share a colour, their springs differ by the marker.
 from __future__ import annotations
 
 import math
-from dataclasses import astuple, replace
+from dataclasses import replace
 
 import numpy as np
 from matplotlib import colormaps
@@ -22,7 +22,7 @@ from crackfront.analysis.finding import PAPER_FACTOR, PERTURBATION_FACTOR
 from crackfront.analysis.law import (
     WEAKEST,
     law_value,
-    pinning_factor,
+    pinning_factors,
     shipped_law,
     spectral_breadth,
 )
@@ -319,12 +319,13 @@ def draw_infinite_law(axes: Axes) -> None:
     """Draw k of the infinite contact against disorder with its 95% band, and the theories."""
     strongest = shipped_law().disorder[1]
     disorder = np.linspace(WEAKEST, strongest, 100)
-    known = [astuple(pinning_factor(float(s), math.inf).factor) for s in disorder]
-    value, _, low, high = np.transpose(known)
+    factor, label = pinning_factors(disorder, math.inf).factor, "95% interval, all breadths"
     axes.fill_between(
-        disorder, low, high, color="0.85", lw=0, label="95% interval, all breadths", zorder=0.5
+        disorder, factor.low, factor.high, color="0.85", lw=0, label=label, zorder=0.5
     )
-    axes.plot(disorder, value, color=BLACK, linewidth=1.0, label=r"law, $g\to\infty$", zorder=2)
+    axes.plot(
+        disorder, factor.value, color=BLACK, linewidth=1.0, label=r"law, $g\to\infty$", zorder=2
+    )
     ends = strongest * np.array([-0.05, 1.10])
     draw_theory(axes, ends)
     axes.set(xlim=ends, ylabel=r"$k$ of the infinite contact")

@@ -166,14 +166,8 @@ def _draw_collapse(axes: Axes, drawn: Sequence[tuple[LawPoints, dict[str, Any]]]
 def _draw_extrapolated(axes: Axes, points: LawPoints, style: dict[str, Any]) -> None:
     """Draw points of large g, times what the law gains from there to the infinite contact."""
     large = points.size > _LARGE
-    gains = [
-        infinite_ratio(max(float(s), WEAKEST), float(g), float(breadth))
-        for s, g, breadth in zip(
-            points.disorder[large], points.size[large], points.breadth[large], strict=True
-        )
-    ]
-    gain = np.array([one.value for one in gains])
-    error = np.array([one.standard_error for one in gains]) * points.factor[large]
-    reach = REACH * np.hypot(gain * points.error[large], error)
+    disorder, factor = points.disorder[large], points.factor[large]
+    gain = infinite_ratio(np.maximum(disorder, WEAKEST), points.size[large], points.breadth[large])
+    error = np.hypot(gain.value * points.error[large], gain.standard_error * factor)
     unnamed = style | {"label": None}
-    axes.errorbar(points.disorder[large], points.factor[large] * gain, yerr=reach, **unnamed)
+    axes.errorbar(disorder, factor * gain.value, yerr=REACH * error, **unnamed)

@@ -16,6 +16,7 @@ from crackfront.analysis.law import (
     TYPICAL_BREADTH,
     Departure,
     Law,
+    law_slope,
     law_value,
     model_error,
 )
@@ -116,13 +117,13 @@ def _likeliest_model(
     coefficients: Array, places: tuple[Array, Array, Array], k: Array, error: Array
 ) -> tuple[float, float]:
     """Model errors that make the residuals likeliest."""
-    s, g, breadth = places
-    residuals = law_value(coefficients, s, g, breadth) - k
+    value, slope = law_value(coefficients, *places), law_slope(coefficients, *places)
+    residuals = value - k
     grid = np.linspace(0.002, 0.15, 75)
-    best = (math.inf, 0.0, 0.0)
-    for factor in grid:
-        for length in grid:
-            variance = error**2 + model_error(coefficients, s, g, breadth, (factor, length)) ** 2
-            cost = float(np.sum(np.log(variance) + residuals**2 / variance))
-            best = min(best, (cost, float(factor), float(length)))
-    return best[1], best[2]
+    by_length = error**2 + (grid[:, None] * slope) ** 2
+    costs = np.empty((grid.size, grid.size))
+    for row, factor in enumerate(grid):
+        variance = by_length + (factor * value) ** 2
+        costs[row] = np.sum(np.log(variance) + residuals**2 / variance, axis=-1)
+    best_factor, best_length = np.unravel_index(np.argmin(costs), costs.shape)
+    return float(grid[best_factor]), float(grid[best_length])

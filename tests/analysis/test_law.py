@@ -1,6 +1,7 @@
 """The law of k: its limits, its lengths, and what it refuses."""
 
 import re
+from dataclasses import astuple
 from itertools import pairwise
 
 import numpy as np
@@ -14,10 +15,11 @@ from crackfront.analysis.law import (
     infinite_ratio,
     law_value,
     pinning_factor,
+    pinning_factors,
     shipped_law,
     spectral_breadth,
 )
-from crackfront.analysis.law_spheres import sphere_factors
+from crackfront.analysis.law_spheres import sphere_estimates, sphere_factors
 from crackfront.core import jkr
 from crackfront.core.adhesion import force_correlation_length, larkin_length
 from crackfront.core.spectrum import SelfAffineSpectrum, TabulatedSpectrum
@@ -120,6 +122,28 @@ def test_every_number_outside_of_what_was_measured_has_its_sentence(law):
     assert all_three.warning.startswith(one.warning)
     relative = [found.factor.standard_error / found.factor.value for found in (one, all_three)]
     assert relative[1] > relative[0]
+
+
+@pytest.mark.parametrize("breadth", [None, 0.9, 10.0])
+def test_k_of_an_array_of_fronts_is_that_of_each_front(breadth):
+    w_rms, size = np.array([WEAKEST, 0.3, 1.9])[:, None], np.array([0.1, 5.0, np.inf])
+    fronts = pinning_factors(w_rms, size, breadth)
+    for place in np.ndindex(3, 3):
+        front = pinning_factor(w_rms[place[0], 0], size[place[1]], breadth=breadth)
+        assert astuple(fronts.factor.at(place)) == pytest.approx(astuple(front.factor), rel=1e-6)
+        for name in ("statistical", "numerical", "model"):
+            error = getattr(fronts, name)[place]
+            assert error == pytest.approx(getattr(front, name), rel=1e-6)
+
+
+def test_k_of_an_array_of_spheres_is_that_of_each_sphere_and_nan_where_there_is_none():
+    energy, radius = np.array([0.05, 0.2, 0.05, np.nan]), np.array([1.9, 5.0, 0.5, 1.9])
+    factor, size = sphere_estimates("roughness", FLAT, energy, radius)
+    for place in (0, 1):
+        sphere = sphere_factors("roughness", FLAT, energy[place], radius[place])
+        assert astuple(factor.at(place)) == pytest.approx(astuple(sphere.both), rel=1e-6)
+        assert size[place] == pytest.approx(sphere.size)
+    assert np.all(np.isnan([*astuple(factor.at(slice(2, 4))), size[2:]]))
 
 
 def test_a_measured_k_is_extrapolated_by_the_ratio_of_the_law(law):

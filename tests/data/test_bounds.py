@@ -53,11 +53,15 @@ def test_what_another_machine_may_hold_is_refused_only_where_it_will_be_run(monk
         refuse_beyond_memory("tiles", 1e12, "no")
 
 
-def test_a_limit_of_the_process_is_what_is_at_hand():
+def test_a_limit_that_the_process_sets_itself_is_what_is_at_hand_from_then_on():
     code = (
         "import resource; from crackfront.data.bounds import memory_at_hand\n"
+        "assert memory_at_hand() > 1e9\n"
         "resource.setrlimit(resource.RLIMIT_AS, (10**9, 10**9))\n"
-        "assert 0 < memory_at_hand() < 1e9"
+        "free = memory_at_hand()\n"
+        "assert 0 < free < 1e9\n"
+        "taken = bytearray(10**8)\n"
+        "assert memory_at_hand() < free - 9e7"
     )
     subprocess.run([sys.executable, "-c", code], check=True, timeout=600)
 
