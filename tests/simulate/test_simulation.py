@@ -45,6 +45,8 @@ SIMULATION = Simulation(
 
 CYCLE = FullCycle(1.0, 0.1)
 
+LINE = LineSchedule(3.0, 60.0, 60.0, 5.0, 0.5, uncorrelated=True)
+
 
 def test_the_tile_resolves_the_cutoff_and_holds_the_roll_off():
     spectrum = SelfAffineSpectrum(short_cutoff=0.1, roll_off=0.7, hurst=0.5)
