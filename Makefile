@@ -49,7 +49,8 @@ DISPATCHED = from numpy._core._multiarray_umath import __cpu_dispatch__ as names
 NO_VECTORS = NPY_DISABLE_CPU_FEATURES="$$(.venv/bin/python -c '$(DISPATCHED)')" \
   OPENBLAS_CORETYPE=Nehalem OPENBLAS_NUM_THREADS=3 NUMBA_CPU_NAME=generic NUMBA_CPU_FEATURES=
 SNAKE    = $(IN_ENV) .venv/bin/python workflow/run.py --profile $(call quoted,$(PROFILE))
-REPAIR   = $(IN_ENV) .venv/bin/crackfront repair
+# Sets damaged files of a sweep aside, for the workflow to make again, and says so.
+CHECK    = $(IN_ENV) .venv/bin/crackfront plan
 # uv installs, or pip where uv cannot be had or where PIP_NO_INDEX says that only pip knows the files.
 FLAGS    = --no-deps --no-build-isolation --quiet
 PIP      = PIP_USE_PEP517=1 .venv/bin/python -m pip install $(FLAGS) --no-compile
@@ -73,7 +74,7 @@ ended    = echo "$$(date +%s) $(1)" >> .venv/.times
 
 all: env  ## Run the sweep SWEEP to its figure and fit; by default with quick straight fronts
 	@echo $(BEGAN) > .venv/.times; $(call ended,environment)
-	@$(REPAIR) $(call quoted,$(SWEEP)) $(if $(FRONTS),$(call quoted,$(FRONTS)))
+	@$(CHECK) $(call quoted,$(SWEEP)) > /dev/null
 	$(SNAKE) --config sweep=$(call quoted,$(SWEEP))
 	@$(call ended,sweep)
 	$(if $(FRONTS),$(SNAKE) --config sweep=$(call quoted,$(FRONTS)))
@@ -196,7 +197,6 @@ reproduce-fronts: env
 	$(MAKE) --no-print-directory law
 	$(MAKE) --no-print-directory figures SCALE=paper
 	$(MAKE) --no-print-directory validate VALIDATION=config/validation.yaml
-	@$(REPAIR) config/spheres.yaml
 	$(SNAKE) --config sweep=config/spheres.yaml
 
 reproduce-scans: env
@@ -208,7 +208,7 @@ reproduce-scans: env
 
 law: env  ## The law of k, from its straight fronts, into results/law (an hour of one core)
 	set -e; for name in $(FRONTS_OF_LAW); do \
-	  $(REPAIR) config/$$name.yaml; $(SNAKE) --config sweep=config/$$name.yaml; done
+	  $(SNAKE) --config sweep=config/$$name.yaml; done
 	$(IN_ENV) .venv/bin/python -m studies law fit $(FRONTS_OF_LAW:%=config/%.yaml)
 
 FRONTS_OF_LAW = line line-strong line-long line-long-strong line-chemical line-chemical-strong line-weak \
@@ -232,23 +232,19 @@ reproduce-boundary: env  ## For a release: the numbers and figures of large boun
 	$(IN_ENV) .venv/bin/python -m studies pages
 
 accuracy: env  ## Errors of all numerics of docs/experiments/numerics.md (45 minutes, two cores)
-	$(if $(wildcard results/accuracy),@$(REPAIR) results/accuracy)
 	$(SNAKE) accuracy
 	@echo "Results: results/accuracy/"
 
 validate: env  ## The model against boundary elements (6 minutes); VALIDATION=config/validation-512.yaml
-	$(if $(wildcard $(VALIDATED)),@$(REPAIR) $(VALIDATED))
 	$(SNAKE) --config validation=$(call quoted,$(VALIDATION)) -- validation
 	@echo "Results: $(VALIDATED)validation.md"
 
 figures: env  ## All figures of the paper; SCALE=quick (4 minutes) or SCALE=paper (25)
-	@$(REPAIR) $(wildcard results/figures) config/$(if $(filter paper,$(SCALE)),paper,default).yaml
 	$(SNAKE) --config scale=$(SCALE) -- figures
 	@echo "Results: results/figures/$(SCALE)/, checks in results/figures/checks.md"
 	@sed -n '3p; s/^- FAIL/FAIL/p' results/figures/checks.md
 
 report: env  ## Run what is missing of the sweep SWEEP; write one page of HTML: fit, figures, configuration
-	@$(REPAIR) $(call quoted,$(SWEEP))
 	$(SNAKE) --config sweep=$(call quoted,$(SWEEP))
 	$(SNAKE) --config sweep=$(call quoted,$(SWEEP)) --report $(RESULTS)report.html
 	@echo "Report: $(RESULTS)report.html"

@@ -2,9 +2,9 @@
 #
 #   snakemake --profile workflow/profiles/default --config sweep=config/test.yaml
 #
-# Every rule calls `crackfront` or `python -m studies`, which can be called by hand as well. Reading
-# this changes nothing in results/: `make` calls `crackfront repair` before, which takes back what is
-# damaged or missing. Configurations are parameters of rules, by what they mean: dates decide nothing.
+# Every rule calls `crackfront` or `python -m studies`, which can be called by hand as well. What a
+# stage was asked for is a small file in `requests/`; dates decide what runs again. Reading this
+# changes nothing in results/.
 # Other workflows use it as a module (docs/cluster.md).
 include: "workflow/rules/common.smk"
 
@@ -28,8 +28,9 @@ rule all:
         f"{RESULTS}/hysteresis.nc",
         multiext(f"{RESULTS}/fit", ".nc", ".json", ".md"),
         f"{RESULTS}/SHA256SUMS",
-        # A shard that was taken back is made again although the table is there.
+        # Listed, since Snakemake does not make a missing input of a file that is there.
         expand("{results}/shards/{shard}.nc", results=RESULTS, shard=SHARDS),
+        [*SHARD_REQUESTS.values(), TABLE_REQUEST, FIT_REQUEST],
 
 
 onstart:

@@ -37,7 +37,7 @@ class SweepRow(SteadyMeasures, RunMeasures):
     status: str = variable("how it ended: lost_contact or steady where it is complete", "1")
     status_sentence: str = variable("the same in words", "1")
     seed: int = variable("numpy.random.default_rng(seed) gives the surface's noise", "1")
-    curve: str = variable("file of the simulation in the folder curves", "1")
+    max_sweeps: int = variable("limit of sweeps of a load step", "1")
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,6 +58,9 @@ class SweepAxes:
     n_point: NDArray[np.int64] = variable("points along a side of the tile", "1", *_SHAPE)
     tolerance: Array = variable(
         "largest force along the motion that may be left", ADHESION, *_SHAPE
+    )
+    series: NDArray[np.str_] = variable(
+        "digest of the parameters that realisations share", "1", *_SHAPE
     )
     amplitude: Array = variable("requested e_el (chemical field: w_rms^2/4)", ADHESION, AMPLITUDE)
     w_rms_requested: Array = variable("requested rms, 2 sqrt(e_el w_int)", ADHESION, AMPLITUDE)

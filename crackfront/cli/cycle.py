@@ -31,7 +31,7 @@ from crackfront.cli.report import (
 )
 from crackfront.core.solver import DEFAULT_TOLERANCE
 from crackfront.data.bounds import DENSITY, NUMBER, SITES, Range, counted, regular_file
-from crackfront.sweep.checkpoints import CheckpointFile
+from crackfront.sweep.checkpoints import CheckpointTimer
 from crackfront.sweep.parallel import deferring_stops
 
 if TYPE_CHECKING:
@@ -265,7 +265,7 @@ class _States:
     def __init__(self, output: Path, key: str, geometry: Geometry) -> None:
         self.path = _checkpoint(output)
         self._key, self._geometry = key, geometry
-        self._file = CheckpointFile(self.path, _SECONDS_BETWEEN_CHECKPOINTS)
+        self._file = CheckpointTimer(self.path, _SECONDS_BETWEEN_CHECKPOINTS)
 
     def found(self) -> Checkpoint | None:
         """Checkpoint of an earlier run of the same cycle, if there is one."""

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import click
 
 from crackfront.cli.report import FILE, announce_cost, as_json, examples, with_progress
-from crackfront.cli.sweep import configuration_argument, output_option, run_missing
+from crackfront.cli.sweep import configuration_argument, output_option, warn
 
 if TYPE_CHECKING:
     from crackfront.analysis.result import SweepFit
@@ -27,7 +27,7 @@ def aggregate(configuration: Path, output: Path | None) -> None:
     """Collect the stored simulations of a sweep in hysteresis.nc."""
     from crackfront.sweep.library import opened, without_value
 
-    sweep, store, origin = opened(configuration, output)
+    sweep, store, origin = opened(configuration, output, warn)
     path = store.aggregate(
         sweep, origin, lambda shards: with_progress(shards, len(shards), "shards")
     )
@@ -37,7 +37,7 @@ def aggregate(configuration: Path, output: Path | None) -> None:
             f"{sentence}; failed_fraction of the configuration allows {sweep.failed_fraction:g}"
         )
     if failed:
-        click.echo(f"Warning: {sentence}", err=True)
+        warn(sentence)
     click.echo(f"hysteresis: {path}")
 
 
@@ -52,12 +52,17 @@ def aggregate(configuration: Path, output: Path | None) -> None:
 def fit(configuration: Path, output: Path | None, as_json: bool) -> None:
     """Fit k to hysteresis.nc; write fit.nc, fit.json and fit.md, and print the result."""
     from crackfront.analysis.report import fit_result
+    from crackfront.data.digests import forget_sums
     from crackfront.sweep.fit_files import write_fit
     from crackfront.sweep.library import opened
+    from crackfront.sweep.requests import fit_request
+    from crackfront.sweep.store import write_request
 
-    sweep, store, origin = opened(configuration, output)
+    sweep, store, origin = opened(configuration, output, warn)
     fitted = _fitted(sweep, store)
-    paths = write_fit(store.folder, fitted, sweep.table_fingerprint, origin)
+    forget_sums(store.folder)
+    write_request(store.folder, fit_request(sweep))
+    paths = write_fit(store.folder, fitted, fit_request(sweep).digest, origin)
     if as_json:
         click.echo(paths[1].read_text(encoding="utf-8"))
         return
@@ -73,24 +78,30 @@ def figures(configuration: Path, output: Path | None) -> None:
     from crackfront.plots.loop import simulation_figure
     from crackfront.plots.style import save_figure
     from crackfront.plots.sweep import factor_figure, hysteresis_figure
+    from crackfront.data.digests import forget_sums
+    from crackfront.data.files import UnreadableFileError
     from crackfront.simulate.costs import expected_cost
+    from crackfront.simulate.run import run_simulation
     from crackfront.sweep.library import opened
+    from crackfront.sweep.requests import fit_request
 
-    sweep, store, origin = opened(configuration, output)
+    sweep, store, _ = opened(configuration, output, warn)
     fitted = _fitted(sweep, store)
     simulation = _loop_example(sweep, fitted.table)
-    # Its file may have gone since the table was made.
-    missing = store.inventory([simulation]).missing
-    announce_cost(sum(expected_cost(one).seconds for one in missing))
-    run_missing(store, missing, origin)
-    result = store.result(simulation)
+    try:
+        result = store.result(sweep, simulation)
+    except UnreadableFileError:  # as in an archive without curves
+        announce_cost(expected_cost(simulation).seconds)
+        result = run_simulation(simulation)
+    forget_sums(store.folder)
+    request = fit_request(sweep).digest
     drawn = {
         "hysteresis": hysteresis_figure(fitted),
         "loop": simulation_figure(result),
         "factor": factor_figure(fitted),
     }
     for name, figure in drawn.items():
-        for path in save_figure(figure, store.folder / "figures" / name, sweep.fingerprint):
+        for path in save_figure(figure, store.folder / "figures" / name, request):
             click.echo(f"figure: {path}")
 
 
@@ -111,15 +122,17 @@ def summary(configuration: Path, output: Path | None) -> None:
     from crackfront.data.digests import forget_sums
     from crackfront.data.files import write_text
     from crackfront.plots.style import picture_subject
-    from crackfront.sweep.fit_files import fit_range
+    from crackfront.sweep.fit_files import fitted_request
     from crackfront.sweep.library import opened
+    from crackfront.sweep.requests import fit_request
     from crackfront.sweep.summary import summary_page
     from crackfront.sweep.table import read_statuses
 
-    sweep, store, origin = opened(configuration, output)
+    sweep, store, origin = opened(configuration, output, warn)
     about = {name: text for name, text in store.about(sweep).items() if name != "configuration"}
     kept = store.folder / "fit.nc"
-    if kept.is_file() and fit_range(kept) != (sweep.fit, sweep.table_fingerprint):
+    request = fit_request(sweep).digest
+    if kept.is_file() and fitted_request(kept) != request:
         raise ValueError(
             f"{kept} is the fit of another range or table than those of the configuration given, "
             "or of an older version; run crackfront fit with it, or the workflow"
@@ -130,7 +143,7 @@ def summary(configuration: Path, output: Path | None) -> None:
             f"{absent[0]} is not there; run crackfront figures with this configuration, or the "
             "workflow"
         )
-    if other := [path for path in pictures.values() if picture_subject(path) != sweep.fingerprint]:
+    if other := [path for path in pictures.values() if picture_subject(path) != request]:
         raise ValueError(
             f"{other[0]} was drawn with another configuration than the one given, or by an older "
             "version; run crackfront figures with this one, or the workflow"

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import contextlib
 import sys
 import time
-from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import closing
 from dataclasses import astuple, dataclass
@@ -34,12 +32,8 @@ if TYPE_CHECKING:
     from crackfront.simulate.costs import Cost
     from crackfront.simulate.simulation import Simulation
     from crackfront.sweep.expectation import Expectation
-    from crackfront.sweep.result_packs import Writer
-    from crackfront.sweep.store import Inventory, Store
+    from crackfront.sweep.store import Inventory, MissingSimulations, Store
     from crackfront.sweep.sweep import Shard, Sweep
-
-_MOST_PROCESSES = 16
-"""Processes that status names to a reader."""
 
 configuration_argument = click.argument("configuration", type=FILE)
 output_option = click.option(
@@ -62,18 +56,20 @@ def plan(configuration: Path, output: Path | None, block: int | None, as_json: b
     from crackfront.sweep.library import opened
     from crackfront.sweep.postprocessing import postprocessing_costs
 
-    sweep, store, _ = opened(configuration, output)
+    sweep, store, _ = opened(configuration, output, warn)
+    store.set_aside_damaged()
     shards, postprocessing = sweep.shards(block), postprocessing_costs(sweep)
     expected = expectations(sweep)
     progress = {item.name: store.progress(sweep, item) for item in sweep.spectra}
     missing = [one for found in progress.values() for one in found.missing]
+    n_missing = sum(found.n_missing for found in progress.values())
     content = {
         "results": store.folder,
         "spectra": [item.name for item in sweep.spectra],
         "elastic_energies": sweep.elastic_energies,
         "realisations": sweep.n_realisation,
         "simulations": sweep.n_simulation,
-        "missing": len(missing),
+        "missing": n_missing,
         "arithmetic": sorted(set().union(*(found.arithmetic for found in progress.values()))),
         "shards": [shard.name for shard in shards],
         "unit_of_lengths": "reduced" if sweep.scales is None else "m",
@@ -95,9 +91,9 @@ def _plan_lines(
     postprocessing: Mapping[str, Cost],
 ) -> Iterator[str]:
     """Tables of the spectra of a sweep and of what is left to run, and its sizes."""
-    from crackfront.sweep.store import NOTHING, mixture_sentence
+    from crackfront.sweep.store import Inventory, mixture_sentence
 
-    everything = sum(progress.values(), NOTHING)
+    everything = sum(progress.values(), Inventory())
     lateral, unit = (1.0, "") if sweep.scales is None else (sweep.scales.lateral, " (m)")
     spectra, left = [], []
     for item in sweep.spectra:
@@ -115,7 +111,7 @@ def _plan_lines(
                 ),
                 _span([size.n_angle for size in sizes]),
                 _span([size.n_point for size in sizes]),
-                f"{found.stored}/{found.stored + len(found.missing)}",
+                f"{found.stored}/{found.stored + found.n_missing}",
             )
         )
         left.append(_left(item.name, sum(shard.item is item for shard in shards), found.missing))
@@ -125,7 +121,7 @@ def _plan_lines(
         spectra,
     )
     yield "s is w_rms/w_int, g the size, and k what the law expects at the largest load"
-    yield from filter(None, (everything.stale_sentence(), mixture_sentence(everything.arithmetic)))
+    yield from filter(None, (*everything.sentences(), mixture_sentence(everything.arithmetic)))
     yield ""
     left.append(_left("all", len(shards), everything.missing))
     for name, cost in postprocessing.items():
@@ -142,14 +138,11 @@ def _plan_lines(
     yield f"results in {store.folder}/"
 
 
-def _costs(missing: Sequence[Simulation]) -> dict[str, float]:
+def _costs(missing: Sequence[MissingSimulations]) -> dict[str, float]:
     """What simulations are expected to cost, under the names that machines read."""
     from crackfront.simulate.costs import expected_cost
 
-    # All realisations cost the same.
-    alike = Counter((one.spectrum_name, one.elastic_energy) for one in missing)
-    examples = {(one.spectrum_name, one.elastic_energy): one for one in missing}
-    costs = [(expected_cost(examples[name]), count) for name, count in alike.items()]
+    costs = [(expected_cost(item.first), item.realisations.size) for item in missing]
     return {
         "core_seconds": sum(count * cost.seconds for cost, count in costs),
         "longest_seconds": max((cost.seconds for cost, _ in costs), default=0.0),
@@ -158,11 +151,12 @@ def _costs(missing: Sequence[Simulation]) -> dict[str, float]:
     }
 
 
-def _left(name: str, n_shard: int, missing: Sequence[Simulation]) -> tuple[str, ...]:
+def _left(name: str, n_shard: int, missing: Sequence[MissingSimulations]) -> tuple[str, ...]:
     """Row of what the missing simulations of a spectrum, or of all, are expected to cost."""
     core, longest, memory, disk = _costs(missing).values()
+    n_missing = sum(item.realisations.size for item in missing)
     return (
-        *(name, str(n_shard), str(len(missing)), f"{core / 3600:.3g}", f"{longest:.3g}"),
+        *(name, str(n_shard), str(n_missing), f"{core / 3600:.3g}", f"{longest:.3g}"),
         *(f"{memory / 1e6:.0f}", f"{disk / 1e6:.3g}"),
     )
 
@@ -239,48 +233,44 @@ def simulate(
             parallel.serve_tasks("crackfront.sweep.tasks")
         return
     # MPI has to begin before what reads a sweep is imported.
-    from crackfront.sweep.claims import claimed
     from crackfront.sweep.expectation import steady_part_warnings
-    from crackfront.sweep.library import opened
+    from crackfront.sweep.library import opened, write_source
 
-    sweep, store, origin = opened(configuration, output)
+    sweep, store, origin = opened(configuration, output, warn)
     items = sweep.spectra if spectrum is None else (sweep.named(spectrum),)
     chosen = range(sweep.n_realisation) if realisations is None else realisations
     shards = [sweep.named_shard(item, chosen) for item in items]
-    inventory = store.unfinished(sweep, shards)
-    missing = inventory.missing
-    if not parallel.is_launched():  # the process that started the ranks has printed it
-        stored, total = inventory.stored, inventory.stored + len(missing)
-        click.echo(f"{configuration}: {stored} of {total} simulations are stored")
-        for sentence in inventory.unreadable:
-            click.echo(f"Warning: {sentence}; it is computed anew", err=True)
-        click.echo(inventory.stale_sentence(), nl=bool(inventory.stale))
-    if missing and not parallel.under_mpi():
-        busy, costs = min(ranks, len(missing)), _costs(missing)
+    if not parallel.under_mpi():
+        inventory = store.unfinished(sweep, shards)
+        missing, n_missing = inventory.missing, inventory.n_missing
+        total = inventory.stored + n_missing
+        click.echo(f"{configuration}: {inventory.stored} of {total} simulations are stored")
+        for sentence in inventory.sentences():
+            click.echo(sentence)
+        busy, costs = min(ranks, n_missing), _costs(missing)
         refuse_beyond_memory(
             f"{counted(busy, 'rank')} of {in_bytes(costs['bytes_a_rank'])}",
             costs["bytes_a_rank"] * (busy if launcher is None else 1),
             "use fewer ranks, coarser numerics or a smaller tile",
         )
         announce_cost(costs["core_seconds"])
-        for sentence in steady_part_warnings(sweep):
-            click.echo(f"Warning: {sentence}", err=True)
+        for sentence in steady_part_warnings(sweep) if missing else ():
+            warn(sentence)
         if busy > 1:
             arguments = ["simulate", str(configuration), "--ranks", str(busy)]
             arguments += ["--output", str(store.folder), "--checkpoint", str(checkpoint)]
             arguments += [] if spectrum is None else ["--spectrum", spectrum]
             arguments += ["--realisations", f"{chosen.start}-{chosen.stop - 1}"]
-            store.checkpoints.mkdir(parents=True, exist_ok=True)
-            code = parallel.launch_ranks(arguments, busy, launcher, store.checkpoints)
+            store.folder.mkdir(parents=True, exist_ok=True)
+            code = parallel.launch_ranks(arguments, busy, launcher, store.folder)
             _refuse_unfinished(code, sweep, store, shards, launcher)
             return
-    with contextlib.ExitStack() as held:
-        claim = claimed(store.curves, shards, _warn)
-        waited = held.enter_context(claim) if missing else False
-        if waited:
-            missing = store.unfinished(sweep, shards).missing
+    write_source(configuration, store.folder)
+    with store.locked(shards):
+        # Another process may have stored some while this one waited for the lock.
+        lacking = [(shard, store.unfinished(sweep, [shard]).simulations()) for shard in shards]
         try:
-            run_missing(store, missing, origin, checkpoint)
+            run_missing(store, lacking, origin, checkpoint)
         except KeyboardInterrupt as stop:
             # A second Ctrl-C, which ends the process at once, has no sentence.
             if not (str(stop) and parallel.report_stop_to_launcher()):
@@ -291,11 +281,6 @@ def simulate(
             click.echo(f"rows: {store.finish_shard(sweep, shard, origin)}")
 
 
-def _warn(sentence: str) -> None:
-    """Print a warning."""
-    click.echo(f"Warning: {sentence}", err=True)
-
-
 def _refuse_unfinished(
     code: int | None, sweep: Sweep, store: Store, shards: Sequence[Shard], launcher: str | None
 ) -> None:
@@ -303,7 +288,7 @@ def _refuse_unfinished(
     unfinished = [shard for shard in shards if not store.is_finished(sweep, shard)]
     if not unfinished:
         if code not in (0, None):
-            _warn(f"the ranks ended with exit code {code}, after all was stored")
+            warn(f"the ranks ended with exit code {code}, after all was stored")
         return
     if code is None or code == StoppedError.exit_code:
         sys.exit(StoppedError.exit_code)  # the manager has printed its sentence
@@ -315,9 +300,9 @@ def _refuse_unfinished(
         )
         sys.exit(2 if code == 2 else 1)  # a launcher has codes of its own
     left = store.unfinished(sweep, unfinished)
-    total = left.stored + len(left.missing)
+    total = left.stored + left.n_missing
     raise click.ClickException(
-        f"the launcher {launcher or 'mpiexec'!r} ended without an error, but {len(left.missing)} "
+        f"the launcher {launcher or 'mpiexec'!r} ended without an error, but {left.n_missing} "
         f"of {total} simulations are not stored, and {len(unfinished)} of {len(shards)} shards "
         "have no rows; name one that starts the command that follows its -n and a number"
     )
@@ -325,24 +310,24 @@ def _refuse_unfinished(
 
 def run_missing(
     store: Store,
-    missing: tuple[Simulation, ...],
+    lacking: Sequence[tuple[Shard, Sequence[Simulation]]],
     origin: Provenance,
     checkpoint_seconds: float = 60.0,
 ) -> None:
-    """Run what is missing with a bar on a terminal, elsewhere with a line for each simulation."""
+    """Run what shards lack with a bar on a terminal, elsewhere with a line for each simulation."""
     from tqdm import tqdm
 
     from crackfront.sweep.parallel import deferring_stops
     from crackfront.sweep.rows import COMPLETE
     from crackfront.sweep.tasks import NotStoredError, run_and_store
 
-    if missing:
+    started, terminal = time.monotonic(), sys.stderr.isatty()
+    if total := sum(len(simulations) for _, simulations in lacking):
         announce_compilation()
-    started, total, terminal = time.monotonic(), len(missing), sys.stderr.isatty()
     try:
         with (
             deferring_stops(),
-            closing(run_and_store(store, missing, origin, checkpoint_seconds)) as outcomes,
+            closing(run_and_store(store, lacking, origin, checkpoint_seconds)) as outcomes,
             tqdm(total=total, unit="simulation", disable=not terminal, file=sys.stderr) as bar,
         ):
             for count, (simulation, finished) in enumerate(outcomes, start=1):
@@ -355,7 +340,7 @@ def run_missing(
                 bar.update()
     except NotStoredError as error:
         raise click.ClickException(str(error)) from error
-    if missing:
+    if total:
         click.echo(f"{total} simulations in {time.monotonic() - started:.1f} s")
 
 
@@ -365,23 +350,27 @@ def run_missing(
 @click.argument("folder", type=FILE)
 @as_json
 def status(folder: Path, as_json: bool) -> None:
-    """Show the progress of the sweep in a folder, and which processes store simulations in it.
+    """Show the progress of the sweep in a folder, and which of its shards are running.
 
-    Processes on other machines are shown where the file system passes their locks on; a batch
+    Shards that run on other machines are shown where the file system passes their locks on; a batch
     system knows them all.
     """
     from crackfront.sweep.configuration import load_configuration
-    from crackfront.sweep.result_packs import writers
     from crackfront.sweep.store import Store
 
-    store = Store(folder)
+    store = Store(folder, warn)
     if not store.configuration.is_file():
         raise ValueError(f"{folder} holds no sweep that was begun; name results/<its name>")
     sweep = load_configuration(store.configuration)
-    progress = _progress({item.name: store.progress(sweep, item) for item in sweep.spectra})
-    processes = writers(store.curves)
-    content = {"spectra": progress, "processes": processes}
-    echo_answer(content, _status_lines(progress, processes), as_json=as_json)
+    inventories = {item.name: store.progress(sweep, item) for item in sweep.spectra}
+    progress, running = _progress(inventories), store.running_shards()
+    content = {"spectra": progress, "running": running}
+    echo_answer(content, _status_lines(progress, running), as_json=as_json)
+
+
+def warn(sentence: str) -> None:
+    """Print a warning."""
+    click.echo(f"Warning: {sentence}", err=True)
 
 
 @dataclass(frozen=True, slots=True)
@@ -399,27 +388,34 @@ class Progress:
 
 def _progress(inventories: Mapping[str, Inventory]) -> list[Progress]:
     """Progress of each spectrum; the time that is left assumes the speed so far."""
-    from crackfront.sweep.store import NOTHING, expected_seconds
-
-    known = sum(inventories.values(), NOTHING)
-    pace = known.cpu_seconds / known.expected_seconds if known.cpu_seconds else 1.0
+    known = [*inventories.values()]
+    spent, expected = (sum(getattr(one, name) for one in known) for name in _SPENT)
+    pace = spent / expected if spent else 1.0
     return [
-        Progress(name, one.done, one.failed, len(one.missing), pace * expected_seconds(one.missing))
-        for name, one in inventories.items()
+        Progress(
+            name,
+            found.done,
+            found.failed,
+            found.n_missing,
+            pace * sum(item.seconds for item in found.missing),
+        )
+        for name, found in inventories.items()
     ]
 
 
-def _status_lines(spectra: Sequence[Progress], processes: Sequence[Writer]) -> Iterator[str]:
-    """Table of the spectra of a sweep, and the processes that store their simulations."""
+_SPENT = "cpu_seconds", "expected_seconds"
+"""Fields of an inventory: processor time of what is stored, and what was expected for it."""
+
+
+def _status_lines(spectra: Sequence[Progress], running: Sequence[str]) -> Iterator[str]:
+    """Table of the spectra of a sweep, and the shards that run."""
     rows = [(*map(str, astuple(item)[:-1]), f"{item.seconds / 3600:.3g}") for item in spectra]
     yield from table(("spectrum", "done", "failed", "left", "core hours left"), rows)
-    for one in processes[:_MOST_PROCESSES]:
-        yield f"process {one.process} on {one.host} stores {one.spectrum} {one.realisations}"
-    if len(processes) > _MOST_PROCESSES:
-        yield f"and {len(processes) - _MOST_PROCESSES} more, listed by --json"
+    if running:
+        yield f"running: {', '.join(running)}"
     ended = sum(item.done + item.failed for item in spectra)
     total = ended + sum(item.left for item in spectra)
     sentence = f"{ended} of {total} simulations have ended"
-    if ended < total and not processes:
+    if ended < total and not running:
         sentence += "; no process that is seen here stores any"
     yield sentence

@@ -6,6 +6,7 @@ A command that finishes a folder writes the list, and one that changes the folde
 from __future__ import annotations
 
 import hashlib
+import re
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 
@@ -70,3 +71,23 @@ def read_sums(folder: Path) -> dict[str, str]:
 def forget_sums(folder: Path) -> None:
     """Remove the list of a folder before its files change."""
     (folder / SUMS).unlink(missing_ok=True)
+
+
+DIGITS_IN_NAME = 16
+"""Digits of the checksum of a file that end its name, before its suffix."""
+
+_NAMED = re.compile(r"(batch|curves|checkpoint)-.+-([0-9a-f]{16})\.nc")
+
+
+def named_digest(path: Path) -> str | None:
+    """First digits of the checksum of a file as its own name states them; None without any."""
+    match = _NAMED.fullmatch(path.name)
+    return match[2] if match else None
+
+
+def is_whole(path: Path) -> bool:
+    """Whether a file agrees with the checksum that its name or the file beside it states."""
+    known = named_digest(path)
+    if known is not None:
+        return file_digest(path).startswith(known)
+    return stated_digest(path) == file_digest(path)

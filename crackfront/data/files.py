@@ -8,7 +8,6 @@ import fcntl
 import os
 import secrets
 import tempfile
-import time
 from collections.abc import Callable, Collection, Iterator
 from dataclasses import asdict
 from pathlib import Path
@@ -20,23 +19,16 @@ import xarray as xr
 from crackfront.data.bounds import TooLargeError, refuse_beyond_memory
 from crackfront.data.digests import (
     DAMAGED_SUFFIX,
-    SUMS,
+    DIGITS_IN_NAME,
     digest_path,
     file_digest,
-    forget_sums,
-    read_sums,
-    result_files,
-    stated_digest,
+    is_whole,
     sums_text,
 )
-from crackfront.data.packs import PACK, File, checked, is_locked
 from crackfront.data.provenance import Provenance, utc_now
 
 PACKED: dict[str, Any] = {"zlib": True, "shuffle": True, "complevel": 1}
 """How arrays are compressed."""
-
-_SECONDS_TO_WRITE = 3600.0
-"""Time after which a file that is not finished will not be."""
 
 NO_ROOM = (errno.ENOSPC, errno.EDQUOT)
 """Numbers of the errors of a full disk and of a used-up quota."""
@@ -85,19 +77,41 @@ def write_dataset(path: Path, dataset: xr.Dataset, origin: Provenance) -> None:
 
     The folder is created.
     """
-    _write(path, dataset, origin, sums=True)
+    replace_atomically(path, lambda part: _write_netcdf(part, dataset, origin))
 
 
-def _write(path: Path, dataset: xr.Dataset, origin: Provenance, *, sums: bool) -> None:
-    """Write a dataset as netCDF with its origin, atomically; checksums of arrays are a choice."""
+def write_derived(path: Path, dataset: xr.Dataset, origin: Provenance) -> None:
+    """Write a dataset as :func:`write_dataset`, and its checksum into `<path>.sha256` beside it.
+
+    HDF5 does not check the metadata of a file: a flipped bit there may change what is read, and
+    from some damage it never returns. After a kill between both files the checksum is wrong, and
+    the file is derived again.
+    """
+    write_dataset(path, dataset, origin)
+    write_text(digest_path(path), sums_text({path.name: file_digest(path)}))
+
+
+def write_named_by_digest(folder: Path, name: str, dataset: xr.Dataset, origin: Provenance) -> Path:
+    """Write a dataset into `<name>-<digest>.nc`, the digest that of its content; return the path.
+
+    So the file and its checksum are renamed into place at once.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    unnamed = folder / f".{name}-{secrets.token_hex(8)}.nc"
+    try:
+        write_dataset(unnamed, dataset, origin)
+        digest = file_digest(unnamed)[:DIGITS_IN_NAME]
+        return unnamed.replace(folder / f"{name}-{digest}.nc")
+    finally:
+        unnamed.unlink(missing_ok=True)
+
+
+def _write_netcdf(path: Path, dataset: xr.Dataset, origin: Provenance) -> None:
+    """Write a dataset as netCDF with its origin."""
     stamped = _stamped(dataset, origin)
-    encoding = {str(name): _encoding(values, sums) for name, values in stamped.variables.items()}
-
-    def write(part: Path) -> None:
-        with utf8_path(part) as named:
-            stamped.to_netcdf(named, engine="netcdf4", encoding=encoding)
-
-    replace_atomically(path, write)
+    encoding = {str(name): _encoding(values) for name, values in stamped.variables.items()}
+    with utf8_path(path) as named:
+        stamped.to_netcdf(named, engine="netcdf4", encoding=encoding)
 
 
 @contextlib.contextmanager
@@ -115,17 +129,6 @@ def utf8_path(path: Path) -> Iterator[Path]:
         yield path
 
 
-def dataset_content(dataset: xr.Dataset, origin: Provenance) -> bytes:
-    """Content of a netCDF file of a dataset for a pack, which has a checksum of each of its files.
-
-    Those of arrays would double the size of a curve.
-    """
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "dataset.nc"
-        _write(path, dataset, origin, sums=False)
-        return path.read_bytes()
-
-
 def _stamped(dataset: xr.Dataset, origin: Provenance) -> xr.Dataset:
     """A dataset with its origin."""
     date = utc_now()
@@ -135,11 +138,11 @@ def _stamped(dataset: xr.Dataset, origin: Provenance) -> xr.Dataset:
     return stamped
 
 
-def _encoding(values: xr.Variable, sums: bool) -> dict[str, Any]:
+def _encoding(values: xr.Variable) -> dict[str, Any]:
     """How a variable is stored: HDF5 has checksums for arrays of numbers or letters alone."""
-    encoding: dict[str, Any] = {"fletcher32": True} if values.ndim and sums else {}
+    encoding: dict[str, Any] = {"fletcher32": True} if values.ndim else {}
     if values.dtype.kind in "OU":
-        return encoding | ({"dtype": "S1"} if values.ndim else {})
+        return encoding | ({"dtype": "S1"} | PACKED if values.ndim else {})
     if np.issubdtype(values.dtype, np.floating):
         encoding |= {"_FillValue": None} | (PACKED if values.ndim > 1 else {})
     return encoding
@@ -149,15 +152,6 @@ def write_text(path: Path, text: str) -> None:
     """Write a text file atomically; names of files in the text stay the bytes that they are."""
     content = text.encode("utf-8", "surrogateescape")
     replace_atomically(path, lambda part: part.write_bytes(content))
-
-
-def write_digest(path: Path) -> None:
-    """Write the checksum of a file beside it, for readers to check before they open the file.
-
-    The checksums of HDF5 leave the metadata of a file open: a flipped bit there may change what is
-    read, and HDF5 does not return from some of them.
-    """
-    write_text(digest_path(path), sums_text({path.name: file_digest(path)}))
 
 
 def replace_atomically(path: Path, write: Callable[[Path], Any]) -> None:
@@ -212,39 +206,22 @@ def _is_of_system(error: Exception) -> bool:
     return isinstance(error, OSError) and (error.errno or 0) > 0
 
 
-def leftover_parts(folder: Path) -> Iterator[Path]:
-    """Unfinished files of a folder that are older than an hour.
-
-    Their age is the difference to the date of a new file, by the clock of the file system.
-    """
-    with tempfile.NamedTemporaryFile(prefix=".", suffix=".part", dir=folder) as new:
-        now = Path(new.name).stat().st_mtime
-        for path in folder.glob(".*.part"):
-            with contextlib.suppress(FileNotFoundError):  # its writer has just renamed it
-                if now - path.stat().st_mtime > _SECONDS_TO_WRITE:
-                    yield path
-
-
 def read_dataset(
-    path: File, names: Collection[str] | None = None, *, copies: float = 1.0
+    path: Path, names: Collection[str] | None = None, *, copies: float = 1.0
 ) -> xr.Dataset:
-    """Dataset of a netCDF file, or of one in a pack, in memory.
+    """Dataset of a netCDF file, in memory.
 
     Variables to read beside the coordinates are those of the names that are there; by default all.
     `copies` is the memory that is needed at once, relative to that of the variables. TooLargeError
     if they need more than there is, whatever the file holds of them; UnreadableFileError if there
     is no such file, it is damaged, or it is no complete netCDF file.
     """
-    if isinstance(path, Path) and not path.is_file():
+    if not path.is_file():
         what = "is no file" if path.exists() else "does not exist"
         raise UnreadableFileError(f"{path} {what}; check the name")
-    source = path if isinstance(path, Path) else path.content()
-    if source is None:
-        raise UnreadableFileError(f"{path} {_DAMAGED}")
     try:
-        opened = utf8_path(source) if isinstance(source, Path) else contextlib.nullcontext(source)
         with (
-            opened as named,
+            utf8_path(path) as named,
             xr.open_dataset(named, engine="netcdf4", decode_times=False) as dataset,
         ):
             others = [] if names is None else [name for name in dataset if name not in names]
@@ -258,85 +235,34 @@ def read_dataset(
     except Exception as error:  # a damaged file may be wrong in any way
         if _is_of_system(error):
             raise
-        if isinstance(source, Path):
-            refuse_failing_system(source, error)
+        refuse_failing_system(path, error)
         raise UnreadableFileError(
             f"{path} is no complete netCDF file; write it again, or name another"
         ) from error
 
 
-_DAMAGED = "is damaged, its checksum is wrong; restore it or write it again"
+def set_aside_if_damaged(path: Path) -> str:
+    """Rename a file that does not agree with its stated checksum; a sentence, or nothing if whole.
 
-
-def is_damaged(path: Path, digest: str | None) -> bool:
-    """Whether a file is not as it was written, by the checksum that a list or a file beside states.
-
-    Without one, the arrays of a netCDF file are checked, which have their own, and the files in a
-    pack; whatever else is there counts as whole.
+    The checksum is in the name of the file, or in `<path>.sha256` beside it.
     """
-    known = stated_digest(path) if digest is None else digest
-    if known is not None:
-        return file_digest(path) != known
-    if path.suffix == PACK:
-        return checked(path)[1] > 0 and not is_locked(path)
-    if path.suffix == ".nc":
-        with contextlib.suppress(UnreadableFileError):
-            read_dataset(path)
-            return False
-        return True
-    return False
+    if is_whole(path):
+        return ""
+    aside = path.replace(path.with_name(path.name + DAMAGED_SUFFIX))
+    digest_path(path).unlink(missing_ok=True)
+    return f"{path} is damaged and was set aside as {aside.name}"
 
 
-def damaged_files(folder: Path) -> list[Path]:
-    """Files of a folder of results that are not as they were written."""
-    listed = read_sums(folder)
-    return [
-        path
-        for path in result_files(folder)
-        if is_damaged(path, listed.get(str(path.relative_to(folder))))
-    ]
+def read_derived(path: Path, names: Collection[str] | None = None) -> xr.Dataset:
+    """Dataset of a file that :func:`write_derived` wrote, after a look at its checksum.
 
-
-def write_sums(folder: Path) -> Path:
-    """Write the list of the checksums of a folder of results, and return its path.
-
-    ValueError if a netCDF file or a pack is damaged, or the folder holds no result.
+    UnreadableFileError if it is missing; if it is damaged, when it is set aside.
     """
-    forget_sums(folder)
-    if damaged := damaged_files(folder):
-        raise ValueError(f"{damaged[0]} is damaged; run crackfront repair and make it again")
-    digests = {str(path.relative_to(folder)): file_digest(path) for path in result_files(folder)}
-    if not digests:
-        raise ValueError(f"{folder} holds no file; name a folder of results")
-    write_text(folder / SUMS, sums_text(digests))
-    return folder / SUMS
-
-
-def set_aside_damaged(folder: Path) -> Iterator[str]:
-    """Rename the damaged files of a folder, but packs, to be made anew; a sentence each."""
-    listed = read_sums(folder)
-    damaged = damaged_files(folder)
-    if damaged or any(not (folder / name).is_file() for name in listed):
-        forget_sums(folder)
-    for path in damaged:
-        if path.suffix != PACK:
-            yield f"{path} is damaged; it is made anew, and set aside as {set_aside(path).name}"
-
-
-def reset_future_dates(folder: Path) -> None:
-    """Give the files of a folder with a date in the future the date of now, except packs.
-
-    Snakemake refuses inputs that are dated in the future.
-    """
-    now = time.time()
-    for path in folder.rglob("[!.]*"):
-        if path.is_file() and path.suffix != PACK and path.stat().st_mtime > now:
-            os.utime(path, (now, now))
-
-
-def set_aside(path: Path) -> Path:
-    """Rename a file that is of no use, and return its new path."""
-    return path.replace(path.with_name(path.name + DAMAGED_SUFFIX))
+    if not path.is_file():
+        raise UnreadableFileError(f"{path} does not exist; run the workflow")
+    if sentence := set_aside_if_damaged(path):
+        raise UnreadableFileError(f"{sentence}; run the workflow, which makes it again")
+    return read_dataset(path, names)
 
 
 def read_attributes(path: Path) -> dict[str, Any]:

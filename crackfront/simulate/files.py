@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import asdict, replace
+from dataclasses import replace
 from os import PathLike
 from pathlib import Path
 from typing import Any
@@ -11,20 +11,23 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from crackfront.analysis.measures import RunMeasures
-from crackfront.analysis.table import PLACE, SweepAxes
 from crackfront.core.cycle.record import Checkpoint, CycleRecord
 from crackfront.core.geometry.base import Geometry, State
 from crackfront.core.geometry.line import LineState
 from crackfront.core.geometry.sphere import ContactState, sphere
 from crackfront.core.outcome import Status
 from crackfront.core.variables import STEP, Variable, variables
+from crackfront.core.versions import PHYSICS_VERSION
 from crackfront.data.arguments import refuse_other_type
-from crackfront.data.files import UnreadableFileError, read_dataset, write_dataset
+from crackfront.data.files import (
+    UnreadableFileError,
+    read_dataset,
+    write_dataset,
+    write_named_by_digest,
+)
 from crackfront.data.labels import labelled, labelled_fields
-from crackfront.data.packs import File
 from crackfront.data.provenance import Provenance, provenance
-from crackfront.simulate.run import PartialRun, SimulationResult
+from crackfront.simulate.run import PartialRun
 from crackfront.simulate.si_units import SURFACES, as_dataset
 from crackfront.simulate.simulation import Simulation
 
@@ -39,51 +42,14 @@ _STATES: tuple[type[State], ...] = (ContactState, LineState)
 
 _STEP = Variable(STEP, (STEP,), "1", "number of the state")
 
-_PLACES = {one.name: replace(one, dims=()) for one in variables(SweepAxes) if one.name in PLACE}
-"""Coordinates of the curves of a simulation, along which curves are put together."""
 
-
-def simulation_dataset(result: SimulationResult) -> xr.Dataset:
-    """Labelled curves and costs of one simulation of a sweep."""
-    simulation = result.simulation
-    dataset = cycle_dataset(result.record, simulation.geometry)
-    dataset = dataset.assign(labelled_fields(result.measures))
-    place = simulation.spectrum_name, simulation.elastic_energy, simulation.realisation
-    labels = zip(PLACE, place, strict=True)
-    dataset = dataset.assign_coords({name: labelled(_PLACES[name], one) for name, one in labels})
-    dataset.attrs |= {
-        "simulation": simulation.label,
-        "key": simulation.key,
-        "seed": np.int64(simulation.seed),
-        "kind": simulation.kind,
-        "solver": simulation.solver.name,
-        "tolerance": simulation.solver.tolerance,
-        "elastic_energy_requested": simulation.elastic_energy,
-        **simulation.spectrum.parameters,
-        **asdict(simulation.resolution),
-    }
-    return dataset
-
-
-def read_simulation(path: File, simulation: Simulation) -> SimulationResult:
-    """Stored result of a simulation; UnreadableFileError if missing, damaged or of another one."""
-    dataset = read_dataset(path)
-    if dataset.attrs.get("key") != simulation.key:
-        raise UnreadableFileError(f"{path} is not the result of {simulation.label}; move it away")
-    record = cycle_record(dataset, path)
-    names = [item.name for item in variables(RunMeasures)]
-    if missing := [name for name in names if name not in dataset]:
-        raise UnreadableFileError(f"{path} lacks {', '.join(missing)}; move it away")
-    measures = RunMeasures(**{name: float(dataset[name]) for name in names})
-    return SimulationResult(simulation, record, measures)
-
-
-def write_checkpoint(path: Path, partial: PartialRun, origin: Provenance) -> None:
-    """Write the checkpoint of a simulation, from which it goes on later."""
+def write_checkpoint(folder: Path, name: str, partial: PartialRun, origin: Provenance) -> Path:
+    """Write the checkpoint of a simulation, from which it goes on later; its name has a digest."""
     simulation = partial.simulation
     dataset = checkpoint_dataset(partial.checkpoint, simulation.key, simulation.geometry)
     costs = {"seconds": partial.seconds, "cpu_seconds": partial.cpu_seconds}
-    write_dataset(path, dataset.assign_attrs({"simulation": simulation.label} | costs), origin)
+    about = {"simulation": simulation.label} | costs
+    return write_named_by_digest(folder, name, dataset.assign_attrs(about), origin)
 
 
 def checkpoint_dataset(
@@ -99,10 +65,10 @@ def checkpoint_dataset(
 
 
 def read_checkpoint(path: Path, simulation: Simulation) -> PartialRun:
-    """Stored checkpoint of a simulation; refusals as of :func:`read_simulation`."""
+    """Stored checkpoint of a simulation; UnreadableFileError if it is of another one."""
     dataset = read_dataset(path)
     checkpoint = known_checkpoint(dataset, simulation.key, path)
-    if checkpoint is None:
+    if checkpoint is None or dataset.attrs["physics_version"] != PHYSICS_VERSION:
         raise UnreadableFileError(f"{path} is no checkpoint of {simulation.label}; move it away")
     costs = (float(dataset.attrs[name]) for name in ("seconds", "cpu_seconds"))
     return PartialRun(simulation, checkpoint, *costs)
@@ -204,7 +170,7 @@ def cycle_dataset(record: CycleRecord, geometry: Geometry | None = None) -> xr.D
     return xr.Dataset(curves, attrs=attributes)
 
 
-def cycle_record(dataset: xr.Dataset, place: File | str = "the dataset") -> CycleRecord:
+def cycle_record(dataset: xr.Dataset, place: Path | str = "the dataset") -> CycleRecord:
     """Record that a dataset of :func:`cycle_dataset` holds, or `UnreadableFileError`."""
     known = (kind for kind in _STATES if variables(kind)[0].name in dataset)
     states = next(known, ContactState)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 import re
 import sys
 from collections.abc import Iterable, Iterator
@@ -259,3 +260,23 @@ def results_folder(path: Path) -> Path:
             "_, - and dots; rename it"
         )
     return Path("results") / path.stem
+
+
+SOURCE = "configuration.path"
+"""File of a results folder that states the path of its configuration, relative to the folder."""
+
+
+def refuse_other_configuration(path: Path, results: Path) -> None:
+    """Raise ConfigurationError if results are those of another configuration that is still there.
+
+    Two configurations of one name in two folders would share one folder of results.
+    """
+    source = results / SOURCE
+    if not source.is_file():
+        return
+    other = results / source.read_text(encoding="utf-8").strip()
+    if other.is_file() and not other.samefile(path) and other.read_bytes() != path.read_bytes():
+        raise ConfigurationError(
+            f"{results} has the results of {os.path.relpath(other)}, another configuration than "
+            f"{path}; rename one of them, or name another folder by --output"
+        )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from dataclasses import asdict, fields
+from dataclasses import asdict
 from pathlib import Path
 
 import xarray as xr
@@ -13,30 +13,24 @@ from crackfront.analysis.report import fit_notes, fit_table
 from crackfront.analysis.result import SweepFit, fit_columns
 from crackfront.analysis.steady import STEADY_DEFINITION
 from crackfront.analysis.sweep import FIT_DEFINITION
-from crackfront.data.digests import forget_sums
-from crackfront.data.files import read_attributes, write_dataset, write_text
+from crackfront.data.files import read_derived, write_derived, write_text
 from crackfront.data.jsonable import to_jsonable
 from crackfront.data.labels import labelled
 from crackfront.data.provenance import Provenance, utc_now
-from crackfront.sweep.sweep import FitRange
-from crackfront.sweep.table import SWEEP_FINGERPRINT
+
+_REQUEST = "request"
+"""Attribute that says what a fit was asked for, by the digest of its request."""
 
 
-def fit_range(path: Path) -> tuple[FitRange, str]:
-    """Range and bootstrap samples of a `fit.nc`, and the fingerprint of the table that it fits.
-
-    Refused as by `read_attributes`.
-    """
-    about = read_attributes(path)
-    known = FitRange(*(about.get(item.name) for item in fields(FitRange)))  # type: ignore[arg-type]
-    return known, str(about.get(SWEEP_FINGERPRINT, ""))
+def fitted_request(path: Path) -> str:
+    """Digest of what a `fit.nc` was asked for; refused as by `read_derived`."""
+    return str(read_derived(path, ()).attrs.get(_REQUEST, ""))
 
 
 def write_fit(
-    folder: Path, fit: SweepFit, fingerprint: str, origin: Provenance
+    folder: Path, fit: SweepFit, request: str, origin: Provenance
 ) -> tuple[Path, Path, Path]:
-    """Write `fit.nc`, `fit.json` and `fit.md`, which state a fingerprint of the table."""
-    forget_sums(folder)
+    """Write `fit.nc`, `fit.json` and `fit.md`, which state the digest of their request."""
     paths = folder / "fit.nc", folder / "fit.json", folder / "fit.md"
     about = {
         "title": f"fit of adhesion hysteresis, {fit.kind}",
@@ -46,12 +40,12 @@ def write_fit(
         "highest_elastic_energy": fit.highest_elastic_energy,
         "n_bootstrap": fit.n_bootstrap,
         "seed": fit.seed,
-        SWEEP_FINGERPRINT: fingerprint,
+        _REQUEST: request,
         "factor_of_the_paper": PAPER_FACTOR,
         "factor_of_perturbation_theory": PERTURBATION_FACTOR,
     }
     columns = {item.name: labelled(item, values) for item, values in fit_columns(fit)}
-    write_dataset(paths[0], xr.Dataset(columns, attrs=about), origin)
+    write_derived(paths[0], xr.Dataset(columns, attrs=about), origin)
     entries = {
         name: {"dims": dims, "values": to_jsonable(values), **attributes}
         for name, (dims, values, attributes) in columns.items()

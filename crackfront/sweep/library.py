@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import contextlib
-import sys
+import os
 import warnings
 from collections import Counter
 from os import PathLike
@@ -14,25 +14,35 @@ from tqdm import tqdm
 from xarray import Dataset
 
 from crackfront.data.arguments import refuse_other_type
-from crackfront.data.files import read_dataset, write_sums
+from crackfront.data.files import read_derived, write_text
 from crackfront.data.labels import flag_words
 from crackfront.data.provenance import Provenance, provenance
 from crackfront.data.section import movable_text
-from crackfront.sweep.claims import claimed
-from crackfront.sweep.configuration import load_configuration, results_folder
+from crackfront.sweep.configuration import (
+    SOURCE,
+    load_configuration,
+    refuse_other_configuration,
+    results_folder,
+)
 from crackfront.sweep.parallel import deferring_stops
 from crackfront.sweep.rows import COMPLETE
-from crackfront.sweep.store import Store
+from crackfront.sweep.store import Announce, Store
 from crackfront.sweep.sweep import Sweep
 from crackfront.sweep.tasks import run_and_store
 
 
-def opened(configuration: Path, output: Path | None) -> tuple[Sweep, Store, Provenance]:
-    """Sweep of a configuration file, its store, and the origin of what is computed for it."""
+def opened(
+    configuration: Path, output: Path | None, announce: Announce = warnings.warn
+) -> tuple[Sweep, Store, Provenance]:
+    """Sweep of a configuration file, its store, and the origin of what is computed for it.
+
+    ConfigurationError if the results are those of another configuration that is still there.
+    """
     sweep = load_configuration(configuration)
     if output is not None and output.exists() and not output.is_dir():
         raise ValueError(f"the output is {output}, a file; name a folder for the results")
-    store = Store(results_folder(configuration) if output is None else output)
+    store = Store(results_folder(configuration) if output is None else output, announce)
+    refuse_other_configuration(configuration, store.folder)
     return sweep, store, provenance(movable_text(configuration))
 
 
@@ -74,34 +84,33 @@ def run_sweep(
     """
     for name, given in (("configuration", configuration), ("output", output or "")):
         refuse_other_type(name, given, (str, PathLike), "the path of a file or folder")
-    found, store, origin = opened(Path(configuration), None if output is None else Path(output))
-    shards = found.shards()
-    missing = store.unfinished(found, shards).missing
-    with contextlib.ExitStack() as held:
-        held.enter_context(deferring_stops())
-        claim = claimed(store.curves, shards, warnings.warn)
-        waited = held.enter_context(claim) if missing else False
-        if waited:
-            missing = store.unfinished(found, shards).missing
-        shown = bool(progress and missing)
-        bar = held.enter_context(
-            tqdm(total=len(missing), unit="simulation", disable=not shown, file=sys.stderr)
-        )
-        for _ in held.enter_context(contextlib.closing(run_and_store(store, missing, origin))):
-            bar.update()
+    sweep, store, origin = opened(Path(configuration), None if output is None else Path(output))
+    shards = sweep.shards()
+    write_source(Path(configuration), store.folder)
+    with deferring_stops(), store.locked(shards):
+        lacking = [(shard, store.unfinished(sweep, [shard]).simulations()) for shard in shards]
+        n_missing = sum(len(simulations) for _, simulations in lacking)
+        bar = tqdm(total=n_missing, unit="simulation", disable=not (progress and n_missing))
+        with bar, contextlib.closing(run_and_store(store, lacking, origin)) as outcomes:
+            for _ in outcomes:
+                bar.update()
         for shard in shards:
-            store.finish_shard(found, shard, origin)
-    table = store.aggregate(found, origin)
-    write_sums(store.folder)
+            store.finish_shard(sweep, shard, origin)
+    table = store.aggregate(sweep, origin)
     failed, sentence = without_value(table)
     if failed:
         warnings.warn(sentence, stacklevel=2)
-    return read_dataset(table)
+    return read_derived(table)
+
+
+def write_source(configuration: Path, results: Path) -> None:
+    """State in a folder of results of which configuration they are."""
+    write_text(results / SOURCE, f"{os.path.relpath(configuration, results)}\n")
 
 
 def without_value(table: Path) -> tuple[int, str]:
     """How many simulations of a table have no value, and how most of them ended, with a remedy."""
-    found = read_dataset(table, ("status", "status_sentence"))
+    found = read_derived(table, ("status", "status_sentence"))
     words, sentences = flag_words(found.status), found.status_sentence.values
     failed = ~np.isin(words, COMPLETE)
     others, ended = (Counter(values[failed].tolist()) for values in (words, sentences))

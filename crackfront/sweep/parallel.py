@@ -205,6 +205,10 @@ def _end_with_launcher(abort: Callable[[int], object]) -> None:
         abort(1)
 
 
+def _nothing() -> None:
+    """Do nothing."""
+
+
 def serve_tasks(module: str) -> None:
     """Compute what the manager hands out until it has no more.
 
@@ -217,7 +221,7 @@ def serve_tasks(module: str) -> None:
     while (handed := world.recv(source=_sender(world))) is not None:
         function, task = handed
         try:
-            answer = function(task), ""
+            answer = function(task, _nothing), ""
         except Exception:  # the manager raises one with this text
             answer = None, traceback.format_exc()
         _nap_until(functools.partial(_is_sent, world.isend(answer, 0)))
@@ -228,37 +232,43 @@ def _is_sent(request: MPI.Request) -> bool:
     return bool(request.Test())
 
 
-def _sender(world: MPI.Intracomm) -> int:
-    """Wait for a message; return the rank that sent it."""
+def _sender(world: MPI.Intracomm, idle: Callable[[], None] = _nothing) -> int:
+    """Wait for a message, calling a function meanwhile; return the rank that sent it."""
     from mpi4py import MPI
 
     status = MPI.Status()
-    _nap_until(lambda: world.iprobe(status=status))
+    _nap_until(lambda: world.iprobe(status=status), idle)
     return status.Get_source()
 
 
-def _nap_until(ready: Callable[[], bool]) -> None:
+def _nap_until(ready: Callable[[], bool], idle: Callable[[], None] = _nothing) -> None:
     """Wait without taking the core from other ranks, as a wait inside of MPI would."""
     nap = 0.0
     while not ready():
         time.sleep(nap)
+        idle()
         nap = min(_LONGEST_NAP, 2 * nap + 1e-6)
 
 
 def run_tasks(
-    function: Callable[[Task], Result], tasks: Sequence[Task], keep: Callable[[Task, Result], Kept]
+    function: Callable[[Task, Callable[[], None]], Result],
+    tasks: Sequence[Task],
+    keep: Callable[[Task, Result], Kept],
+    idle: Callable[[], None] = _nothing,
 ) -> Generator[tuple[Task, Kept]]:
     """Tasks with what is kept of them, as they end; a free rank starts the next of the list.
 
     Without MPI the tasks run here, one after the other. With MPI this is called by the manager
     while the other ranks are in :func:`serve_tasks`, also where there is no task. The longest tasks
-    stand first. The function is a module's, of one task; it and the tasks travel by pickle. `keep`
-    takes every task and its result here, also of those that end while this is closed. RuntimeError
+    stand first. The function is a module's; it and the tasks travel by pickle. It takes a task, and
+    `idle`, which it calls from time to time where it runs in this process; else this process calls
+    it while it waits. `keep` takes every task and its result here, also of those that end while
+    this is closed. RuntimeError
     with the traceback if a task fails on a rank, when those that run beside it have ended.
     """
     if not under_mpi():
         for task in tasks:
-            yield task, keep(task, function(task))
+            yield task, keep(task, function(task, idle))
         return
     from mpi4py import MPI
 
@@ -272,7 +282,7 @@ def run_tasks(
             running[rank] = task, world.isend((function, task), rank)
 
     def take_in() -> tuple[int, Task, Any, str]:
-        rank = _sender(world)
+        rank = _sender(world, idle)
         task, sent = running.pop(rank)
         sent.wait()
         return rank, task, *world.recv(source=rank)

@@ -24,10 +24,13 @@ from crackfront.simulate.simulation import Simulation
 COMPLETE = ("lost_contact", "steady")
 """Statuses of a simulation that has values: a full cycle, or the steady parts of both branches."""
 
+AT_LIMIT = Status.STEP_LIMIT.name.lower()
+"""Status of a simulation that reached its limit of sweeps, and may go on with a higher one."""
+
 NO_STEADY_PART = "no_steady_part"
 """Status of a complete cycle without enough steady states."""
 
-_STATUSES = (*(one.name.lower() for one in Status), NO_STEADY_PART, "refused", "defect")
+STATUSES = (*(one.name.lower() for one in Status), NO_STEADY_PART, "refused", "defect")
 """What `status` may be; the file of a sweep has their places."""
 
 
@@ -55,7 +58,7 @@ def sweep_row(result: SimulationResult) -> SweepRow:
         status=status,
         status_sentence=sentence,
         seed=simulation.seed,
-        curve=f"{simulation.stem}.nc",
+        max_sweeps=simulation.solver.max_sweeps,
     )
 
 
@@ -63,8 +66,9 @@ def failed_row(simulation: Simulation, status: str, sentence: str) -> SweepRow:
     """Row of a simulation that failed, with its status and the reason as a sentence."""
     unknown: dict[str, Any] = {item.name: math.nan for item in fields(SweepRow)}
     nothing = dict.fromkeys(("iterations", "n_step", "n_approach", "n_retraction"), 0)
-    known = {"status": status, "status_sentence": sentence, "seed": simulation.seed, "curve": ""}
-    return SweepRow(**(unknown | nothing | known))
+    known = {"status": status, "status_sentence": sentence, "seed": simulation.seed}
+    limit = {"max_sweeps": simulation.solver.max_sweeps}
+    return SweepRow(**(unknown | nothing | known | limit))
 
 
 def _status(record: CycleRecord, steady: SteadyAdhesion) -> tuple[str, str]:
@@ -75,15 +79,13 @@ def _status(record: CycleRecord, steady: SteadyAdhesion) -> tuple[str, str]:
     return status, record.status.value
 
 
-def row_columns(
-    rows: Sequence[SweepRow], shape: tuple[int, int, int]
-) -> dict[str, NDArray[np.generic]]:
+def row_columns(rows: Sequence[SweepRow], shape: tuple[int, ...]) -> dict[str, NDArray[np.generic]]:
     """Values of rows as a file has them: spectra, amplitudes and realisations of a shape."""
     columns = {
         item.name: np.array([getattr(row, item.name) for row in rows]).reshape(shape)
         for item in variables(SweepRow)
     }
-    places = [_STATUSES.index(row.status) for row in rows]
+    places = [STATUSES.index(row.status) for row in rows]
     return columns | {"status": np.array(places, np.int8).reshape(shape)}
 
 
@@ -92,7 +94,7 @@ def labelled_columns(columns: Mapping[str, NDArray[np.generic]]) -> dict[str, xr
     found = {}
     for item in variables(SweepRow, *PLACE):
         values = columns[item.name]
-        about = label(item, _STATUSES if item.name == "status" else ())
+        about = label(item, STATUSES if item.name == "status" else ())
         if values.dtype.kind == "S":
             about |= {"_Encoding": "utf-8"}  # as xarray writes for texts
         found[item.name] = xr.Variable(item.dims, values, about)

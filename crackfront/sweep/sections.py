@@ -23,7 +23,6 @@ from crackfront.core.solver import DEFAULT_TOLERANCE
 from crackfront.core.solver.relax import named_solver
 from crackfront.core.spectrum import SelfAffineSpectrum, TabulatedSpectrum
 from crackfront.data.bounds import PIXELS, SI, SITES, TOLERANCE, Range
-from crackfront.data.packs import LONGEST_NAME
 from crackfront.data.section import (
     ConfigurationError,
     Count,
@@ -125,8 +124,8 @@ class SpectrumSection(Section):
     The method `shape` of such a section returns the spectrum and what its name ends with.
     """
 
-    # Names of the files in a pack hold it, an ending of 9 letters, and up to 48 more.
-    name: Annotated[str, Field(pattern=r"^[A-Za-z0-9_-]+$", max_length=LONGEST_NAME - 57)]
+    # Names of files have up to 255 letters, of which those of checkpoints add some hundred.
+    name: Annotated[str, Field(pattern=r"^[A-Za-z0-9_-]+$", max_length=100)]
     short_cutoff: Positive | None = None
     roll_off: Positive | None = None
     hurst: float | None = None

@@ -1,11 +1,12 @@
-"""The file of a shard: the rows of its simulations, and attributes that say which these are."""
+"""The file of a shard: the rows of its simulations, derived from the files of their curves."""
 
 from __future__ import annotations
 
-import hashlib
-from collections.abc import Iterable, Sequence
+import json
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import netCDF4
 import numpy as np
@@ -14,110 +15,122 @@ from numpy.typing import NDArray
 from crackfront.analysis.table import PLACE, SweepRow
 from crackfront.core.variables import variables
 from crackfront.core.versions import PHYSICS_VERSION, ROWS_VERSION
-from crackfront.data.digests import file_digest, stated_digest
-from crackfront.data.files import (
-    read_dataset,
-    refuse_failing_system,
-    utf8_path,
-    write_dataset,
-    write_digest,
-)
+from crackfront.data.files import utf8_path, write_derived
 from crackfront.data.provenance import Provenance
-from crackfront.simulate.simulation import Simulation
-from crackfront.sweep.rows import COMPLETE
+from crackfront.sweep.curves import PARAMETERS, parameters_text
+from crackfront.sweep.requests import shard_request
+from crackfront.sweep.rows import AT_LIMIT, COMPLETE, STATUSES
 from crackfront.sweep.sweep import Shard, Sweep
-from crackfront.sweep.table import rows_dataset
+from crackfront.sweep.table import columns_dataset
 
 _BETWEEN = "; "
-"""What stands between arithmetics in the attribute of a file."""
+"""What stands between series and arithmetics in the attributes of a file."""
+
+NO_LIMIT = -1
+"""Attribute of a file in which no simulation reached its limit of sweeps."""
+
+Columns = Mapping[str, NDArray[np.generic]]
 
 
 @dataclass(frozen=True, slots=True)
-class FinishedShard:
+class ShardSummary:
     """What the attributes of a shard's file say, which are read without its rows."""
 
     path: Path
     spectrum: str
     realisations: range
-    fingerprint: str
-    """:func:`shard_request` when it was written."""
-    failed: int
-    """Simulations without a value."""
-    cpu_seconds: float
-    """Processor time of all simulations. (Units: s)"""
+    series: tuple[str, ...]
+    """Series of its simulations, one for each amplitude."""
+    physics_version: int
+    rows_version: int
+    request: str
+    """Digest of what was asked for."""
+    n_failed: NDArray[np.int64]
+    """Simulations of each amplitude without a value."""
+    limit: int
+    """Lowest limit of sweeps that a simulation reached; -1 if none did."""
+    cpu_seconds: NDArray[np.float64]
+    """Processor time of the simulations of each amplitude. (Units: s)"""
     arithmetic: frozenset[str]
-    """Those of the origins of the rows."""
+    """Processors and packages that computed the rows."""
+    parameters: dict[str, dict[str, Any]]
+    """Parameters of each series."""
 
+    def has_states(self, series: str, max_sweeps: int) -> bool:
+        """Whether it was derived from states of a series as they are today, at such a limit."""
+        within = self.limit == NO_LIMIT or self.limit >= max_sweeps
+        return self.physics_version == PHYSICS_VERSION and within and series in self.series
 
-def shard_request(one_per_amplitude: Sequence[Simulation], realisations: range) -> str:
-    """Twelve hexadecimal digits that change with the simulations of a shard and with the versions.
-
-    The first realisation of each amplitude says what all realisations share.
-    """
-    series = [simulation.series for simulation in one_per_amplitude]
-    text = repr((series, realisations, PHYSICS_VERSION, ROWS_VERSION))
-    return hashlib.sha256(text.encode()).hexdigest()[:12]
+    def has_rows(self, series: Iterable[str], max_sweeps: int) -> bool:
+        """Whether its rows are those of some series as they are today, at such a limit."""
+        known = all(self.has_states(one, max_sweeps) for one in series)
+        return known and self.rows_version == ROWS_VERSION
 
 
 def write_shard(
     path: Path,
     sweep: Sweep,
     shard: Shard,
-    rows: Sequence[SweepRow],
+    columns: Columns,
     arithmetic: Iterable[str],
     origin: Provenance,
 ) -> None:
-    """Write the file of a shard, atomically, and its checksum beside it.
+    """Write the file of a shard and its checksum.
 
-    The rows are those of :meth:`crackfront.sweep.sweep.Sweep.simulations`, in their order. The
-    layout is that of the file of the whole sweep.
+    Columns are those of `SweepRow`, over amplitudes and realisations in their order. The layout is
+    that of the file of the whole sweep.
     """
     alone = replace(sweep, spectra=(shard.item,))
+    shape = 1, len(sweep.elastic_energies), len(shard.realisations)
+    shaped = {item.name: columns[item.name].reshape(shape) for item in variables(SweepRow)}
+    status = shaped["status"]
+    limits = shaped["max_sweeps"][status == STATUSES.index(AT_LIMIT)]
+    complete = np.isin(status, [STATUSES.index(word) for word in COMPLETE])
     about = {
         "spectrum_name": shard.item.name,
-        "fingerprint": shard_request(sweep.one_per_amplitude(shard.item), shard.realisations),
-        "first_realisation": np.int64(shard.realisations.start),
-        "last_realisation": np.int64(shard.realisations.stop - 1),
-        "failed": np.int64(sum(row.status not in COMPLETE for row in rows)),
-        "cpu_seconds": float(np.nansum([row.cpu_seconds for row in rows])),
-        "arithmetic_of_rows": _BETWEEN.join(sorted(arithmetic)),
+        "series_of_amplitudes": _BETWEEN.join(sweep.series(shard.item)),
+        "request": shard_request(sweep, shard).digest,
+        "first_realisation": np.int64(shard.realisations[0]),
+        "last_realisation": np.int64(shard.realisations[-1]),
+        "n_failed": np.count_nonzero(~complete, axis=(0, 2)),
+        "limit": np.int64(min(limits, default=NO_LIMIT)),
+        "total_cpu_seconds": np.nansum(shaped["cpu_seconds"], axis=(0, 2)),
+        "arithmetic_of_rows": _BETWEEN.join(sorted({*arithmetic})),
+        PARAMETERS: parameters_text(sweep.one_per_amplitude(shard.item)),
     }
-    dataset = rows_dataset(alone, rows, shard.realisations)
-    write_dataset(path, dataset.assign_attrs(about), origin)
-    write_digest(path)
+    dataset = columns_dataset(alone, shaped, shard.realisations)
+    write_derived(path, dataset.assign_attrs(about), origin)
 
 
-def finished_shard(path: Path) -> FinishedShard | None:
-    """What the attributes of a file say; None if it is damaged or not the file of a shard.
-
-    OSError if the system cannot read it.
-    """
-    try:
-        # HDF5 may read a damaged file as valid, or never return from it.
-        if stated_digest(path) != file_digest(path):
-            return None
-        with utf8_path(path) as named, netCDF4.Dataset(named) as file:
-            return FinishedShard(
-                path=path,
-                spectrum=str(file.spectrum_name),
-                realisations=range(int(file.first_realisation), int(file.last_realisation) + 1),
-                fingerprint=str(file.fingerprint),
-                failed=int(file.failed),
-                cpu_seconds=float(file.cpu_seconds),
-                arithmetic=frozenset(filter(None, str(file.arithmetic_of_rows).split(_BETWEEN))),
-            )
-    except (OSError, AttributeError, ValueError) as error:
-        if path.is_file():
-            refuse_failing_system(path, error)
-        return None  # emptied, cut, or of something else
+def shard_summary(path: Path) -> ShardSummary:
+    """What the attributes of a shard's file say; its checksum has been looked at."""
+    with utf8_path(path) as named, netCDF4.Dataset(named) as file:
+        first, last = int(file.first_realisation), int(file.last_realisation)
+        return ShardSummary(
+            path=path,
+            spectrum=str(file.spectrum_name),
+            realisations=range(first, last + 1),
+            series=tuple(str(file.series_of_amplitudes).split(_BETWEEN)),
+            physics_version=int(file.physics_version),
+            rows_version=int(file.rows_version),
+            request=str(file.request),
+            n_failed=np.atleast_1d(file.n_failed),
+            limit=int(file.limit),
+            cpu_seconds=np.atleast_1d(file.total_cpu_seconds),
+            arithmetic=frozenset(filter(None, str(file.arithmetic_of_rows).split(_BETWEEN))),
+            parameters=json.loads(file.getncattr(PARAMETERS)),
+        )
 
 
-def shard_columns(shard: FinishedShard, taken: range) -> dict[str, NDArray[np.generic]]:
-    """Columns of the rows of a shard, of some of its realisations; texts are bytes of UTF-8.
+def shard_columns(
+    shard: ShardSummary, series: Sequence[str], taken: range
+) -> dict[str, NDArray[np.generic]]:
+    """Columns of the rows of some series and realisations of a shard; texts are bytes of UTF-8.
 
     They are read without xarray, which takes 0.1 s to open a file: sweeps have hundreds.
     """
     first = shard.realisations.start
+    amplitudes = [shard.series.index(one) for one in series]
     columns = {}
     with utf8_path(shard.path) as named, netCDF4.Dataset(named) as file:
         file.set_auto_maskandscale(False)
@@ -125,28 +138,24 @@ def shard_columns(shard: FinishedShard, taken: range) -> dict[str, NDArray[np.ge
         for item in variables(SweepRow):
             stored = file[item.name]
             values = np.asarray(stored[:, :, taken.start - first : taken.stop - first])
+            values = np.ascontiguousarray(values[:, amplitudes])
             is_text = stored.ndim > len(PLACE)
             columns[item.name] = values.view(f"S{values.shape[-1]}")[..., 0] if is_text else values
     return columns
 
 
 def covering(
-    shards: Iterable[FinishedShard], n_realisation: int
-) -> list[tuple[FinishedShard, range]]:
-    """Shards of a spectrum that together hold what all of them hold, and what is taken of each.
+    shards: Iterable[ShardSummary], n_realisation: int
+) -> list[tuple[ShardSummary, range]]:
+    """Shards of a spectrum that together have as many realisations as possible, and what of each.
 
     No realisation is taken twice, and none beyond the number of those that are wanted.
     """
     chosen, position = [], 0
-    for one in sorted(shards, key=lambda one: (one.realisations.start, -one.realisations.stop)):
-        start, stop = one.realisations.start, one.realisations.stop
+    for shard in sorted(shards, key=lambda one: (one.realisations.start, -one.realisations.stop)):
+        start, stop = shard.realisations.start, shard.realisations.stop
         taken = range(max(position, start), min(stop, n_realisation))
         if taken:
-            chosen.append((one, taken))
+            chosen.append((shard, taken))
             position = taken.stop
     return chosen
-
-
-def curve_names(path: Path) -> list[str]:
-    """Names of the curves in packs that belong to the rows of a shard's file."""
-    return [name for name in read_dataset(path, ("curve",))["curve"].values.flat if name]

@@ -1,94 +1,114 @@
-"""The folder of a sweep: its files, the simulations they hold or lack, and their one table."""
+"""The folder of a sweep: the simulations that its files have or lack, its shards, its table.
+
+What is stored are the files of finished simulations (:mod:`crackfront.sweep.curves`). The files of
+shards and of the table are derived from them at any time. A file has one writer, which holds the
+lock of the shard; ranks write only their checkpoints.
+"""
 
 from __future__ import annotations
 
 import contextlib
-import functools
-import hashlib
+import fcntl
 import itertools
 import json
-import os
-from collections import Counter, defaultdict
+import time
+from collections import Counter
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
-from dataclasses import dataclass
-from operator import attrgetter
+from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
-from zipfile import ZIP_DEFLATED, ZIP_STORED, ZipFile, ZipInfo
+from typing import IO, Any
+
+import numpy as np
+from numpy.typing import NDArray
 
 from crackfront.analysis.table import SweepRow, SweepTable
-from crackfront.core.versions import PHYSICS_VERSION
-from crackfront.data.bounds import counted
-from crackfront.data.digests import (
-    SUMS,
-    digest_path,
-    forget_sums,
-    read_sums,
-    result_files,
-    stated_digest,
-    sums_text,
-)
+from crackfront.core.variables import variables
+from crackfront.core.versions import PHYSICS_VERSION, ROWS_VERSION
+from crackfront.data.digests import forget_sums
 from crackfront.data.files import (
     UnreadableFileError,
-    is_damaged,
-    read_attributes,
-    replace_atomically,
-    set_aside_damaged,
+    read_dataset,
+    read_derived,
+    set_aside_if_damaged,
     write_text,
 )
-from crackfront.data.packs import Member, Pack, members
 from crackfront.data.provenance import Provenance
-from crackfront.data.section import movable_text
 from crackfront.simulate.costs import expected_cost
-from crackfront.simulate.files import read_simulation
 from crackfront.simulate.run import SimulationResult
-from crackfront.simulate.simulation import Simulation, stems
-from crackfront.sweep.result_packs import Entry, RowIndex, new_pack, pack_paths, repair_packs
-from crackfront.sweep.rows import COMPLETE, sweep_row
+from crackfront.simulate.simulation import Simulation
+from crackfront.sweep.curves import (
+    MERGED,
+    SIMULATION,
+    StoredRows,
+    concatenated,
+    curve_files,
+    read_result,
+    read_results,
+    selected,
+    stored_rows,
+    write_curves,
+)
+from crackfront.sweep.parallel import stop_is_requested
+from crackfront.sweep.requests import FOLDER, Request, shard_request, table_request
+from crackfront.sweep.rows import AT_LIMIT, COMPLETE, STATUSES, row_columns, sweep_row
 from crackfront.sweep.shards import (
-    FinishedShard,
+    ShardSummary,
     covering,
-    curve_names,
-    finished_shard,
     shard_columns,
-    shard_request,
+    shard_summary,
     write_shard,
 )
 from crackfront.sweep.sweep import NamedSpectrum, Shard, Sweep
-from crackfront.sweep.table import SWEEP_FINGERPRINT, read_table, write_hysteresis
+from crackfront.sweep.table import TABLE_REQUEST, read_table, write_hysteresis
 
-_COMPRESSED = {".nc", ".png", ".pdf", ".gif", ".zip"}
-"""Files that become no smaller."""
+Announce = Callable[[str], None]
+"""Called with a sentence on a damaged file, or on another process that is waited for."""
+
+_NOWHERE = -1
+"""Place of a simulation that no file has."""
+
+_WAIT_SECONDS = 0.5
+"""Time between two attempts to lock a shard that another process holds. (Units: s)"""
+
+_MOST_MERGED_BYTES = 5e8
+"""Size of the files of a shard beyond which batches stay as they are. Merging holds all of them in
+memory, and files of this size are few enough. (Units: byte)"""
 
 
 @dataclass(frozen=True, slots=True)
-class StoredResult:
-    """What the packs have of a simulation: its row, or a sentence where its curve is of no use."""
+class MissingSimulations:
+    """Realisations of a series that are to be simulated."""
 
-    simulation: Simulation
-    row: SweepRow | None
-    unreadable: str
-    changed: tuple[str, ...] = ()
-    """Parts of its key that changed since it was stored, where it is missing."""
-    arithmetic: str = ""
-    """That of its origin, where it has a row."""
+    first: Simulation
+    """The first realisation, which states the parameters of all."""
+    realisations: NDArray[np.int64]
+
+    def simulations(self) -> Iterator[Simulation]:
+        """All of them."""
+        for number in self.realisations.tolist():
+            yield replace(self.first, realisation=number)
+
+    @property
+    def seconds(self) -> float:
+        """Processor time that they are expected to take (Units: s)."""
+        return expected_cost(self.first).seconds * self.realisations.size
 
 
 @dataclass(frozen=True, slots=True)
 class Inventory:
     """What a store has of some simulations, and what it lacks and why."""
 
-    done: int
-    failed: int
+    done: int = 0
+    failed: int = 0
     """Simulations with values, and those that ended without."""
-    missing: tuple[Simulation, ...]
-    """What is to be computed."""
-    unreadable: tuple[str, ...] = ()
-    """A sentence for every curve that is of no use."""
-    stale: tuple[tuple[str, ...], ...] = ()
-    """Of every missing simulation that is stored with another key the parts of it that changed."""
+    missing: tuple[MissingSimulations, ...] = ()
+    """What is to be simulated."""
+    older: int = 0
+    """Missing simulations that are stored of an older version of the physics."""
+    changed: Counter[str] = field(default_factory=Counter)
+    """Stored simulations of other parameters, by the names of what differs."""
     arithmetic: frozenset[str] = frozenset()
-    """Those of the origins of what is stored."""
+    """Processors and packages that computed what is stored."""
     cpu_seconds: float = 0.0
     expected_seconds: float = 0.0
     """Processor time of what is stored, and what was expected for it. (Units: s)"""
@@ -99,8 +119,8 @@ class Inventory:
             self.done + other.done,
             self.failed + other.failed,
             self.missing + other.missing,
-            self.unreadable + other.unreadable,
-            self.stale + other.stale,
+            self.older + other.older,
+            self.changed + other.changed,
             self.arithmetic | other.arithmetic,
             self.cpu_seconds + other.cpu_seconds,
             self.expected_seconds + other.expected_seconds,
@@ -111,15 +131,74 @@ class Inventory:
         """Number of simulations that have ended."""
         return self.done + self.failed
 
-    def stale_sentence(self) -> str:
-        """How many are stale for which reason; empty where none is."""
-        reasons = sorted(Counter(" and ".join(changed) for changed in self.stale).items())
-        listed = ", ".join(f"{count} as {reason} changed" for reason, count in reasons)
-        return f"{len(self.stale)} stored simulations are stale: {listed}" if listed else ""
+    @property
+    def n_missing(self) -> int:
+        """Number of simulations that are to be run."""
+        return sum(item.realisations.size for item in self.missing)
+
+    def simulations(self) -> list[Simulation]:
+        """Simulations that are to be run."""
+        return [one for item in self.missing for one in item.simulations()]
+
+    def sentences(self) -> list[str]:
+        """Why simulations run again although the folder has some of their names."""
+        found = []
+        if self.older:
+            found.append(
+                f"{self.older} stored simulations belong to an older version of the physics (now "
+                f"{PHYSICS_VERSION}) and run again"
+            )
+        if self.changed:
+            listed = ", ".join(f"{n} with another {name}" for name, n in self.changed.most_common())
+            found.append(f"stored simulations of other parameters stay unused: {listed}")
+        return found
 
 
-NOTHING = Inventory(0, 0, ())
-"""Inventory of no simulation."""
+@dataclass(frozen=True, slots=True)
+class LocatedRows:
+    """Where files have the simulations of some series and consecutive realisations."""
+
+    files: tuple[StoredRows, ...]
+    series: tuple[str, ...]
+    realisations: range
+    file: NDArray[np.int64]
+    place: NDArray[np.int64]
+    """Number of the file, -1 where none has the simulation, and the place of its row in it, each
+    (n_series, n_realisation)."""
+
+    @property
+    def missing(self) -> NDArray[np.bool_]:
+        """Which simulations no file has, (n_series, n_realisation)."""
+        return self.file == _NOWHERE
+
+    def column(self, name: str) -> NDArray[Any]:
+        """Values of a column of the simulations that are there, series by series."""
+        parts = [rows.columns[name] for rows in self.files]
+        starts = np.cumsum([0, *map(len, parts)])
+        there = ~self.missing
+        return np.asarray(np.concatenate(parts)[starts[self.file[there]] + self.place[there]])
+
+
+def located_rows(
+    files: Iterable[StoredRows], series: Sequence[str], realisations: range, max_sweeps: int
+) -> LocatedRows:
+    """Where files have simulations at such a limit of sweeps, of this version of the physics."""
+    # Rows that need not be remade come first.
+    usable = [rows for rows in files if rows.physics_version == PHYSICS_VERSION]
+    usable.sort(key=lambda rows: rows.rows_version != ROWS_VERSION)
+    shape = len(series), len(realisations)
+    file, place = np.full(shape, _NOWHERE), np.full(shape, _NOWHERE)
+    for number, rows in enumerate(usable):
+        stopped = rows.columns["status"] == STATUSES.index(AT_LIMIT)
+        counts = ~(stopped & (rows.columns["max_sweeps"] < max_sweeps))
+        counts &= (rows.realisation >= realisations.start) & (rows.realisation < realisations.stop)
+        for row, one in enumerate(series):
+            places = np.flatnonzero(counts & (rows.series == one))
+            columns = rows.realisation[places] - realisations.start
+            free = file[row, columns] == _NOWHERE
+            file[row, columns[free]] = number
+            place[row, columns[free]] = places[free]
+    return LocatedRows(tuple(usable), tuple(series), realisations, file, place)
 
 
 @dataclass(frozen=True, slots=True)
@@ -127,6 +206,8 @@ class Store:
     """Results of a sweep in a folder."""
 
     folder: Path
+    announce: Announce = print
+    """What is done with a sentence on a damaged file, or on another process."""
 
     @property
     def configuration(self) -> Path:
@@ -134,164 +215,304 @@ class Store:
         return self.folder / "configuration.yaml"
 
     @property
-    def curves(self) -> Path:
-        """Folder of the packs of curves and rows."""
-        return self.folder / "curves"
-
-    @property
     def hysteresis(self) -> Path:
         """File of the whole sweep."""
         return self.folder / "hysteresis.nc"
 
-    @property
-    def checkpoints(self) -> Path:
-        """Folder of the checkpoints of running simulations."""
-        return self.folder / "checkpoints"
-
-    def checkpoint(self, simulation: Simulation) -> Path:
-        """File from which a simulation goes on."""
-        return self.checkpoints / f"{simulation.stem}.nc"
+    def curve_folder(self, shard: Shard) -> Path:
+        """Folder of the finished simulations of a shard, and of its checkpoints."""
+        return self.folder / "curves" / shard.name
 
     def shard_path(self, shard: Shard) -> Path:
         """File of the rows of a shard."""
         return self.folder / "shards" / f"{shard.name}.nc"
 
-    def is_finished(self, sweep: Sweep, shard: Shard) -> bool:
-        """Whether the file of a shard is there, by its fingerprint alone."""
-        found = finished_shard(self.shard_path(shard))
-        wanted = shard_request(sweep.one_per_amplitude(shard.item), shard.realisations)
-        return found is not None and found.fingerprint == wanted
+    def set_aside_damaged(self) -> None:
+        """Set the table and the fit aside if they are damaged; the workflow makes them again."""
+        for path in (self.hysteresis, self.folder / "fit.nc"):
+            if path.is_file() and (sentence := set_aside_if_damaged(path)):
+                self.announce(f"{sentence}; the workflow makes it again")
 
-    def finished(
-        self, sweep: Sweep, item: NamedSpectrum
-    ) -> tuple[list[tuple[FinishedShard, range]], list[range]]:
-        """Files of shards of a spectrum with what is taken of each, and what none of them has."""
-        one_per_amplitude = sweep.one_per_amplitude(item)
-        found = map(finished_shard, sorted((self.folder / "shards").glob(f"{item.name}.*nc")))
-        known = (
-            one
-            for one in found
-            if one is not None
-            and one.spectrum == item.name
-            and one.fingerprint == shard_request(one_per_amplitude, one.realisations)
-        )
-        chosen, left, position = covering(known, sweep.n_realisation), [], 0
-        for _, taken in chosen:
-            left.append(range(position, taken.start))
-            position = taken.stop
-        left.append(range(position, sweep.n_realisation))
-        return chosen, [block for block in left if block]
-
-    def stored_results(
-        self, simulations: Iterable[Simulation], *, checked: bool = True
-    ) -> Iterator[StoredResult]:
-        """What the packs have of simulations, in their order; one spectrum after another.
-
-        Unless `checked`, a curve counts without a look at its digest.
-        """
-        for spectrum, group in itertools.groupby(simulations, attrgetter("spectrum_name")):
-            alike = list(group)
-            index = RowIndex(self.curves, spectrum, _span(alike), checked=checked)
-            yield from map(_stored_result, alike, stems(alike), itertools.repeat(index))
-
-    @contextlib.contextmanager
-    def packs(self, simulations: Iterable[Simulation]) -> Iterator[dict[str, Pack]]:
-        """New packs for simulations, by the names of their spectra, until they are left."""
-        self.curves.mkdir(parents=True, exist_ok=True)
-        alike: dict[str, list[Simulation]] = defaultdict(list)
-        for one in simulations:
-            alike[one.spectrum_name].append(one)
-        found = {name: new_pack(self.curves, name, _span(ones)) for name, ones in alike.items()}
-        try:
-            yield found
-        finally:
-            for pack in found.values():
-                pack.close()
-
-    def result(self, simulation: Simulation) -> SimulationResult:
-        """Stored result of a simulation; `UnreadableFileError` where no curve of it can be read."""
-        name, block = simulation.spectrum_name, _span([simulation])
-        reason = f"{self.curves} has no curve of {simulation.label}; simulate it"
-        for member in RowIndex(self.curves, name, block).curves(simulation.stem):
+    def _whole(self, paths: Iterable[Path]) -> Iterator[Path]:
+        """Those of some files that are as they were written; others are set aside."""
+        for path in paths:
             try:
-                return read_simulation(member, simulation)
-            except UnreadableFileError as error:  # another pack may have it, too
-                reason = str(error)
-        raise UnreadableFileError(reason)
+                sentence = set_aside_if_damaged(path)
+            except FileNotFoundError:  # another process has merged it meanwhile
+                continue
+            if sentence:
+                self.announce(f"{sentence}; what it had is computed again")
+            else:
+                yield path
 
-    def inventory(self, simulations: Iterable[Simulation], *, checked: bool = True) -> Inventory:
-        """What the packs have and lack of some simulations; as :meth:`stored_results`."""
-        results = list(self.stored_results(simulations, checked=checked))
-        found = [one for one in results if one.row is not None]
-        absent = [one for one in results if one.row is None]
-        rows = [one.row for one in found if one.row is not None]
-        done = sum(row.status in COMPLETE for row in rows)
-        expected = expected_seconds(one.simulation for one in found)
-        return Inventory(
-            done,
-            len(rows) - done,
-            tuple(one.simulation for one in absent),
-            tuple(one.unreadable for one in absent if one.unreadable),
-            tuple(one.changed for one in absent if one.changed),
-            frozenset(filter(None, (one.arithmetic for one in found))),
-            sum(row.cpu_seconds for row in rows if row.cpu_seconds > 0),
-            expected,
+    def _curve_folders(self, item: NamedSpectrum, realisations: range) -> list[Path]:
+        """Folders in which simulations of a spectrum and block may be, whatever their shards."""
+        folders = [self.folder / "curves" / item.name]
+        for path in sorted((self.folder / "curves").glob(f"{item.name}.*-*")):
+            first, _, last = path.name.removeprefix(f"{item.name}.").partition("-")
+            if first.isdecimal() and last.isdecimal():
+                block = range(int(first), int(last) + 1)
+                if max(block.start, realisations.start) < min(block.stop, realisations.stop):
+                    folders.append(path)
+        return [folder for folder in folders if folder.is_dir()]
+
+    def _stored_rows(self, item: NamedSpectrum, realisations: range) -> list[StoredRows]:
+        """Rows of all files of curves that may have simulations of a spectrum and block."""
+        found = []
+        for folder in self._curve_folders(item, realisations):
+            for path in self._whole(curve_files(folder)):
+                with contextlib.suppress(FileNotFoundError):
+                    found.append(stored_rows(path))
+        return found
+
+    def located(self, sweep: Sweep, shard: Shard) -> LocatedRows:
+        """Where the files of curves have the simulations of a shard."""
+        return located_rows(
+            self._stored_rows(shard.item, shard.realisations),
+            sweep.series(shard.item),
+            shard.realisations,
+            sweep.numerics.max_sweeps,
         )
+
+    def inventory(self, sweep: Sweep, item: NamedSpectrum, realisations: range) -> Inventory:
+        """What the files of curves have and lack of a spectrum and block."""
+        firsts = sweep.one_per_amplitude(item)
+        rows = self._stored_rows(item, realisations)
+        limit = sweep.numerics.max_sweeps
+        located = located_rows(rows, sweep.series(item), realisations, limit)
+        missing, numbers = located.missing, np.array(realisations)
+        n_done = int(np.isin(located.column("status"), _COMPLETE_PLACES).sum()) if rows else 0
+        n_stored = int(np.count_nonzero(~missing))
+        lacking = [
+            MissingSimulations(first, numbers[row])
+            for first, row in zip(firsts, missing, strict=True)
+            if row.any()
+        ]
+        older, changed = _unused(rows, firsts, missing, realisations)
+        costs = [expected_cost(first).seconds for first in firsts]
+        return Inventory(
+            n_done,
+            n_stored - n_done,
+            tuple(lacking),
+            older,
+            changed,
+            frozenset(located.column("arithmetic").tolist()) if n_stored else frozenset(),
+            float(np.nansum(located.column("cpu_seconds"))) if n_stored else 0.0,
+            float(np.sum((~missing).sum(axis=1) * costs)),
+        )
+
+    def shard_summaries(self, item: NamedSpectrum) -> list[ShardSummary]:
+        """Attributes of the files of shards of a spectrum that are whole."""
+        folder = self.folder / "shards"
+        paths = [folder / f"{item.name}.nc", *sorted(folder.glob(f"{item.name}.*-*.nc"))]
+        found = map(shard_summary, self._whole(path for path in paths if path.is_file()))
+        return [summary for summary in found if summary.spectrum == item.name]
+
+    def is_finished(self, sweep: Sweep, shard: Shard) -> bool:
+        """Whether the file of a shard is there, whole, and what is asked for."""
+        path = self.shard_path(shard)
+        if not path.is_file() or not [*self._whole([path])]:
+            return False
+        return shard_summary(path).request == shard_request(sweep, shard).digest
 
     def unfinished(self, sweep: Sweep, shards: Iterable[Shard]) -> Inventory:
-        """What the packs have and lack of the shards that have no file; finished ones are done."""
-        found = NOTHING
+        """What is stored and lacking of shards; those with a file that is asked for are done."""
+        found = Inventory()
         for shard in shards:
             if self.is_finished(sweep, shard):
-                size = len(sweep.elastic_energies) * len(shard.realisations)
-                found += Inventory(size, 0, ())
+                found += Inventory(len(sweep.elastic_energies) * len(shard.realisations))
             else:
-                found += self.inventory(sweep.simulations(shard.item, shard.realisations))
+                found += self.inventory(sweep, shard.item, shard.realisations)
         return found
 
     def progress(self, sweep: Sweep, item: NamedSpectrum) -> Inventory:
-        """How far a spectrum is: finished shards by their attributes, the rest by the packs."""
-        chosen, left = self.finished(sweep, item)
-        found = NOTHING
-        for shard, taken in chosen:
-            size = len(sweep.elastic_energies) * len(taken)
-            cost = sum(expected_cost(one).seconds for one in sweep.one_per_amplitude(item)) * len(
-                taken
-            )
-            share = len(taken) / len(shard.realisations)
-            failed = min(shard.failed, size)
+        """How far a spectrum is: by the attributes of its shards, the rest by files of curves."""
+        firsts, series = sweep.one_per_amplitude(item), sweep.series(item)
+        costs = sum(expected_cost(first).seconds for first in firsts)
+        limit, found, position = sweep.numerics.max_sweeps, Inventory(), 0
+        known = [
+            summary
+            for summary in self.shard_summaries(item)
+            if all(summary.has_states(one, limit) for one in series)
+        ]
+        for summary, taken in covering(known, sweep.n_realisation):
+            if gap := range(position, taken.start):
+                found += self.inventory(sweep, item, gap)
+            rows = [summary.series.index(one) for one in series]
+            n_failed, size = int(summary.n_failed[rows].sum()), len(rows) * len(taken)
+            share = len(taken) / len(summary.realisations)
             found += Inventory(
-                size - failed,
-                failed,
-                (),
-                arithmetic=shard.arithmetic,
-                cpu_seconds=share * shard.cpu_seconds,
-                expected_seconds=cost,
+                size - min(n_failed, size),
+                min(n_failed, size),
+                arithmetic=summary.arithmetic,
+                cpu_seconds=share * float(summary.cpu_seconds[rows].sum()),
+                expected_seconds=costs * len(taken),
             )
-        for block in left:
-            found += self.inventory(sweep.simulations(item, block), checked=False)
+            position = taken.stop
+        if gap := range(position, sweep.n_realisation):
+            found += self.inventory(sweep, item, gap)
+        return found
+
+    @contextlib.contextmanager
+    def locked(self, shards: Iterable[Shard]) -> Iterator[bool]:
+        """Hold the locks of shards; yields whether another process had one of them.
+
+        Waits until that has ended, in whatever way, and announces it: a killed Snakemake leaves its
+        jobs running, and starts the same ones again. Where the file system has no locks nothing is
+        held. KeyboardInterrupt if a stop is requested meanwhile.
+        """
+        waited = False
+        with contextlib.ExitStack() as files:
+            # In the order of the sweep, so that no two processes wait for each other.
+            for shard in shards:
+                folder = self.curve_folder(shard)
+                folder.mkdir(parents=True, exist_ok=True)
+                file = files.enter_context((folder / ".lock").open("ab"))
+                waited |= self._hold(file, shard)
+                # Only this process writes here now: what is half-written has no writer any more.
+                for part in folder.glob(".*.part"):
+                    part.unlink(missing_ok=True)
+            yield waited
+
+    def _hold(self, file: IO[bytes], shard: Shard) -> bool:
+        """Lock a file; whether another process had locked it."""
+        waited = False
+        while True:
+            try:
+                fcntl.lockf(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except (BlockingIOError, PermissionError):
+                if not waited:
+                    self.announce(
+                        f"another process simulates {shard.name} in {self.folder} already; waiting "
+                        "for its results"
+                    )
+                waited = True
+                if stop_is_requested():
+                    raise KeyboardInterrupt from None
+                time.sleep(_WAIT_SECONDS)
+            except OSError:
+                return waited  # a file system without locks
+            else:
+                return waited
+
+    def running_shards(self) -> list[str]:
+        """Names of the shards whose lock another process holds, as far as this machine sees it."""
+        found = []
+        for path in sorted((self.folder / "curves").glob("*/.lock")):
+            with contextlib.suppress(OSError), path.open("ab") as file:
+                try:
+                    fcntl.lockf(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                except (BlockingIOError, PermissionError):
+                    found.append(path.parent.name)
         return found
 
     def finish_shard(self, sweep: Sweep, shard: Shard, origin: Provenance) -> Path:
-        """Write the file of a shard from its rows in the packs, unless it is there.
+        """Merge the files of curves of a shard, and derive the file of its rows.
 
-        ValueError if simulations are missing.
+        The process holds the lock of the shard. ValueError if simulations are missing.
         """
         path = self.shard_path(shard)
         if self.is_finished(sweep, shard):
             return path
-        found = list(self.stored_results(sweep.simulations(shard.item, shard.realisations)))
-        rows = [one.row for one in found if one.row is not None]
-        if len(rows) < len(found):
-            first = next(one.simulation for one in found if one.row is None)
+        located = self.located(sweep, shard)
+        if n_missing := int(np.count_nonzero(located.missing)):
             raise ValueError(
-                f"{len(found) - len(rows)} of {len(found)} simulations are missing or unreadable "
-                f"in {self.curves}, the first is {first.label}; run the same command again"
+                f"{n_missing} of {located.missing.size} simulations are not in "
+                f"{self.curve_folder(shard)}; run the same command again"
             )
-        arithmetic = {one.arithmetic for one in found if one.arithmetic}
+        columns = {item.name: located.column(item.name) for item in variables(SweepRow)}
+        remade = [number for number, rows in enumerate(located.files) if _is_older(rows)]
+        for number in remade:
+            self._remake(sweep, shard, located, number, columns)
+        arithmetic = {*located.column("arithmetic").tolist()}
+        self._merge(shard, located, columns, origin)
         forget_sums(self.folder)
-        write_shard(path, sweep, shard, rows, arithmetic, origin)
+        write_request(self.folder, shard_request(sweep, shard))
+        write_shard(path, sweep, shard, columns, arithmetic, origin)
         return path
+
+    def _remake(
+        self,
+        sweep: Sweep,
+        shard: Shard,
+        located: LocatedRows,
+        number: int,
+        columns: dict[str, NDArray[Any]],
+    ) -> None:
+        """Make the rows of a file anew from its states, in columns of the whole shard."""
+        rows = located.files[number]
+        firsts = sweep.one_per_amplitude(shard.item)
+        chosen = np.flatnonzero(located.file == number)
+        amplitudes, realisations = np.unravel_index(chosen, located.file.shape)
+        simulations = [
+            replace(firsts[amplitude], realisation=shard.realisations[number])
+            for amplitude, number in zip(amplitudes.tolist(), realisations.tolist(), strict=True)
+        ]
+        results = read_results(rows.path, located.place.ravel()[chosen], simulations)
+        for position, result in zip(chosen.tolist(), results, strict=True):
+            if result is None:
+                continue
+            for name, values in row_columns([sweep_row(result)], (1,)).items():
+                if values.dtype.kind == "U":  # of any length
+                    columns[name] = columns[name].astype(object)
+                columns[name][position] = values[0]
+
+    def _merge(
+        self,
+        shard: Shard,
+        located: LocatedRows,
+        columns: dict[str, NDArray[Any]],
+        origin: Provenance,
+    ) -> None:
+        """Put all simulations of a shard into one file, and remove those that it replaces."""
+        folder = self.curve_folder(shard)
+        used = [number for number in range(len(located.files)) if np.any(located.file == number)]
+        paths = [located.files[number].path for number in used]
+        if len(paths) == 1 and paths[0].parent == folder and paths[0].name.startswith(MERGED):
+            rows = located.files[used[0]]
+            if not _is_older(rows) and len(rows.series) == located.file.size:
+                return
+        if sum(path.stat().st_size for path in paths) > _MOST_MERGED_BYTES:
+            return
+        parts, order = [], []
+        for number in used:
+            chosen = located.place[located.file == number]
+            parts.append(selected(read_dataset(located.files[number].path), chosen))
+            order.append(np.flatnonzero(located.file.ravel() == number))
+        merged = selected(concatenated(parts), np.argsort(np.concatenate(order)))
+        merged = merged.assign(
+            {name: (SIMULATION, values, merged[name].attrs) for name, values in columns.items()}
+        )
+        kept = write_curves(folder, MERGED, shard.name, merged, origin)
+        for path in curve_files(folder):
+            if path != kept and self._is_replaced(path, kept):
+                path.unlink()
+
+    def _is_replaced(self, path: Path, kept: Path) -> bool:
+        """Whether a file has only simulations that another one has too, or older ones."""
+        rows, others = stored_rows(path), stored_rows(kept)
+        if rows.physics_version != PHYSICS_VERSION:
+            return True
+        known = {*zip(others.series.tolist(), others.realisation.tolist(), strict=True)}
+        return known.issuperset(zip(rows.series.tolist(), rows.realisation.tolist(), strict=True))
+
+    def result(self, sweep: Sweep, simulation: Simulation) -> SimulationResult:
+        """Stored result of a simulation; `UnreadableFileError` where it is not stored."""
+        number = simulation.realisation
+        item = sweep.named(simulation.spectrum_name)
+        block = range(number, number + 1)
+        located = located_rows(
+            self._stored_rows(item, block),
+            (simulation.series,),
+            block,
+            simulation.solver.max_sweeps,
+        )
+        if located.missing.any():
+            raise UnreadableFileError(
+                f"{self.folder / 'curves'} does not have {simulation.label}; simulate it"
+            )
+        path = located.files[located.file[0, 0]].path
+        return read_result(path, int(located.place[0, 0]), simulation)
 
     def table(self, sweep: Sweep) -> SweepTable:
         """Arrays of the file of the whole sweep.
@@ -303,47 +524,18 @@ class Store:
 
     def about(self, sweep: Sweep) -> dict[str, str]:
         """Attributes of the file of the whole sweep; refused as by :meth:`table`."""
-        self._refuse_no_table()
-        about = read_attributes(self.hysteresis)
-        if about.get(SWEEP_FINGERPRINT) != sweep.table_fingerprint:
+        if not self.hysteresis.exists():
+            raise ValueError(
+                f"{self.folder} has no hysteresis.nc; run crackfront aggregate with the "
+                "configuration of the sweep, or the workflow"
+            )
+        about = read_derived(self.hysteresis, ()).attrs
+        if about.get(TABLE_REQUEST) != table_request(sweep).digest:
             raise ValueError(
                 f"{self.hysteresis} is the table of another configuration than the one given; run "
                 "crackfront simulate and crackfront aggregate with this one, or the workflow"
             )
-        return {name: str(value) for name, value in about.items()}
-
-    def _refuse_no_table(self) -> None:
-        """Raise ValueError if there is no file of the whole sweep."""
-        if not self.hysteresis.exists():
-            raise ValueError(
-                f"{self.folder} holds no hysteresis.nc; run crackfront aggregate with the "
-                "configuration of the sweep, or the workflow"
-            )
-
-    def repair(self, configuration: Path) -> Iterator[str]:
-        """Set aside what is damaged, and remove shards whose curves are gone, to be made anew.
-
-        Yields a sentence for every such file.
-        """
-        if not any((self.folder / name).exists() for name in _OF_SWEEP):
-            return
-        for path in sorted((self.folder / "shards").glob("*.nc")):
-            if stated_digest(path) is None:
-                forget_sums(self.folder)
-                path.unlink()
-                yield f"{path} is made anew, as no file beside it states its checksum"
-        yield from set_aside_damaged(self.folder)
-        yield from repair_packs(pack_paths(self.curves))
-        if (self.folder / "shards").is_dir() and not self.configuration.is_file():
-            write_text(self.configuration, movable_text(configuration))
-        known = {one.name for path in pack_paths(self.curves) for one in members(path)[0]}
-        for path in sorted((self.folder / "shards").glob("*.nc")):
-            if lost := [name for name in curve_names(path) if name not in known]:
-                forget_sums(self.folder)
-                path.unlink()
-                digest_path(path).unlink(missing_ok=True)
-                curves = counted(len(lost), "curve")
-                yield f"{path} is made anew, as it lacks {curves} of its simulations"
+        return {str(name): str(value) for name, value in about.items()}
 
     def aggregate(
         self, sweep: Sweep, origin: Provenance, watched: Callable[[list[Any]], Iterable[Any]] = iter
@@ -353,95 +545,73 @@ class Store:
         Shards are read as `watched` yields them, which may show how far this is. ValueError if
         shards are missing or damaged.
         """
-        shards, missing = [], 0
+        limit, chosen, n_missing = sweep.numerics.max_sweeps, [], 0
         for item in sweep.spectra:
-            chosen, left = self.finished(sweep, item)
-            missing += sum(map(len, left)) * len(sweep.elastic_energies)
-            shards.append(chosen)
-        if missing:
+            series = sweep.series(item)
+            known = [one for one in self.shard_summaries(item) if one.has_rows(series, limit)]
+            taken = covering(known, sweep.n_realisation)
+            n_missing += sweep.n_realisation - sum(len(block) for _, block in taken)
+            chosen.append([(shard, series, block) for shard, block in taken])
+        if n_missing:
             raise ValueError(
-                f"{missing} of {sweep.n_simulation} simulations are in no finished shard of "
-                f"{self.folder}; run `crackfront simulate` with this configuration and output, or "
-                "`make` again"
+                f"{n_missing * len(sweep.elastic_energies)} of {sweep.n_simulation} simulations "
+                f"are in no finished shard of {self.folder}; run `crackfront simulate` with this "
+                "configuration and output, or `make` again"
             )
-        read = (shard_columns(*one) for one in watched([one for some in shards for one in some]))
-        parts = [[*itertools.islice(read, len(chosen))] for chosen in shards]
+        read = (shard_columns(*one) for one in watched([one for some in chosen for one in some]))
+        parts = [[*itertools.islice(read, len(some))] for some in chosen]
         forget_sums(self.folder)
+        write_request(self.folder, table_request(sweep))
         write_hysteresis(self.hysteresis, sweep, parts, origin)
         return self.hysteresis
 
-    def unpack_curves(self, folder: Path) -> int:
-        """Write the curves of the table into a folder, a file each; their number.
 
-        Curves of other numerics, which the packs may hold too, are left out. ValueError if any is
-        missing or damaged, before a file is written.
-        """
-        self._refuse_no_table()
-        wanted = dict.fromkeys(curve_names(self.hysteresis))
-        found: dict[str, Member] = {}
-        for path in pack_paths(self.curves):
-            for member in members(path)[0]:
-                if member.name in wanted and member.content() is not None:
-                    found.setdefault(member.name, member)
-        if lost := [name for name in wanted if name not in found]:
-            raise ValueError(
-                f"{len(lost)} of {len(wanted)} curves of {self.hysteresis} are missing or damaged "
-                f"in {self.curves}, the first is {lost[0]}; run crackfront repair and make"
-            )
-        for name, member in found.items():
-            content = member.content() or b""
-            replace_atomically(folder / name, functools.partial(Path.write_bytes, data=content))
-        return len(found)
+_COMPLETE_PLACES = [STATUSES.index(word) for word in COMPLETE]
 
-    def archive(self, path: Path, *, curves: bool) -> int:
-        """Write the files of the sweep and their checksums into a ZIP file; the number of files.
 
-        Checkpoints and what is only half written are left out; the files of the single simulations
-        belong to it with `curves`. Names in the archive begin with that of the folder, and the list
-        stands in it too: unpack, go there, `sha256sum --check SHA256SUMS`. ValueError if the folder
-        holds no file of a sweep, or a file that belongs to the archive is damaged.
-        """
-        if not self.hysteresis.is_file():
-            raise ValueError(
-                f"{self.folder} holds no hysteresis.nc; run the sweep before it is archived"
-            )
-        listed = read_sums(self.folder)
-        own = os.path.realpath(path)  # also of a link to itself
-        found = {
-            file: str(file.relative_to(self.folder))
-            for file in result_files(self.folder)
-            if (curves or file.parent != self.curves) and os.path.realpath(file) != own
-        }
-        if damaged := [file for file, name in found.items() if is_damaged(file, listed.get(name))]:
-            raise ValueError(
-                f"{self.folder} holds {counted(len(damaged), 'damaged file')}, the first is "
-                f"{damaged[0]}; run make, which makes them anew, before it is archived"
-            )
+def _is_older(rows: StoredRows) -> bool:
+    """Whether rows are of an older version, and made anew from states."""
+    return rows.rows_version != ROWS_VERSION
 
-        root = Path(self.folder.name)
-        for name in found.values():
-            try:
-                str(root / name).encode()
-            except UnicodeEncodeError as error:
-                raise ValueError(
-                    f"{self.folder / name} has a name that is no UTF-8 text, as those in a ZIP "
-                    "file must be; rename it"
-                ) from error
 
-        def write(part: Path) -> None:
-            digests = {}
-            with ZipFile(part, "w") as archive:
-                for file, name in found.items():
-                    content = file.read_bytes()
-                    # A clock may have been wrong: ZIP knows no year before 1980.
-                    entry = ZipInfo.from_file(file, root / name, strict_timestamps=False)
-                    entry.compress_type = ZIP_STORED if file.suffix in _COMPRESSED else ZIP_DEFLATED
-                    archive.writestr(entry, content)
-                    digests[name] = hashlib.sha256(content).hexdigest()
-                archive.writestr(str(root / SUMS), sums_text(digests))
+def _unused(
+    rows: Iterable[StoredRows],
+    firsts: Sequence[Simulation],
+    missing: NDArray[np.bool_],
+    realisations: range,
+) -> tuple[int, Counter[str]]:
+    """How many missing simulations are stored of older physics, and what others differ in."""
+    older, changed = 0, Counter[str]()
+    wanted = {first.series for first in firsts}
+    for stored in rows:
+        within = np.isin(stored.realisation, realisations)
+        if stored.physics_version != PHYSICS_VERSION:
+            older += int(np.count_nonzero(within & np.isin(stored.series, [*wanted])))
+            continue
+        for series, parameters in stored.parameters.items():
+            if series not in wanted and missing.any():
+                names = min((_differences(first, parameters) for first in firsts), key=len)
+                count = int(np.count_nonzero(within & (stored.series == series)))
+                changed[" and ".join(names)] += count
+    return older, +changed
 
-        replace_atomically(path, write)
-        return len(found)
+
+def _differences(simulation: Simulation, parameters: dict[str, Any]) -> list[str]:
+    """Names of the parameters in which a simulation differs from stored ones."""
+    # As JSON reads it back.
+    now = json.loads(json.dumps(simulation.parameters))
+    names = sorted(now.keys() | parameters.keys())
+    return [name for name in names if now.get(name) != parameters.get(name)]
+
+
+def write_request(results: Path, request: Request) -> None:
+    """Write the file of a request among results unless it is there; remove earlier ones."""
+    folder = results / FOLDER
+    for path in folder.glob(request.siblings):
+        if path.name != request.name:
+            path.unlink()
+    if not (folder / request.name).is_file():
+        write_text(folder / request.name, request.text)
 
 
 def mixture_sentence(arithmetic: Collection[str]) -> str:
@@ -450,57 +620,3 @@ def mixture_sentence(arithmetic: Collection[str]) -> str:
         return ""
     listed = "; ".join(sorted(arithmetic))
     return f"stored simulations differ in their origin, and may in their last digits: {listed}"
-
-
-_OF_SWEEP = "curves", "shards", "configuration.yaml", "hysteresis.nc"
-"""Files and folders, one of which every folder has that a sweep has written to."""
-
-
-def lost_curves(folder: Path) -> Iterator[str]:
-    """Curves that belong to rows of finished shards in a folder, and are in no pack."""
-    known = {one.name for path in pack_paths(folder / "curves") for one in members(path)[0]}
-    for path in sorted((folder / "shards").glob("*.nc")):
-        if finished_shard(path) is not None:
-            yield from (name for name in curve_names(path) if name not in known)
-
-
-def _stored_result(simulation: Simulation, stem: str, index: RowIndex) -> StoredResult:
-    """What an index has of a simulation."""
-    if (entry := index.entry(stem)) is not None:
-        return StoredResult(simulation, entry.row, "", arithmetic=entry.arithmetic)
-    unreadable, alike = "", list(index.alike(stem))
-    for member in index.curves(stem):
-        try:
-            row = sweep_row(read_simulation(member, simulation))
-        except UnreadableFileError as error:
-            unreadable = str(error)
-        else:
-            arithmetic = alike[-1].arithmetic if alike else ""
-            return StoredResult(simulation, row, "", arithmetic=arithmetic)
-    changes = [_changed_parameters(simulation, one) for one in alike]
-    nearest = min(changes, key=len) if changes else []
-    return StoredResult(simulation, None, unreadable, tuple(nearest))
-
-
-def _changed_parameters(simulation: Simulation, entry: Entry) -> list[str]:
-    """Names of what differs between a simulation and one of its name that is stored."""
-    if entry.physics_version != PHYSICS_VERSION:
-        return [f"version of the physics (now {PHYSICS_VERSION})"]
-    # As JSON reads it back.
-    now = json.loads(json.dumps(simulation.parameters))
-    names = sorted(now.keys() | entry.parameters.keys())
-    return [name for name in names if now.get(name) != entry.parameters.get(name)]
-
-
-def expected_seconds(simulations: Iterable[Simulation]) -> float:
-    """Processor time that simulations are expected to take, where realisations cost the same."""
-    alike: dict[tuple[str, float], list[Simulation]] = defaultdict(list)
-    for one in simulations:
-        alike[one.spectrum_name, one.elastic_energy].append(one)
-    return sum(expected_cost(ones[0]).seconds * len(ones) for ones in alike.values())
-
-
-def _span(simulations: Sequence[Simulation]) -> range:
-    """The least consecutive realisations among which those of simulations are."""
-    numbers = [one.realisation for one in simulations]
-    return range(min(numbers), max(numbers) + 1)

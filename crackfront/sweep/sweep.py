@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import hashlib
+import functools
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from typing import Literal
 
 from crackfront.core.adhesion import FieldKind
@@ -108,24 +108,13 @@ class Sweep:
             for first in self.one_per_amplitude(one):
                 yield from (replace(first, realisation=number) for number in block)
 
-    def one_per_amplitude(self, item: NamedSpectrum) -> list[Simulation]:
+    def one_per_amplitude(self, item: NamedSpectrum) -> tuple[Simulation, ...]:
         """First realisation of a spectrum for each amplitude."""
-        return [self.simulation(item, energy, 0) for energy in self.elastic_energies]
+        return _one_per_amplitude(self, item)
 
-    @property
-    def fingerprint(self) -> str:
-        """Twelve hexadecimal digits that change with what a configuration means."""
-        return self._fingerprint()
-
-    @property
-    def table_fingerprint(self) -> str:
-        """The same without what is done with the table of the sweep."""
-        return self._fingerprint("failed_fraction", "fit")
-
-    def _fingerprint(self, *without: str) -> str:
-        """Digits that change with any parameter but some."""
-        parts = [getattr(self, item.name) for item in fields(self) if item.name not in without]
-        return _digits(repr(parts))
+    def series(self, item: NamedSpectrum) -> tuple[str, ...]:
+        """Series of the simulations of a spectrum, for each amplitude."""
+        return _series(self, item)
 
     @property
     def n_simulation(self) -> int:
@@ -165,6 +154,13 @@ class Sweep:
         return Shard(item, realisations, item.name + ("" if realisations == everything else block))
 
 
-def _digits(text: str) -> str:
-    """Twelve hexadecimal digits that change with a text."""
-    return hashlib.sha256(text.encode()).hexdigest()[:12]
+@functools.lru_cache(maxsize=4096)
+def _one_per_amplitude(sweep: Sweep, item: NamedSpectrum) -> tuple[Simulation, ...]:
+    """First realisations; the laws of the numerics take a millisecond for each."""
+    return tuple(sweep.simulation(item, energy, 0) for energy in sweep.elastic_energies)
+
+
+@functools.lru_cache(maxsize=4096)
+def _series(sweep: Sweep, item: NamedSpectrum) -> tuple[str, ...]:
+    """Series of the first realisations."""
+    return tuple(first.series for first in _one_per_amplitude(sweep, item))

@@ -6,7 +6,7 @@ import contextlib
 import json
 import math
 from collections import Counter
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import asdict
 from operator import attrgetter
 from pathlib import Path
@@ -21,28 +21,26 @@ from crackfront.analysis.steady import STEADY_DEFINITION
 from crackfront.analysis.table import SweepAxes, SweepRow, SweepTable
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.variables import variables
-from crackfront.data.files import UnreadableFileError, read_dataset, write_dataset
+from crackfront.data.files import UnreadableFileError, read_derived, write_derived
 from crackfront.data.labels import flag_words, labelled_fields
 from crackfront.data.provenance import Provenance
-from crackfront.sweep.rows import labelled_columns, row_columns
+from crackfront.sweep.requests import table_request
+from crackfront.sweep.rows import labelled_columns
 from crackfront.sweep.sweep import Sweep
 
-SWEEP_FINGERPRINT = "sweep_fingerprint"
-"""Attribute that says of which configuration a table is."""
+TABLE_REQUEST = "request"
+"""Attribute that says what a table was asked for, by the digest of its request."""
 
 _WINDOW = ("lowest_radius", "highest_radius")
 """Ends of the steady window."""
 
 
-def rows_dataset(sweep: Sweep, rows: Sequence[SweepRow], realisations: range) -> xr.Dataset:
-    """Rows of all spectra and amplitudes of a sweep and some of its realisations.
-
-    They stand in the order of :meth:`crackfront.sweep.sweep.Sweep.simulations`.
-    """
-    axes = _axes(sweep, realisations)
-    shape = axes.spectrum.size, axes.amplitude.size, axes.realisation.size
-    columns = labelled_columns(row_columns(rows, shape))
-    return xr.Dataset(columns, labelled_fields(axes), _attributes(sweep))
+def columns_dataset(
+    sweep: Sweep, columns: Mapping[str, NDArray[np.generic]], realisations: range
+) -> xr.Dataset:
+    """Dataset of rows: columns over all spectra, all amplitudes and some realisations."""
+    axes = labelled_fields(_axes(sweep, realisations))
+    return xr.Dataset(labelled_columns(columns), axes, _attributes(sweep))
 
 
 def write_hysteresis(
@@ -62,10 +60,10 @@ def write_hysteresis(
             np.concatenate([one.pop(variable.name) for one in parts], axis=2) for parts in shards
         ]
         columns[variable.name] = np.concatenate(spectra)
-    axes = labelled_fields(_axes(sweep, range(sweep.n_realisation)))
-    dataset = xr.Dataset(labelled_columns(columns), axes, _attributes(sweep))
+    dataset = columns_dataset(sweep, columns, range(sweep.n_realisation))
+    request = {TABLE_REQUEST: table_request(sweep).digest}
     with _small_chunk_caches():
-        write_dataset(path, dataset, origin)
+        write_derived(path, dataset.assign_attrs(request), origin)
 
 
 @contextlib.contextmanager
@@ -104,7 +102,7 @@ def read_statuses(path: Path) -> Counter[str]:
 
 def _read(path: Path, names: Collection[str]) -> xr.Dataset:
     """Dataset of a file with variables that it must have, `status` with the words of its flags."""
-    dataset = read_dataset(path, names)
+    dataset = read_derived(path, names)
     missing = [name for name in names if name not in dataset]
     if "status" in dataset and "flag_meanings" not in dataset.status.attrs:
         missing.append("the flags of status")
@@ -136,6 +134,7 @@ def _axes(sweep: Sweep, realisations: range) -> SweepAxes:
         tile_side=each("resolution.tile_side"),
         n_point=each("resolution.n_point"),
         tolerance=each("solver.tolerance"),
+        series=each("series"),
         amplitude=energies,
         w_rms_requested=2 * np.sqrt(energies),
         realisation=np.array(realisations),
@@ -150,7 +149,6 @@ def _attributes(sweep: Sweep) -> dict[str, str | float]:
         "kind": sweep.kind,
         "definition": STEADY_DEFINITION,
         "sweep_seed": sweep.seed,
-        SWEEP_FINGERPRINT: sweep.table_fingerprint,
     }
     if sweep.scales is not None:
         attributes |= {f"scale_{name}": value for name, value in asdict(sweep.scales).items()}

@@ -1,34 +1,43 @@
-"""Simulations as tasks: run and checkpointed on the ranks, the longest first, and stored here."""
+"""Simulations as tasks: run and checkpointed on the ranks, the longest first, and stored here.
+
+Ranks return rows and states, and write only checkpoints. The process that distributes the work
+writes what is finished in batches.
+"""
 
 from __future__ import annotations
 
-import functools
-from collections.abc import Callable, Generator, Mapping, Sequence
+import time
+from collections.abc import Callable, Generator, Sequence
 from contextlib import closing
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 
 from numba.core.errors import NumbaError
 
 from crackfront.core.outcome import DefectError
-from crackfront.core.versions import PHYSICS_VERSION, ROWS_VERSION
 from crackfront.data.bounds import TooLargeError
-from crackfront.data.digests import forget_sums
-from crackfront.data.files import dataset_content, leftover_parts, write_text
-from crackfront.data.packs import Pack
+from crackfront.data.digests import forget_sums, is_whole
+from crackfront.data.files import write_text
 from crackfront.data.provenance import Provenance
 from crackfront.simulate.costs import expected_cost
-from crackfront.simulate.files import read_checkpoint, simulation_dataset, write_checkpoint
+from crackfront.simulate.files import read_checkpoint, write_checkpoint
 from crackfront.simulate.run import PartialRun, SimulationResult, compile_solver, run_simulation
 from crackfront.simulate.simulation import Simulation
 from crackfront.sweep import parallel
-from crackfront.sweep.checkpoints import CheckpointFile
-from crackfront.sweep.result_packs import Entry
+from crackfront.sweep.checkpoints import CheckpointTimer
+from crackfront.sweep.curves import BATCH, FinishedSimulation, curves_dataset, write_curves
 from crackfront.sweep.rows import failed_row, sweep_row
 from crackfront.sweep.store import Store
+from crackfront.sweep.sweep import Shard
 
 _STOPPED, _NOT_STORED = "stopped", "not_stored"
 """Statuses of tasks after which a run ends; they have no row."""
+
+_CHECKPOINT = "checkpoint"
+"""Beginning of the names of the files of checkpoints."""
+
+_MOST_WAITING = 2000
+"""Finished simulations that are written at once, however short the time since the last batch."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,62 +53,114 @@ class NotStoredError(OSError):
     """The machine could not compute a simulation or store it."""
 
 
+class BatchWriter:
+    """Writes finished simulations of one shard, from time to time, into files of several."""
+
+    def __init__(self, folder: Path, origin: Provenance, seconds: float) -> None:
+        self._folder, self._origin, self._seconds = folder, origin, seconds
+        self._finished: list[FinishedSimulation] = []
+        self._written = time.monotonic()
+        self._count = 0
+
+    def add(self, finished: FinishedSimulation) -> None:
+        """Take a finished simulation; it is written with others in time."""
+        self._finished.append(finished)
+        if len(self._finished) >= _MOST_WAITING:
+            self.flush()
+
+    def flush_in_time(self) -> None:
+        """Write what is finished if the last batch was long enough ago."""
+        if time.monotonic() - self._written >= self._seconds:
+            self.flush()
+
+    def flush(self) -> None:
+        """Write what is finished, and remove its checkpoints."""
+        self._written = time.monotonic()
+        if not self._finished:
+            return
+        self._count += 1
+        dataset = curves_dataset(self._finished)
+        write_curves(self._folder, BATCH, f"{self._count:06}", dataset, self._origin)
+        for finished in self._finished:
+            for path in checkpoint_files(self._folder, finished.simulation):
+                path.unlink(missing_ok=True)
+        self._finished = []
+
+
+def checkpoint_files(folder: Path, simulation: Simulation) -> list[Path]:
+    """Checkpoints of a simulation in the folder of its shard, the latest last."""
+    found = folder.glob(f"{_CHECKPOINT}-{simulation.stem}-*.nc")
+    return sorted(found, key=lambda path: path.stat().st_mtime)
+
+
 def run_and_store(
     store: Store,
-    simulations: Sequence[Simulation],
+    shards: Sequence[tuple[Shard, Sequence[Simulation]]],
     origin: Provenance,
-    checkpoint_seconds: float = 60.0,
+    seconds: float = 60.0,
 ) -> Generator[tuple[Simulation, SimulationOutcome], None, None]:
-    """Run simulations, the longest first, and store each as soon as it is finished.
+    """Run simulations of shards, the longest first, and store them in batches.
 
-    Yields each simulation with how it ended, in the order in which they end. Close the generator to
-    leave it earlier: it waits for the ranks. OSError if nothing can be written in the folder,
-    before anything is run; NotStoredError if the machine could not compute a simulation or store
-    it; KeyboardInterrupt if a stop was requested.
+    What is finished is written after so many seconds, and so are checkpoints of what runs. Yields
+    each simulation with how it ended, in the order in which they end. Close the generator to leave
+    it earlier: it waits for the ranks, and writes what is finished. OSError if nothing can be
+    written in the folder, before anything is run; NotStoredError if the machine could not compute a
+    simulation or store it; KeyboardInterrupt if a stop was requested.
     """
-    for folder in (store.curves, store.checkpoints):
-        folder.mkdir(parents=True, exist_ok=True)
-        for part in leftover_parts(folder):
-            part.unlink(missing_ok=True)
     forget_sums(store.folder)
     write_text(store.configuration, origin.configuration)
-    longest_first = sorted(simulations, key=lambda one: -expected_cost(one).seconds)
-    begun = {path.stem for path in store.checkpoints.glob("*.nc")}
-    tasks = [
-        _Task(one, store, origin, checkpoint_seconds, bool(begun) and one.stem in begun)
-        for one in longest_first
-    ]
-    for solver, kind in {(one.solver.name, type(one.schedule)) for one in simulations}:
+    writers, tasks = {}, []
+    for shard, simulations in shards:
+        folder = store.curve_folder(shard)
+        folder.mkdir(parents=True, exist_ok=True)
+        writers[folder] = BatchWriter(folder, origin, seconds)
+        tasks += [_Task(simulation, folder, origin, seconds) for simulation in simulations]
+    tasks.sort(key=lambda task: -expected_cost(task.simulation).seconds)
+    for solver, kind in {(t.simulation.solver.name, type(t.simulation.schedule)) for t in tasks}:
         compile_solver(solver, kind)
-    with (
-        store.packs(simulations) as packs,
-        closing(parallel.run_tasks(_run_task, tasks, functools.partial(_keep, packs))) as outcomes,
-    ):
-        for count, (task, outcome) in enumerate(outcomes):
-            stored = f"{count} of {len(tasks)} simulations"
-            if outcome.status == _STOPPED:
-                raise KeyboardInterrupt(
-                    f"{stored} are finished; they and the states of running ones are stored; the "
-                    "same call continues"
-                )
-            if outcome.status == _NOT_STORED:
-                raise NotStoredError(
-                    f"{task.simulation.label}: {outcome.sentence}; {stored} were stored, and the "
-                    "same call continues with the others"
-                )
-            yield task.simulation, outcome
+
+    def write_in_time() -> None:
+        for writer in writers.values():
+            writer.flush_in_time()
+
+    def keep(task: _Task, result: _TaskResult) -> SimulationOutcome:
+        try:
+            if result.finished is not None:
+                writers[task.folder].add(result.finished)
+            write_in_time()
+        except OSError as error:
+            return _not_stored(error)
+        return result.outcome
+
+    runs = parallel.run_tasks(_run_task, tasks, keep, write_in_time)
+    try:
+        with closing(runs) as outcomes:
+            for count, (task, outcome) in enumerate(outcomes):
+                done = f"{count} of {len(tasks)} simulations"
+                if outcome.status == _STOPPED:
+                    raise KeyboardInterrupt(
+                        f"{done} are finished; they and the states of running ones are stored; run "
+                        "the same command to continue"
+                    )
+                if outcome.status == _NOT_STORED:
+                    raise NotStoredError(
+                        f"{task.simulation.label}: {outcome.sentence}; {done} were stored, and the "
+                        "same command continues with the others"
+                    )
+                yield task.simulation, outcome
+    finally:
+        for writer in writers.values():
+            writer.flush()
 
 
 @dataclass(frozen=True, slots=True)
 class _Task:
-    """A simulation, where it is stored, and what its file says about its origin."""
+    """A simulation, the folder of its shard, and what its checkpoints say about their origin."""
 
     simulation: Simulation
-    store: Store
+    folder: Path
     origin: Provenance
     checkpoint_seconds: float
-    resumes: bool
-    """Whether there is a checkpoint of it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,22 +168,8 @@ class _TaskResult:
     """What the process that ran a task hands to the one that stores it."""
 
     outcome: SimulationOutcome
-    files: Mapping[str, bytes] = field(default_factory=dict)
-    """What is to be stored, by the names in a pack; nothing where it has not ended."""
-    checkpoint: Path | None = None
-    """File of a checkpoint that is to be removed once they are stored; None where there is none."""
-
-
-def _keep(packs: Mapping[str, Pack], task: _Task, result: _TaskResult) -> SimulationOutcome:
-    """Store a simulation that has ended and remove its checkpoint; return how it ended."""
-    if result.files:
-        try:
-            packs[task.simulation.spectrum_name].append(result.files)
-            if result.checkpoint is not None:
-                result.checkpoint.unlink(missing_ok=True)
-        except OSError as error:
-            return _not_stored(error)
-    return result.outcome
+    finished: FinishedSimulation | None = None
+    """What is to be stored; None where the simulation has not ended."""
 
 
 def _not_stored(error: Exception) -> SimulationOutcome:
@@ -133,31 +180,44 @@ def _not_stored(error: Exception) -> SimulationOutcome:
     )
 
 
-def _result(task: _Task) -> tuple[SimulationResult, str]:
+def _result(task: _Task, between: Callable[[], None]) -> tuple[SimulationResult, str]:
     """Result of a task, and why its checkpoint could not be used; empty where it was or is none."""
-    simulation = task.simulation
-    file = CheckpointFile(task.store.checkpoint(simulation), task.checkpoint_seconds)
+    simulation, wrong = task.simulation, ""
+    timer = CheckpointTimer(task.folder, task.checkpoint_seconds)
 
     def keep(make: Callable[[], PartialRun]) -> None:
-        if file.keep(lambda path: write_checkpoint(path, make(), task.origin)):
+        between()
+        if timer.keep(lambda folder: _write_checkpoint(folder, make(), task.origin)):
             raise _StopRequestedError
 
-    wrong = ""
-    if task.resumes:
+    for path in reversed(checkpoint_files(task.folder, simulation)):
         try:
-            resume = read_checkpoint(file.path, simulation)
+            if not is_whole(path):
+                raise ValueError(f"{path} is damaged")
+            resume = read_checkpoint(path, simulation)
             return run_simulation(simulation, resume=resume, keep=keep), ""
         except (*_REPRODUCIBLE_ERRORS, LookupError, TypeError) as error:
             wrong = f"begun anew without its checkpoint: {error}"
+            path.unlink(missing_ok=True)
     return run_simulation(simulation, keep=keep), wrong
 
 
-def _run_task(task: _Task) -> _TaskResult:
+def _write_checkpoint(folder: Path, partial: PartialRun, origin: Provenance) -> None:
+    """Write a checkpoint and remove earlier ones of its simulation."""
+    simulation = partial.simulation
+    earlier = checkpoint_files(folder, simulation)
+    latest = write_checkpoint(folder, f"{_CHECKPOINT}-{simulation.stem}", partial, origin)
+    for path in earlier:
+        if path != latest:
+            path.unlink(missing_ok=True)
+
+
+def _run_task(task: _Task, between: Callable[[], None]) -> _TaskResult:
     """Run one simulation; failures of the machine (memory, disk) are not stored as results."""
     if parallel.stop_is_requested():
         return _TaskResult(SimulationOutcome(_STOPPED))
     try:
-        return _run(task)
+        return _run(task, between)
     except _StopRequestedError:
         return _TaskResult(SimulationOutcome(_STOPPED))
     except (MemoryError, TooLargeError):
@@ -171,35 +231,23 @@ _REPRODUCIBLE_ERRORS = (ValueError, ArithmeticError, DefectError)
 """Errors that end a simulation in the same way on every machine."""
 
 
-def _run(task: _Task) -> _TaskResult:
-    """Run one simulation to its row and its curve."""
-    simulation = task.simulation
-    origin = task.origin.here()
+def _run(task: _Task, between: Callable[[], None]) -> _TaskResult:
+    """Run one simulation to its row and its states."""
+    simulation, arithmetic = task.simulation, task.origin.here().arithmetic
     try:
-        result, wrong = _result(task)
+        result, wrong = _result(task, between)
     except TooLargeError:
         raise
     except _REPRODUCIBLE_ERRORS as error:
         # The surface or the load cannot be simulated, or the solver found a defect in itself.
         status = "refused" if isinstance(error, ValueError) else "defect"
         sentence = str(error) or type(error).__name__
-        row, seconds = failed_row(simulation, status, sentence), 0.0
-        curve = b""
-    else:
-        curve = dataset_content(simulation_dataset(result), origin)
-        row, sentence, seconds = sweep_row(result), wrong, result.measures.seconds
-    entry = Entry(
-        simulation.stem,
-        simulation.parameters,
-        PHYSICS_VERSION,
-        ROWS_VERSION,
-        row,
-        origin.arithmetic,
-    )
-    files = entry.files(curve)
-    left = task.store.checkpoint(simulation)
-    checkpoint = left if left.exists() else None
-    return _TaskResult(SimulationOutcome(row.status, seconds, sentence), files, checkpoint)
+        row = failed_row(simulation, status, sentence)
+        finished = FinishedSimulation(simulation, row, None, arithmetic)
+        return _TaskResult(SimulationOutcome(status, 0.0, sentence), finished)
+    row = sweep_row(result)
+    finished = FinishedSimulation(simulation, row, result.record, arithmetic)
+    return _TaskResult(SimulationOutcome(row.status, result.measures.seconds, wrong), finished)
 
 
 class _StopRequestedError(Exception):

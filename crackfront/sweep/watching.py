@@ -2,26 +2,30 @@
 
 from __future__ import annotations
 
+import re
 import sys
 import threading
 import time
 from pathlib import Path
 
-from crackfront.sweep.sweep import Sweep
+_SECONDS = 1.0
+"""Time between two looks at the logs. (Units: s)"""
 
-_LEAST_WAIT, _SHARE = 1.0, 0.1
-"""Shortest time between two reads of the folder (Units: s), and largest share of time for them."""
+_FINISHED = re.compile(rb"^\[\d+/\d+\] ", re.MULTILINE)
+"""Beginning of the line that a job writes into its log for each finished simulation."""
 
 
 class SweepBar:
     """Bar of the simulations of a sweep, drawn by a thread of the process that runs the workflow.
 
-    Nothing is drawn where standard error is no terminal: jobs print lines, and logs keep them.
+    It counts lines in the logs of the jobs. Nothing is drawn where standard error is no terminal:
+    jobs print the lines there.
     """
 
-    def __init__(self, sweep: Sweep, results: Path) -> None:
-        self._sweep, self._results = sweep, results
+    def __init__(self, n_simulation: int, results: Path) -> None:
+        self._total, self._logs = n_simulation, results / "logs"
         self.terminal = sys.stderr.isatty()
+        self._began = time.time()
         self._ended = threading.Event()
         self._thread = threading.Thread(target=self._draw, daemon=True)
 
@@ -31,33 +35,22 @@ class SweepBar:
             self._thread.start()
 
     def end(self) -> None:
-        """Draw what is stored by now, and no more."""
+        """Draw what is finished by now, and no more."""
         self._ended.set()
         if self._thread.is_alive():
             self._thread.join()
 
-    def _stored(self) -> int:
-        """How many simulations are stored."""
-        # Workflows make a bar that most of them never draw.
-        from crackfront.sweep.store import Store
-
-        store = Store(self._results)
-        found = [store.progress(self._sweep, item) for item in self._sweep.spectra]
-        return sum(one.done + one.failed for one in found)
+    def _finished(self) -> int:
+        """How many simulations have finished since the workflow began."""
+        logs = [path for path in self._logs.glob("simulate-*.log")]
+        recent = [path for path in logs if path.stat().st_mtime >= self._began]
+        return sum(len(_FINISHED.findall(path.read_bytes())) for path in recent)
 
     def _draw(self) -> None:
-        """Read the folder repeatedly, and update the bar with newly stored simulations."""
+        """Read the logs repeatedly, and update the bar."""
         from tqdm import tqdm
 
-        total, first = self._sweep.n_simulation, self._stored()
-        if first == total:
-            return
-        with tqdm(
-            total=total, initial=first, unit="simulation", smoothing=0, file=sys.stderr
-        ) as bar:
-            wait = _LEAST_WAIT
-            while not self._ended.wait(wait):
-                began = time.monotonic()
-                bar.update(self._stored() - bar.n)
-                wait = max(_LEAST_WAIT, (time.monotonic() - began) / _SHARE)
-            bar.update(self._stored() - bar.n)
+        with tqdm(total=self._total, unit="simulation", smoothing=0, file=sys.stderr) as bar:
+            while not self._ended.wait(_SECONDS):
+                bar.update(self._finished() - bar.n)
+            bar.update(self._finished() - bar.n)

@@ -1,5 +1,6 @@
 rule aggregate:
     input:
+        TABLE_REQUEST,
         expand("{results}/shards/{shard}.nc", results=RESULTS, shard=SHARDS),
     output:
         f"{RESULTS}/hysteresis.nc",
@@ -12,8 +13,6 @@ rule aggregate:
         mem_mb=megabytes(POSTPROCESSING["aggregate"].memory),
         runtime=minutes(POSTPROCESSING["aggregate"].seconds),
     params:
-        versions=(PHYSICS_VERSION, ROWS_VERSION),
-        sweep=SWEEP.fingerprint,
         configuration=configuration,
         results=folder,
     shell:

@@ -15,10 +15,19 @@ sys.path.insert(0, str(BASE))  # where the studies stand
 from crackfront.core.versions import PHYSICS_VERSION, ROWS_VERSION
 from crackfront.data.bounds import memory_at_hand
 from crackfront.simulate.costs import expected_cost
-from crackfront.sweep.configuration import load_configuration, results_folder
+from crackfront.sweep.configuration import (
+    load_configuration,
+    refuse_other_configuration,
+    results_folder,
+)
 from crackfront.sweep.jobs import cores_of_job
 from crackfront.sweep.postprocessing import postprocessing_costs
-from crackfront.sweep.shards import shard_request
+from crackfront.sweep.requests import (
+    Request,
+    fit_request,
+    shard_request,
+    table_request,
+)
 from crackfront.sweep.watching import SweepBar
 from studies.boundary_elements.parameters import load_validation
 from studies.paper.figure import (
@@ -54,6 +63,17 @@ def shipped(path):
     return os.path.relpath(BASE / path)
 
 
+# What stages are asked for, by the paths of their files: the rule `request` writes them.
+REQUESTS = {}
+
+
+def requested(folder, request):
+    """File of a request among the results in a folder, an input of its stage."""
+    path = f"{folder}/requests/{request.name}"
+    REQUESTS[request.name] = request
+    return path
+
+
 # The figures of the paper, and the sweep of each scale's SI Fig. S-5.
 FIGURE_SETTINGS = shipped("config/figures")
 SWEEPS = {
@@ -67,12 +87,19 @@ for key, name in (("sweep", CONFIGURATION), ("validation", VALIDATION)):
         raise WorkflowError(f"{key} is {name!r}; give the name of a file")
 try:
     RESULTS = str(results_folder(Path(CONFIGURATION)))
+    refuse_other_configuration(Path(CONFIGURATION), Path(RESULTS))
     SWEEP = load_configuration(Path(CONFIGURATION))
     SHARDS = {shard.name: shard for shard in SWEEP.shards(config.get("block"))}
     VALIDATED = str(results_folder(Path(VALIDATION)))
 except ValueError as error:
     raise WorkflowError(str(error)) from None
 
+SHARD_REQUESTS = {
+    name: requested(RESULTS, shard_request(SWEEP, shard))
+    for name, shard in SHARDS.items()
+}
+TABLE_REQUEST = requested(RESULTS, table_request(SWEEP))
+FIT_REQUEST = requested(RESULTS, fit_request(SWEEP))
 SWEEP_FIGURES = ["hysteresis", "loop", "factor"]
 PAPER = f"results/figures/{SCALE}"
 ACCURACY = "results/accuracy"
@@ -130,20 +157,24 @@ def figure_parameters(wildcards):
     return load_figure(Path(FIGURE_SETTINGS, f"{name}.yaml"), SCALE)
 
 
-def figure_settings(wildcards):
-    """The same as a text, for Snakemake to compare."""
-    return repr(figure_parameters(wildcards))
-
-
 def figure_inputs(wildcards):
-    """What the data of a figure are computed with: its module, and files of its parameters."""
+    """What data of a figure are computed from: its request, module, and files of its parameters."""
     name = getattr(wildcards, "figure", "si-5")
-    return [figure_sources(name)[0], *files_of_figure(figure_parameters(wildcards))]
+    parameters = figure_parameters(wildcards)
+    text = f"{parameters!r}\nversions {PHYSICS_VERSION} and {ROWS_VERSION}\n"
+    request = requested(PAPER, Request(name, text))
+    return [request, str(figure_sources(name)[0]), *files_of_figure(parameters)]
 
 
 def figure_drawing_module(wildcards):
     """Module that draws and checks a figure of the paper."""
-    return figure_sources(wildcards.figure)[1]
+    return str(figure_sources(wildcards.figure)[1])
+
+
+def validation_request(wildcards):
+    """What a validation is asked for."""
+    text = f"{load_validation(Path(VALIDATION))!r}\nversions {PHYSICS_VERSION} and {ROWS_VERSION}\n"
+    return requested(VALIDATED, Request("validation", text))
 
 
 def figure_file(wildcards, output):
@@ -169,7 +200,7 @@ CRACKFRONT = command("crackfront")
 STUDIES = importable(BASE) + command("python") + " -m studies"
 LOGGED = " > >(trap '' INT TERM HUP; exec tee {log:q}) 2>&1"
 # Of simulations a terminal shows one bar of the whole sweep, and what goes wrong; a log all lines.
-BAR = SweepBar(SWEEP, Path(RESULTS))
+BAR = SweepBar(SWEEP.n_simulation, Path(RESULTS))
 SIMULATED = (
     " >> {log:q} 2> >(trap '' INT TERM HUP; exec tee --append {log:q} >&2)"
     if BAR.terminal

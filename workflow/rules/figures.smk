@@ -1,5 +1,6 @@
 rule sweep_figures:
     input:
+        FIT_REQUEST,
         f"{RESULTS}/hysteresis.nc",
     output:
         expand("{results}/figures/{figure}.pdf", results=RESULTS, figure=SWEEP_FIGURES),
@@ -21,8 +22,6 @@ rule sweep_figures:
         mem_mb=megabytes(POSTPROCESSING["figures"].memory),
         runtime=minutes(POSTPROCESSING["figures"].seconds),
     params:
-        versions=(PHYSICS_VERSION, ROWS_VERSION),
-        sweep=SWEEP.fingerprint,
         configuration=configuration,
         results=folder_above,
     shell:

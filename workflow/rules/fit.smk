@@ -1,5 +1,6 @@
 rule fit:
     input:
+        FIT_REQUEST,
         f"{RESULTS}/hysteresis.nc",
     output:
         multiext(f"{RESULTS}/fit", ".nc", ".json", ".md"),
@@ -12,8 +13,6 @@ rule fit:
         mem_mb=megabytes(POSTPROCESSING["fit"].memory),
         runtime=minutes(POSTPROCESSING["fit"].seconds),
     params:
-        versions=(PHYSICS_VERSION, ROWS_VERSION),
-        sweep=SWEEP.fingerprint,
         configuration=configuration,
         results=folder,
     shell:
@@ -23,6 +22,7 @@ rule fit:
 
 rule summary:
     input:
+        FIT_REQUEST,
         f"{RESULTS}/hysteresis.nc",
         f"{RESULTS}/fit.nc",
         expand("{results}/figures/{figure}.png", results=RESULTS, figure=SWEEP_FIGURES),
@@ -41,8 +41,6 @@ rule summary:
         mem_mb=megabytes(POSTPROCESSING["summary"].memory),
         runtime=minutes(POSTPROCESSING["summary"].seconds),
     params:
-        versions=(PHYSICS_VERSION, ROWS_VERSION),
-        sweep=SWEEP.fingerprint,
         configuration=configuration,
         results=folder,
     shell:

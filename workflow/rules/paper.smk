@@ -34,8 +34,6 @@ rule figure_data:
         mem_mb=4000,
         runtime=lambda wildcards: minutes(expected_seconds(wildcards.figure)),
     params:
-        versions=(PHYSICS_VERSION, ROWS_VERSION),
-        settings=figure_settings,
         file=figure_file,
         results=folder_above,
     shell:
@@ -66,9 +64,6 @@ rule figure_of_sweep:
         mem_mb=megabytes(POSTPROCESSING["fit"].memory),
         runtime=minutes(POSTPROCESSING["fit"].seconds),
     params:
-        versions=ROWS_VERSION,
-        settings=figure_settings,
-        sweep=lambda wildcards: load_configuration(Path(SWEEPS[SCALE])).fingerprint,
         file=figure_file,
         results=folder_above,
     shell:
@@ -94,8 +89,6 @@ rule figure_drawing:
         cpus_per_task=1,
         mem_mb=4000,
         runtime=30,
-    params:
-        settings=figure_settings,
     shell:
         f"{STUDIES} paper draw {{input.data:q}}{LOGGED}"
 
@@ -118,8 +111,6 @@ rule figure_animation:
         cpus_per_task=1,
         mem_mb=4000,
         runtime=30,
-    params:
-        settings=figure_settings,
     shell:
         f"{STUDIES} paper draw {{input.data:q}}{LOGGED}"
 

@@ -1,7 +1,27 @@
+# What a stage is asked for, in a small file whose name ends with the digest of its text. Another
+# configuration asks for another file, which is newer than what the stage made before; so dates alone
+# say what belongs to it, whatever Snakemake remembers. The file of the earlier request goes.
+localrules:
+    request,
+
+
+rule request:
+    output:
+        "{folder}/requests/{request}.txt",
+    params:
+        text=lambda wildcards: REQUESTS[f"{wildcards.request}.txt"].text,
+        siblings=lambda wildcards: REQUESTS[f"{wildcards.request}.txt"].siblings,
+    shell:
+        'find "$(dirname {output:q})" -maxdepth 1 -name {params.siblings:q} -delete'
+        " && printf %s {params.text:q} > {output:q}"
+
+
 # One job a shard, spread over MPI ranks inside; its output is the rows of the shard. Each finished
 # simulation stands in `curves/`, which no rule declares: Snakemake deletes what a failed job
 # declares, and they must survive.
 rule simulate:
+    input:
+        lambda wildcards: SHARD_REQUESTS[wildcards.shard],
     output:
         f"{RESULTS}/shards/{{shard}}.nc",
     log:
@@ -18,11 +38,6 @@ rule simulate:
         mem_mb_per_cpu=megabytes(RANK_BYTES),
         runtime=240,
     params:
-        # Changes with the parameters of the simulations and with the versions.
-        request=lambda wildcards: shard_request(
-            FIRSTS[SHARDS[wildcards.shard].item.name],
-            SHARDS[wildcards.shard].realisations,
-        ),
         spectrum=lambda wildcards: SHARDS[wildcards.shard].item.name,
         block=lambda wildcards: block_option(SHARDS[wildcards.shard]),
         # No reason to run a job again, as a function of resources is none to Snakemake.

@@ -8,6 +8,8 @@ rule validation:
 
 
 rule validate:
+    input:
+        validation_request,
     output:
         f"{VALIDATED}/validation.md",
         f"{VALIDATED}/hysteresis.nc",
@@ -23,8 +25,6 @@ rule validate:
         mem_mb=8000,
         runtime=1440,
     params:
-        versions=(PHYSICS_VERSION, ROWS_VERSION),
-        settings=lambda wildcards: repr(load_validation(Path(VALIDATION))),
         configuration=lambda wildcards, output: VALIDATION,
         results=folder,
     shell:

@@ -1,0 +1,308 @@
+"""Files of finished simulations: their rows, and their states as ragged arrays.
+
+`curves/<shard>/` has the simulations of a shard, in batches while it runs and in one file in the
+end. Rows lie along `simulation`. The states of all simulations follow each other along `state`, the
+numbers of all their fronts along `front_site`: contiguous ragged arrays (CF conventions, 9.3.3),
+whose counts are `n_state` and `n_front_site`. The name of a file ends with its checksum.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import netCDF4
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from crackfront.analysis.measures import RunMeasures
+from crackfront.analysis.table import SweepRow
+from crackfront.core.cycle.record import CycleRecord
+from crackfront.core.geometry.base import State
+from crackfront.core.geometry.line import LineState
+from crackfront.core.geometry.sphere import ContactState
+from crackfront.core.outcome import Status
+from crackfront.core.variables import ADHESION, ENERGY, Variable, variables
+from crackfront.data.digests import named_digest
+from crackfront.data.files import (
+    UnreadableFileError,
+    read_dataset,
+    utf8_path,
+    write_named_by_digest,
+)
+from crackfront.data.labels import label
+from crackfront.data.provenance import Provenance
+from crackfront.simulate.run import SimulationResult
+from crackfront.simulate.simulation import Simulation
+from crackfront.sweep.rows import STATUSES, row_columns
+
+SIMULATION, STATE, FRONT_SITE = "simulation", "state", "front_site"
+"""Dimensions of a file: simulations, the states of all, and the sites of the fronts of all."""
+
+_COUNTS = {"n_state": STATE, "n_front_site": FRONT_SITE}
+"""Variables that count the entries of each simulation along a ragged dimension."""
+
+_STATES: tuple[type[State], ...] = (ContactState, LineState)
+"""Records of the states of all geometries."""
+
+_CYCLE_STATUSES = tuple(status.name.lower() for status in Status)
+
+_NO_CYCLE = -1
+"""Cycle status of a simulation that failed before its first state."""
+
+IDENTITY = (
+    Variable("series", (SIMULATION,), "1", "digest of the parameters that realisations share"),
+    Variable("realisation", (SIMULATION,), "1", "number of the realisation"),
+    Variable("spectrum", (SIMULATION,), "1", "name of the spectrum"),
+    Variable("elastic_energy", (SIMULATION,), ADHESION, "requested e_el"),
+    Variable("arithmetic", (SIMULATION,), "1", "processor and packages that computed it"),
+)
+"""What identifies a simulation, and what computed it."""
+
+_CYCLE = (
+    Variable("cycle_status", (SIMULATION,), "1", "how the cycle ended; -1 if it did not begin"),
+    Variable("end_load", (SIMULATION,), "1", "load at which the cycle ended"),
+    Variable("pull_off_energy", (SIMULATION,), ENERGY, "energy lost at pull-off, if recorded"),
+    Variable("n_site", (SIMULATION,), "1", "sites of a recorded front; 0 where none is"),
+    Variable("n_state", (SIMULATION,), "1", "states of the simulation"),
+    Variable("n_front_site", (SIMULATION,), "1", "sites of all recorded fronts"),
+)
+
+_FRONT = Variable("front", (FRONT_SITE,), "1", "fronts of all states, in reduced lateral length")
+
+PARAMETERS = "parameters_of_series"
+"""Attribute of a file: the parameters of each series in it, as JSON."""
+
+BATCH, MERGED = "batch", "curves"
+"""Beginnings of the names of files."""
+
+
+@dataclass(frozen=True, slots=True)
+class FinishedSimulation:
+    """A simulation that has ended, as a rank returns it."""
+
+    simulation: Simulation
+    row: SweepRow
+    record: CycleRecord | None
+    """States, unless the simulation failed before the first."""
+    arithmetic: str
+
+
+def curve_files(folder: Path, kind: str = "*") -> list[Path]:
+    """Files of finished simulations in the folder of a shard, in the order of their names."""
+    paths = sorted(folder.glob(f"{kind}-*.nc"))
+    return [
+        path
+        for path in paths
+        if path.name.startswith((BATCH, MERGED)) and named_digest(path) and path.is_file()
+    ]
+
+
+def write_curves(
+    folder: Path, kind: str, name: str, dataset: xr.Dataset, origin: Provenance
+) -> Path:
+    """Write a file of finished simulations; `name` keeps batches in their order."""
+    return write_named_by_digest(folder, f"{kind}-{name}", dataset, origin)
+
+
+def curves_dataset(finished: Sequence[FinishedSimulation]) -> xr.Dataset:
+    """Rows and states of finished simulations of one kind of contact."""
+    records = [item.record for item in finished]
+    simulations = [item.simulation for item in finished]
+    columns: dict[str, Any] = dict(row_columns([item.row for item in finished], (len(finished),)))
+    columns |= {
+        "series": [simulation.series for simulation in simulations],
+        "realisation": [simulation.realisation for simulation in simulations],
+        "spectrum": [simulation.spectrum_name for simulation in simulations],
+        "elastic_energy": [simulation.elastic_energy for simulation in simulations],
+        "arithmetic": [item.arithmetic for item in finished],
+        "cycle_status": np.array([_cycle_status(record) for record in records], np.int8),
+        "end_load": [math.nan if record is None else record.end_load for record in records],
+        "pull_off_energy": [_pull_off_energy(record) for record in records],
+        "n_site": [_fronts(record).shape[1] for record in records],
+        "n_state": [0 if one is None else one.states.direction.size for one in records],
+        "n_front_site": [_fronts(record).size for record in records],
+    }
+    known = [record for record in records if record is not None]
+    columns |= _state_columns(known)
+    if any(record.fronts is not None for record in known):
+        columns["front"] = np.concatenate([_fronts(record).ravel() for record in known])
+    return _labelled(columns).assign_attrs({PARAMETERS: parameters_text(simulations)})
+
+
+def parameters_text(simulations: Iterable[Simulation]) -> str:
+    """Parameters of the series of simulations as JSON, which say in what others differ."""
+    known = {simulation.series: simulation.parameters for simulation in simulations}
+    return json.dumps(known, sort_keys=True)
+
+
+def _cycle_status(record: CycleRecord | None) -> int:
+    """Place of the status of a cycle among all."""
+    if record is None:
+        return _NO_CYCLE
+    return _CYCLE_STATUSES.index(record.status.name.lower())
+
+
+def _pull_off_energy(record: CycleRecord | None) -> float:
+    """Energy that is lost at pull-off; NaN where it was not recorded."""
+    if record is None or record.pull_off_energy is None:
+        return math.nan
+    return record.pull_off_energy
+
+
+def _fronts(record: CycleRecord | None) -> NDArray[np.float64]:
+    """Recorded fronts, (n_state, n_site); (0, 0) where none are."""
+    return np.zeros((0, 0)) if record is None or record.fronts is None else record.fronts
+
+
+def _state_name(name: str) -> str:
+    """Name of the variable of states; rows have `iterations` too, the sum over the states."""
+    return f"state_{name}" if name in SweepRow.__dataclass_fields__ else name
+
+
+def _state_columns(records: Sequence[CycleRecord]) -> dict[str, NDArray[Any]]:
+    """States of cycles, one after the other."""
+    if not records:
+        return {}
+    columns = {
+        _state_name(item.name): np.concatenate(
+            [getattr(record.states, item.name) for record in records]
+        )
+        for item in variables(type(records[0].states))
+    }
+    energies = [one.dissipated_energy for one in records if one.dissipated_energy is not None]
+    if energies:
+        columns["dissipated_energy"] = np.concatenate(energies)
+    return columns
+
+
+def _labelled(columns: dict[str, Any]) -> xr.Dataset:
+    """Dataset of columns with their units and meanings."""
+    of_states: dict[str, Variable] = {}
+    for kind in (*_STATES, CycleRecord):
+        of_states |= {_state_name(item.name): item for item in variables(kind)}
+    found: dict[str, Any] = {}
+    for item in (*variables(SweepRow, SIMULATION), *IDENTITY, *_CYCLE):
+        about = label(item, STATUSES if item.name == "status" else ())
+        if item.name == "cycle_status":
+            about = label(item, _CYCLE_STATUSES)
+        if item.name in _COUNTS:
+            about["sample_dimension"] = _COUNTS[item.name]
+        found[item.name] = (SIMULATION,), columns[item.name], about
+    for name in columns.keys() - found.keys():
+        item = _FRONT if name == "front" else of_states[name]
+        dimension = FRONT_SITE if name == "front" else STATE
+        found[name] = (dimension,), columns[name], label(item)
+    # In the order of the columns, whatever that of a set is.
+    return xr.Dataset({name: found[name] for name in columns})
+
+
+@dataclass(frozen=True, slots=True)
+class StoredRows:
+    """Rows of a file of finished simulations, or of the file of a shard, without its states."""
+
+    path: Path
+    physics_version: int
+    rows_version: int
+    series: NDArray[np.str_]
+    realisation: NDArray[np.int64]
+    """Which simulations they are, (n,)."""
+    parameters: dict[str, dict[str, Any]]
+    """Parameters of each series."""
+    columns: dict[str, NDArray[Any]]
+    """Their values by the names of `SweepRow`, and `arithmetic`, each (n,)."""
+
+
+def stored_rows(path: Path) -> StoredRows:
+    """Rows of a file that :func:`write_curves` wrote; its checksum has been looked at."""
+    names = [item.name for item in variables(SweepRow)]
+    names += ["arithmetic", "series", "realisation"]
+    with utf8_path(path) as named, netCDF4.Dataset(named) as file:
+        file.set_auto_mask(False)
+        columns = {name: np.asarray(file[name][:]) for name in names}
+        versions = int(file.physics_version), int(file.rows_version)
+        parameters = json.loads(file.getncattr(PARAMETERS))
+    return StoredRows(
+        path, *versions, columns["series"], columns["realisation"], parameters, columns
+    )
+
+
+def selected(dataset: xr.Dataset, chosen: NDArray[np.integer[Any]]) -> xr.Dataset:
+    """Some simulations of a dataset in the order of their places, with their states."""
+    places = {SIMULATION: chosen}
+    for count, dimension in _COUNTS.items():
+        if dimension in dataset.sizes:
+            counts = dataset[count].values
+            ends = np.cumsum(counts)
+            parts = [np.arange(ends[one] - counts[one], ends[one]) for one in chosen]
+            places[dimension] = np.concatenate([np.zeros(0, np.int64), *parts])
+    return dataset.isel(places)
+
+
+def concatenated(datasets: Sequence[xr.Dataset]) -> xr.Dataset:
+    """Simulations of several datasets, one after the other, with their states."""
+    names = dict.fromkeys(name for dataset in datasets for name in dataset.variables)
+    found = {}
+    for name in names:
+        # Files of simulations that all failed have no states.
+        parts = [dataset[name].variable for dataset in datasets if name in dataset]
+        found[name] = xr.Variable.concat(parts, dim=parts[0].dims[0])  # type: ignore[no-untyped-call]
+    known: dict[str, Any] = {}
+    for dataset in datasets:
+        known |= json.loads(dataset.attrs[PARAMETERS])
+    present = sorted({*found["series"].values.tolist()})
+    text = json.dumps({series: known[series] for series in present}, sort_keys=True)
+    return xr.Dataset(found, attrs={PARAMETERS: text})
+
+
+def read_result(path: Path, place: int, simulation: Simulation) -> SimulationResult:
+    """Result of a simulation at a place of a file; its checksum has been looked at.
+
+    UnreadableFileError if the simulation failed before its first state.
+    """
+    [result] = read_results(path, np.array([place]), [simulation])
+    if result is None:
+        raise UnreadableFileError(f"{path} has no states of {simulation.label}, which failed")
+    return result
+
+
+def read_results(
+    path: Path, places: NDArray[np.integer[Any]], simulations: Iterable[Simulation]
+) -> Iterator[SimulationResult | None]:
+    """Results of simulations at places of a file; None of one that failed before its first state.
+
+    The checksum of the file has been looked at.
+    """
+    dataset = read_dataset(path)
+    for place, simulation in zip(places, simulations, strict=True):
+        yield _result(selected(dataset, np.array([place])), simulation)
+
+
+def _result(dataset: xr.Dataset, simulation: Simulation) -> SimulationResult | None:
+    """Result of the simulation that a dataset has."""
+    row = {name: dataset[name].values[0] for name in (item.name for item in _CYCLE)}
+    if row["cycle_status"] == _NO_CYCLE:
+        return None
+    costs = {item.name: float(dataset[item.name].values[0]) for item in variables(RunMeasures)}
+    energies, fronts = dataset.get("dissipated_energy"), dataset.get("front")
+    n_site, pull_off = int(row["n_site"]), float(row["pull_off_energy"])
+    record = CycleRecord(
+        status=Status[_CYCLE_STATUSES[int(row["cycle_status"])].upper()],
+        end_load=float(row["end_load"]),
+        states=_states_of(dataset),
+        dissipated_energy=None if energies is None else energies.values,
+        pull_off_energy=None if math.isnan(pull_off) else pull_off,
+        fronts=None if fronts is None or not n_site else fronts.values.reshape(-1, n_site),
+    )
+    return SimulationResult(simulation, record, RunMeasures(**costs))
+
+
+def _states_of(dataset: xr.Dataset) -> State:
+    """States of a dataset of one simulation."""
+    kind = next(kind for kind in _STATES if variables(kind)[0].name in dataset)
+    return kind(**{item.name: dataset[_state_name(item.name)].values for item in variables(kind)})
