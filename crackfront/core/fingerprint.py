@@ -9,15 +9,11 @@ alone, under `if TYPE_CHECKING`. The file of data that has a module's name, `law
 from __future__ import annotations
 
 import ast
-import contextlib
 import functools
 import hashlib
 import json
-import sys
 from collections.abc import Collection, Iterator
 from pathlib import Path
-
-from crackfront.core.private_cache import private_folder, read_checked, write_checked
 
 ROOT = Path(__file__).parents[2]
 """Folder of the packages."""
@@ -93,7 +89,7 @@ def module_digests(*modules: str, without: Collection[str] = ()) -> dict[str, st
         path = _path(name, ROOT)
         if path is None:
             raise ValueError(f"there is no module {name}; correct the name")
-        meaning, imported = _read_source(path.read_bytes())
+        meaning, imported = _parsed_source(path.read_bytes())
         data = (path.with_suffix(suffix) for suffix in _SUFFIXES_OF_DATA)
         parts = [meaning, *(_digest(one.read_bytes()) for one in data if one.is_file())]
         found[name] = _digest("".join(parts).encode())
@@ -129,28 +125,6 @@ def _module_of(imported: str) -> str | None:
 
 
 @functools.lru_cache(maxsize=512)
-def _read_source(content: bytes) -> tuple[str, list[str]]:
-    """Digest of what a source executes, and the full names that it imports.
-
-    The answer for the same bytes is kept in the cache of the user: parsing takes 6 ms a module.
-    """
-    folder = private_folder("fingerprints")
-    if folder is None:
-        return _parsed_source(content)
-    kept = folder / _digest(_VERSION + content)
-    with contextlib.suppress(OSError, ValueError):
-        meaning, imported = json.loads(read_checked(kept))
-        return meaning, imported
-    found = _parsed_source(content)
-    with contextlib.suppress(OSError):
-        write_checked(kept, json.dumps(found).encode())
-    return found
-
-
-_VERSION = repr(sys.version_info[:2]).encode() + Path(__file__).read_bytes()
-"""What else decides how a source is read: Python's syntax, and this module."""
-
-
 def _parsed_source(content: bytes) -> tuple[str, list[str]]:
     """Digest of what a source executes, and the full names that it imports."""
     tree = _Executed().visit(ast.parse(content))
