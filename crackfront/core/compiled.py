@@ -2,17 +2,27 @@
 
 from __future__ import annotations
 
+import contextlib
 import functools
+import hashlib
 import inspect
+import logging
+import pickle
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any, TypeVar
 
 import numba
 from numba import types
 from numba.core import event
+from numba.core.caching import CompileResultCacheImpl, FunctionCache
+from numba.core.compiler import CompileResult
+from numba.core.serialize import dumps
 from numba.extending import overload
 
-from crackfront.core.kernel_cache import KernelCache
+from crackfront.core.cache_folder import kernel_folder
+
+_logger = logging.getLogger(__name__)
 
 
 class _FirstCompilation(event.Listener):  # type: ignore[misc]
@@ -37,13 +47,89 @@ def when_compiling(announce: Callable[[], None]) -> None:
     event.register("numba:compile", _FirstCompilation(announce))
 
 
+class _CheckedContent(CompileResultCacheImpl):  # type: ignore[misc]
+    """Gives compiled versions a checksum: a flipped bit in machine code can go unnoticed."""
+
+    def reduce(self, compiled: CompileResult) -> tuple[Any, str, bytes]:
+        """Processor, checksum and content of a file."""
+        content = dumps(super().reduce(compiled))
+        return compiled.codegen.magic_tuple(), hashlib.sha256(content).hexdigest(), content
+
+    def rebuild(self, target_context: Any, stored: tuple[Any, str, bytes]) -> CompileResult:
+        """The compiled version; ValueError if the file is damaged or for another processor."""
+        processor, checksum, content = stored
+        if processor != target_context.codegen().magic_tuple():
+            raise ValueError("compiled for another processor")
+        if checksum != hashlib.sha256(content).hexdigest():
+            raise ValueError("the checksum differs")
+        return super().rebuild(target_context, pickle.loads(content))
+
+
+class _KernelCache(FunctionCache):  # type: ignore[misc]
+    """numba's cache, but damaged files are compiled again and a full disk is no error."""
+
+    _impl_class = _CheckedContent
+
+    def load_overload(self, signature: Any, target_context: Any) -> CompileResult | None:
+        """The version for a signature; None if it is missing or damaged."""
+        try:
+            compiled = super().load_overload(signature, target_context)
+            # Two processes that add different signatures at once can exchange their files.
+            if compiled is not None and tuple(compiled.signature.args) != tuple(signature):
+                raise ValueError("compiled for another signature")
+        except OSError:
+            return None
+        except Exception:  # pickle raises many kinds
+            _say_damaged(kernel_folder())
+            self._forget()
+            return None
+        return compiled
+
+    def save_overload(self, signature: Any, compiled: CompileResult) -> None:
+        """Keep the version for a signature, if the disk has room for it."""
+        with contextlib.suppress(OSError):
+            super().save_overload(signature, compiled)
+
+    def _forget(self) -> None:
+        """Empty the index of the function, or else do without the cache."""
+        try:
+            self.flush()
+        except OSError:
+            self.disable()
+
+
+@functools.cache
+def _say_damaged(folder: Path) -> None:
+    """Say once that compiled kernels are damaged."""
+    _logger.warning("compiled kernels in %s are damaged; they are compiled again", folder)
+
+
+def _function_cache(function: Callable[..., Any]) -> _KernelCache | None:
+    """Cache of a function; None if there is no safe folder or the function is in no file."""
+    folder = kernel_folder()
+    if folder is None:
+        return None
+    before = numba.config.CACHE_DIR
+    numba.config.CACHE_DIR = str(folder)
+    try:
+        cache = _KernelCache(function)
+    except RuntimeError:
+        return None
+    finally:
+        numba.config.CACHE_DIR = before
+    # If numba cannot write there, it turns to `__pycache__`, where changed callees run stale.
+    return cache if folder in Path(cache.cache_path).parents else None
+
+
 def jit(function: Callable[..., Any] | None = None, *, cache: bool = True, **options: Any) -> Any:
     """Compile to machine code, keep it on disk; division by zero follows IEEE rules."""
     if function is None:
         return functools.partial(jit, cache=cache, **options)
     compiled = numba.njit(function, error_model="numpy", **options)
     if cache and not numba.config.DISABLE_JIT:
-        compiled._cache = KernelCache(function)
+        kept = _function_cache(function)
+        if kept is not None:
+            compiled._cache = kept
     return compiled
 
 
