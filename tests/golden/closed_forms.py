@@ -148,7 +148,8 @@ def smooth_sphere() -> Values:
 
 def units() -> Values:
     """Reduced units in SI, the constants of the model and numbers of sites."""
-    scales = Scales(radius=1.25e-3, work_of_adhesion=63e-3, contact_modulus=0.93e6)
+    # Of order one: comparisons have a smallest scale.
+    scales = Scales(radius=1.25, work_of_adhesion=0.63, contact_modulus=0.93)
     return {
         "constants": np.array([WORK_OF_ADHESION, CONTACT_MODULUS]),
         "energy per area": np.array(scales.energy_per_area),

@@ -220,6 +220,15 @@ def front_that_jumps(solver: Solver) -> Values:
     return _cycle(polar_field(radii[:, 0], adhesion, "cubic"), solver, 0.6, 0.2)
 
 
+def edge_in_compression(solver: Solver) -> Values:
+    """A front over a repelling patch, at which its edge retracts until it is in compression."""
+    angle = 2 * np.pi * np.arange(28, dtype=float) / 28
+    radii = 0.05 * np.arange(1, 56, dtype=float)[:, np.newaxis]
+    patch = np.exp(5 * (np.cos(angle - 1) - 1)) / (1 + np.exp(-(radii - 0.6) / 0.05))
+    adhesion = WORK_OF_ADHESION * (1 - 6 * patch)
+    return _cycle(polar_field(radii[:, 0], adhesion, "cubic"), solver, 1.5, 0.25)
+
+
 def noisy_rays(solver: Solver) -> Values:
     """Straight pieces between samples of noise on 24 rays."""
     return _cycle(_rays(24, 0.3, "linear"), solver)
@@ -261,6 +270,7 @@ FRONTS: dict[str, Callable[[Solver], Values]] = {
     "smooth circle": smooth_circle,
     "circle that jumps": circle_that_jumps,
     "front that jumps": front_that_jumps,
+    "edge in compression": edge_in_compression,
     "noisy rays": noisy_rays,
     "noisy rays, cubic": noisy_cubic_rays,
     "needles": needles,
