@@ -130,9 +130,9 @@ test: env  ## Run the tests that are not slow
 	@$(IN_ENV) .venv/bin/python -m pytest $(PARALLEL) -m "not slow" --junitxml=$(REPORT)
 
 test-portable: private PORTABLE = 1
-test-portable: env  ## Run the tests of predictions as on another processor (two minutes)
+test-portable: env  ## Run the tests of predictions and golden files as on another processor (three minutes)
 	@$(IN_ENV) .venv/bin/python -m pytest $(PARALLEL) -m "not slow" \
-	  tests/topography/density tests/topography/spectrum tests/topography/prediction
+	  tests/golden tests/topography/density tests/topography/spectrum tests/topography/prediction
 
 ON_SLURM = $(IN_ENV) tests/cluster/with-slurm.sh .venv/bin/python -m pytest -m slurm --timeout 1800 tests/cluster
 

@@ -1,0 +1,125 @@
+"""Results of a version do not move: states by PHYSICS_VERSION, rows and fits by ROWS_VERSION."""
+
+import functools
+
+import numpy as np
+import pytest
+
+from crackfront.core.solver import DEFAULT_TOLERANCE
+from crackfront.core.solver.relax import SOLVERS, Newton
+from crackfront.core.versions import PHYSICS_VERSION, ROWS_VERSION
+from tests.golden.closed_forms import CLOSED_FORMS
+from tests.golden.files import FORCES, PHYSICS, ROWS
+from tests.golden.fronts import FRONTS, TIGHT, forces_and_energies
+from tests.golden.golden import (
+    COMMAND,
+    TOLERANCE,
+    Golden,
+    NotRaisedError,
+    advice,
+    movements,
+    read_golden,
+    renewed,
+    write_golden,
+)
+from tests.golden.rows import rows_and_fits
+
+AT_DEFAULT = 5e-7
+"""Allowed difference between states at the default tolerance of forces, 1e-8, and the tight one.
+
+The largest that was measured is 7e-8.
+"""
+
+golden = functools.cache(read_golden)
+
+each_scene = pytest.mark.parametrize("scene", FRONTS)
+
+
+def refuse_movement(path, version, computed, tolerance=TOLERANCE):
+    """Fail if scenes moved, with how much and what to do."""
+    moved = movements(golden(path).scenes, computed, tolerance)
+    if moved:
+        pytest.fail(advice(moved, version), pytrace=False)
+
+
+@pytest.mark.parametrize("scene", CLOSED_FORMS)
+def test_closed_forms_and_surfaces_have_not_moved(scene):
+    refuse_movement(PHYSICS, "PHYSICS_VERSION", {scene: CLOSED_FORMS[scene]()})
+
+
+def test_forces_and_energies_of_given_fronts_have_not_moved():
+    refuse_movement(PHYSICS, "PHYSICS_VERSION", {FORCES: forces_and_energies()})
+
+
+@each_scene
+@pytest.mark.parametrize("solver", SOLVERS)
+def test_every_solver_finds_the_states_of_the_version(scene, solver):
+    values = FRONTS[scene](SOLVERS[solver](TIGHT))
+    refuse_movement(PHYSICS, "PHYSICS_VERSION", {scene: values})
+
+
+@each_scene
+def test_the_default_tolerance_finds_the_same_states_to_its_precision(scene):
+    values = FRONTS[scene](Newton(DEFAULT_TOLERANCE))
+    refuse_movement(PHYSICS, "PHYSICS_VERSION", {scene: values}, AT_DEFAULT)
+
+
+def test_rows_and_fits_of_stored_states_have_not_moved():
+    refuse_movement(ROWS, "ROWS_VERSION", rows_and_fits(golden(ROWS).given))
+
+
+@pytest.mark.parametrize(
+    ("path", "version"), [(PHYSICS, PHYSICS_VERSION), (ROWS, ROWS_VERSION)], ids=["states", "rows"]
+)
+def test_a_golden_file_belongs_to_the_version_of_the_sources(path, version):
+    assert golden(path).version == version, f"run `{COMMAND}`"
+
+
+def test_a_golden_file_has_no_scene_that_is_no_longer_computed():
+    assert set(golden(PHYSICS).scenes) == {*CLOSED_FORMS, FORCES, *FRONTS}
+
+
+SOME = Golden(3, {"scene": {"force": np.array([2.0, -1.0])}})
+
+
+def test_a_movement_says_by_how_much_and_what_to_do():
+    moved = movements(SOME.scenes, {"scene": {"force": np.array([2.0, -1.0 + 2e-6])}})
+    text = advice(moved, "ROWS_VERSION")
+    for part in ("scene: force", "1e-06", "1e+04 tolerances", "raise ROWS_VERSION", COMMAND):
+        assert part in text
+
+
+@pytest.mark.parametrize(
+    "values",
+    [
+        {"force": np.array([2.0, np.nan])},
+        {"force": np.array([2.0])},
+        {},
+        SOME.scenes["scene"] | {"other": np.array(1.0)},
+    ],
+    ids=["missing value", "fewer values", "no quantity", "a new quantity"],
+)
+def test_other_entries_of_a_scene_are_a_movement(values):
+    assert len(movements(SOME.scenes, {"scene": values})) == 1
+
+
+def test_moved_numbers_are_not_renewed_before_the_version_is_raised():
+    other = {"scene": {"force": np.array([2.1, -1.0])}}
+    with pytest.raises(NotRaisedError, match="VERSION is still 3"):
+        renewed(SOME, 3, other, "VERSION")
+    assert renewed(SOME, 4, other, "VERSION") == Golden(4, other)
+
+
+def test_a_new_scene_needs_no_new_version_and_leaves_others_as_they_are():
+    rounded = {"scene": {"force": np.array([2.0, -1.0 + 1e-15])}, "new": {}}
+    scenes = renewed(SOME, 3, rounded, "VERSION").scenes
+    assert set(scenes) == {"scene", "new"}
+    assert scenes["scene"] is SOME.scenes["scene"]
+
+
+def test_a_golden_file_returns_what_was_written(tmp_path):
+    written = Golden(2, {"a": {"x": np.array([[1.0, np.nan]])}}, {"b": {"y": np.array(1 / 3)}})
+    write_golden(tmp_path / "golden.json", written)
+    read = read_golden(tmp_path / "golden.json")
+    assert read.version == 2
+    assert not movements(written.scenes | written.given, read.scenes | read.given)
