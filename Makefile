@@ -74,7 +74,7 @@ ended    = echo "$$(date +%s) $(1)" >> .venv/.times
 
 all: env  ## Run the sweep SWEEP to its figure and fit; by default with quick straight fronts
 	@echo $(BEGAN) > .venv/.times; $(call ended,environment)
-	@$(CHECK) $(call quoted,$(SWEEP)) > /dev/null
+	@for sweep in $(call quoted,$(SWEEP)) $(if $(FRONTS),$(call quoted,$(FRONTS))); do $(CHECK) "$$sweep" > /dev/null; done
 	$(SNAKE) --config sweep=$(call quoted,$(SWEEP))
 	@$(call ended,sweep)
 	$(if $(FRONTS),$(SNAKE) --config sweep=$(call quoted,$(FRONTS)))

@@ -75,11 +75,11 @@ def fit(configuration: Path, output: Path | None, as_json: bool) -> None:
 @output_option
 def figures(configuration: Path, output: Path | None) -> None:
     """Draw the figures of a sweep from hysteresis.nc as PDF and PNG."""
+    from crackfront.data.digests import forget_sums
+    from crackfront.data.files import UnreadableFileError
     from crackfront.plots.loop import simulation_figure
     from crackfront.plots.style import save_figure
     from crackfront.plots.sweep import factor_figure, hysteresis_figure
-    from crackfront.data.digests import forget_sums
-    from crackfront.data.files import UnreadableFileError
     from crackfront.simulate.costs import expected_cost
     from crackfront.simulate.run import run_simulation
     from crackfront.sweep.library import opened

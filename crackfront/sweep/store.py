@@ -281,24 +281,23 @@ class Store:
         limit = sweep.numerics.max_sweeps
         located = located_rows(rows, sweep.series(item), realisations, limit)
         missing, numbers = located.missing, np.array(realisations)
-        n_done = int(np.isin(located.column("status"), _COMPLETE_PLACES).sum()) if rows else 0
-        n_stored = int(np.count_nonzero(~missing))
+        older, changed = _unused(rows, firsts, missing, realisations)
         lacking = [
             MissingSimulations(first, numbers[row])
             for first, row in zip(firsts, missing, strict=True)
             if row.any()
         ]
-        older, changed = _unused(rows, firsts, missing, realisations)
+        found = Inventory(missing=tuple(lacking), older=older, changed=changed)
+        if missing.all():
+            return found
+        n_done = int(np.isin(located.column("status"), _COMPLETE_PLACES).sum())
         costs = [expected_cost(first).seconds for first in firsts]
-        return Inventory(
+        return found + Inventory(
             n_done,
-            n_stored - n_done,
-            tuple(lacking),
-            older,
-            changed,
-            frozenset(located.column("arithmetic").tolist()) if n_stored else frozenset(),
-            float(np.nansum(located.column("cpu_seconds"))) if n_stored else 0.0,
-            float(np.sum((~missing).sum(axis=1) * costs)),
+            int(np.count_nonzero(~missing)) - n_done,
+            arithmetic=frozenset(located.column("arithmetic").tolist()),
+            cpu_seconds=float(np.nansum(located.column("cpu_seconds"))),
+            expected_seconds=float(np.sum((~missing).sum(axis=1) * costs)),
         )
 
     def shard_summaries(self, item: NamedSpectrum) -> list[ShardSummary]:

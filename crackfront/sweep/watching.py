@@ -6,24 +6,27 @@ import re
 import sys
 import threading
 import time
+from collections.abc import Mapping
 from pathlib import Path
 
 _SECONDS = 1.0
 """Time between two looks at the logs. (Units: s)"""
 
 _FINISHED = re.compile(rb"^\[\d+/\d+\] ", re.MULTILINE)
-"""Beginning of the line that a job writes into its log for each finished simulation."""
+_STORED = re.compile(rb": (\d+) of \d+ simulations are stored$", re.MULTILINE)
+"""Lines of the log of a job: for each finished simulation, and for those that it finds stored."""
 
 
 class SweepBar:
     """Bar of the simulations of a sweep, drawn by a thread of the process that runs the workflow.
 
-    It counts lines in the logs of the jobs. Nothing is drawn where standard error is no terminal:
+    It counts lines in the logs of the jobs; `sizes` are the numbers of simulations of the shards by
+    their names. Nothing is drawn where standard error is no terminal:
     jobs print the lines there.
     """
 
-    def __init__(self, n_simulation: int, results: Path) -> None:
-        self._total, self._logs = n_simulation, results / "logs"
+    def __init__(self, sizes: Mapping[str, int], results: Path) -> None:
+        self._sizes, self._results = sizes, results
         self.terminal = sys.stderr.isatty()
         self._began = time.time()
         self._ended = threading.Event()
@@ -40,17 +43,22 @@ class SweepBar:
         if self._thread.is_alive():
             self._thread.join()
 
-    def _finished(self) -> int:
-        """How many simulations have finished since the workflow began."""
-        logs = [path for path in self._logs.glob("simulate-*.log")]
-        recent = [path for path in logs if path.stat().st_mtime >= self._began]
-        return sum(len(_FINISHED.findall(path.read_bytes())) for path in recent)
+    def _finished(self, shard: str) -> int:
+        """How many simulations of a shard have finished: all if its file is there, and no job."""
+        log = self._results / "logs" / f"simulate-{shard}.log"
+        if log.exists() and log.stat().st_mtime >= self._began:
+            text = log.read_bytes()
+            return sum(map(int, _STORED.findall(text))) + len(_FINISHED.findall(text))
+        return self._sizes[shard] if (self._results / "shards" / f"{shard}.nc").exists() else 0
 
     def _draw(self) -> None:
         """Read the logs repeatedly, and update the bar."""
         from tqdm import tqdm
 
-        with tqdm(total=self._total, unit="simulation", smoothing=0, file=sys.stderr) as bar:
-            while not self._ended.wait(_SECONDS):
-                bar.update(self._finished() - bar.n)
-            bar.update(self._finished() - bar.n)
+        total = sum(self._sizes.values())
+        with tqdm(total=total, unit="simulation", smoothing=0, file=sys.stderr) as bar:
+            while True:
+                ended = self._ended.wait(_SECONDS)
+                bar.update(sum(map(self._finished, self._sizes)) - bar.n)
+                if ended:
+                    return

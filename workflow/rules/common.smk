@@ -200,7 +200,11 @@ CRACKFRONT = command("crackfront")
 STUDIES = importable(BASE) + command("python") + " -m studies"
 LOGGED = " > >(trap '' INT TERM HUP; exec tee {log:q}) 2>&1"
 # Of simulations a terminal shows one bar of the whole sweep, and what goes wrong; a log all lines.
-BAR = SweepBar(SWEEP.n_simulation, Path(RESULTS))
+SIZES = {
+    name: len(SWEEP.elastic_energies) * len(shard.realisations)
+    for name, shard in SHARDS.items()
+}
+BAR = SweepBar(SIZES, Path(RESULTS))
 SIMULATED = (
     " >> {log:q} 2> >(trap '' INT TERM HUP; exec tee --append {log:q} >&2)"
     if BAR.terminal
