@@ -15,7 +15,6 @@ import click
 from crackfront.cli.report import (
     FILE,
     Number,
-    StoppedError,
     announce_compilation,
     announce_cost,
     as_json,
@@ -32,6 +31,7 @@ if TYPE_CHECKING:
     from crackfront.simulate.costs import Cost
     from crackfront.simulate.simulation import Simulation
     from crackfront.sweep.expectation import Expectation
+    from crackfront.sweep.parallel import Ranks
     from crackfront.sweep.store import Inventory, MissingSimulations, Store
     from crackfront.sweep.sweep import Shard, Sweep
 
@@ -184,7 +184,7 @@ def _block(context: click.Context, parameter: click.Parameter, value: str | None
 
 @click.command(
     epilog=examples(
-        "crackfront simulate config/default.yaml --ranks 4",
+        "mpiexec -n 5 crackfront simulate config/default.yaml",
         "crackfront simulate config/default.yaml --spectrum flat --realisations 0-1",
     )
 )
@@ -193,18 +193,6 @@ def _block(context: click.Context, parameter: click.Parameter, value: str | None
 @click.option("--spectrum", help="Only this spectrum.  [default: all]")
 @click.option(
     "--realisations", callback=_block, help="Only these realisations, as in 0-49.  [default: all]"
-)
-@click.option(
-    "--ranks",
-    type=whole(Range(1, 1e6)),
-    default=1,
-    help="MPI ranks that simulate, besides one that distributes work; 1 runs without MPI.",
-)
-@click.option(
-    "--launcher",
-    envvar="CRACKFRONT_LAUNCHER",
-    help="Launcher of the ranks, as in 'srun -K1 --overcommit --mpi=pmi2'; also from "
-    "CRACKFRONT_LAUNCHER.  [default: mpiexec beside this Python]",
 )
 @click.option(
     "--checkpoint",
@@ -217,8 +205,6 @@ def simulate(
     output: Path | None,
     spectrum: str | None,
     realisations: range | None,
-    ranks: int,
-    launcher: str | None,
     checkpoint: float,
 ) -> None:
     """Run the simulations of a sweep that are not stored yet.
@@ -226,98 +212,68 @@ def simulate(
     After Ctrl-C or SIGTERM the states of running simulations are stored, and the exit code is 75.
     Run the same command to continue.
     """
-    from crackfront.sweep import parallel
+    from crackfront.sweep.parallel import deferring_stops, ranks
 
-    if not parallel.is_manager(ranks):
-        with parallel.deferring_stops():
-            parallel.serve_tasks("crackfront.sweep.tasks")
-        return
-    # MPI has to begin before what reads a sweep is imported.
+    # Ranks wait for the manager within `ranks`.
+    with deferring_stops(), ranks() as workers:
+        if workers is not None:
+            _simulate(configuration, output, spectrum, realisations, checkpoint, workers)
+
+
+def _simulate(
+    configuration: Path,
+    output: Path | None,
+    spectrum: str | None,
+    realisations: range | None,
+    checkpoint: float,
+    workers: Ranks,
+) -> None:
+    """Run what some shards lack, and derive their rows."""
     from crackfront.sweep.expectation import steady_part_warnings
     from crackfront.sweep.library import opened, write_source
+    from crackfront.sweep.store import Inventory
 
     sweep, store, origin = opened(configuration, output, warn)
     items = sweep.spectra if spectrum is None else (sweep.named(spectrum),)
     chosen = range(sweep.n_realisation) if realisations is None else realisations
     shards = [sweep.named_shard(item, chosen) for item in items]
-    if not parallel.under_mpi():
-        inventory = store.unfinished(sweep, shards)
-        missing, n_missing = inventory.missing, inventory.n_missing
-        total = inventory.stored + n_missing
+    write_source(configuration, store.folder)
+    with store.locked(shards):
+        inventories = [store.unfinished(sweep, [shard]) for shard in shards]
+        inventory = sum(inventories, Inventory())
+        total = inventory.stored + inventory.n_missing
         click.echo(f"{configuration}: {inventory.stored} of {total} simulations are stored")
         for sentence in inventory.sentences():
             click.echo(sentence)
-        busy, costs = min(ranks, n_missing), _costs(missing)
-        refuse_beyond_memory(
-            f"{counted(busy, 'rank')} of {in_bytes(costs['bytes_a_rank'])}",
-            costs["bytes_a_rank"] * (busy if launcher is None else 1),
-            "use fewer ranks, coarser numerics or a smaller tile",
-        )
-        announce_cost(costs["core_seconds"])
-        for sentence in steady_part_warnings(sweep) if missing else ():
-            warn(sentence)
-        if busy > 1:
-            arguments = ["simulate", str(configuration), "--ranks", str(busy)]
-            arguments += ["--output", str(store.folder), "--checkpoint", str(checkpoint)]
-            arguments += [] if spectrum is None else ["--spectrum", spectrum]
-            arguments += ["--realisations", f"{chosen.start}-{chosen.stop - 1}"]
-            store.folder.mkdir(parents=True, exist_ok=True)
-            code = parallel.launch_ranks(arguments, busy, launcher, store.folder)
-            _refuse_unfinished(code, sweep, store, shards, launcher)
-            return
-    write_source(configuration, store.folder)
-    with store.locked(shards):
-        # Another process may have stored some while this one waited for the lock.
-        lacking = [(shard, store.unfinished(sweep, [shard]).simulations()) for shard in shards]
-        try:
-            run_missing(store, lacking, origin, checkpoint)
-        except KeyboardInterrupt as stop:
-            # A second Ctrl-C, which ends the process at once, has no sentence.
-            if not (str(stop) and parallel.report_stop_to_launcher()):
-                raise
-            StoppedError(str(stop)).show()
-            return
+        if inventory.missing:
+            costs = _costs(inventory.missing)
+            busy = min(workers.n_here, inventory.n_missing)
+            refuse_beyond_memory(
+                f"{counted(busy, 'rank')} of {in_bytes(costs['bytes_a_rank'])}",
+                costs["bytes_a_rank"] * busy,
+                "use fewer ranks, coarser numerics or a smaller tile",
+            )
+            announce_cost(costs["core_seconds"])
+            for sentence in steady_part_warnings(sweep):
+                warn(sentence)
+        lacking = [
+            (shard, found.simulations()) for shard, found in zip(shards, inventories, strict=True)
+        ]
+        run_missing(store, lacking, origin, workers, checkpoint)
         for shard in shards:
             click.echo(f"rows: {store.finish_shard(sweep, shard, origin)}")
-
-
-def _refuse_unfinished(
-    code: int | None, sweep: Sweep, store: Store, shards: Sequence[Shard], launcher: str | None
-) -> None:
-    """End where ranks did not finish the shards, whatever the exit code of their launcher."""
-    unfinished = [shard for shard in shards if not store.is_finished(sweep, shard)]
-    if not unfinished:
-        if code not in (0, None):
-            warn(f"the ranks ended with exit code {code}, after all was stored")
-        return
-    if code is None or code == StoppedError.exit_code:
-        sys.exit(StoppedError.exit_code)  # the manager has printed its sentence
-    if code != 0:
-        click.echo(
-            f"Error: the ranks ended with exit code {code}; finished simulations are stored, and "
-            "the same command continues with the others",
-            err=True,
-        )
-        sys.exit(2 if code == 2 else 1)  # a launcher has codes of its own
-    left = store.unfinished(sweep, unfinished)
-    total = left.stored + left.n_missing
-    raise click.ClickException(
-        f"the launcher {launcher or 'mpiexec'!r} ended without an error, but {left.n_missing} "
-        f"of {total} simulations are not stored, and {len(unfinished)} of {len(shards)} shards "
-        "have no rows; name one that starts the command that follows its -n and a number"
-    )
 
 
 def run_missing(
     store: Store,
     lacking: Sequence[tuple[Shard, Sequence[Simulation]]],
     origin: Provenance,
+    workers: Ranks,
     checkpoint_seconds: float = 60.0,
 ) -> None:
     """Run what shards lack with a bar on a terminal, elsewhere with a line for each simulation."""
     from tqdm import tqdm
 
-    from crackfront.sweep.parallel import deferring_stops
     from crackfront.sweep.rows import COMPLETE
     from crackfront.sweep.tasks import NotStoredError, run_and_store
 
@@ -326,8 +282,7 @@ def run_missing(
         announce_compilation()
     try:
         with (
-            deferring_stops(),
-            closing(run_and_store(store, lacking, origin, checkpoint_seconds)) as outcomes,
+            closing(run_and_store(store, lacking, origin, workers, checkpoint_seconds)) as outcomes,
             tqdm(total=total, unit="simulation", disable=not terminal, file=sys.stderr) as bar,
         ):
             for count, (simulation, finished) in enumerate(outcomes, start=1):

@@ -97,6 +97,7 @@ def run_and_store(
     store: Store,
     shards: Sequence[tuple[Shard, Sequence[Simulation]]],
     origin: Provenance,
+    ranks: parallel.Ranks,
     seconds: float = 60.0,
 ) -> Generator[tuple[Simulation, SimulationOutcome], None, None]:
     """Run simulations of shards, the longest first, and store them in batches.
@@ -132,22 +133,23 @@ def run_and_store(
             return _not_stored(error)
         return result.outcome
 
-    runs = parallel.run_tasks(_run_task, tasks, keep, write_in_time)
+    runs, done = ranks.run(_run_task, tasks, keep, write_in_time), 0
     try:
         with closing(runs) as outcomes:
-            for count, (task, outcome) in enumerate(outcomes):
-                done = f"{count} of {len(tasks)} simulations"
-                if outcome.status == _STOPPED:
-                    raise KeyboardInterrupt(
-                        f"{done} are finished; they and the states of running ones are stored; run "
-                        "the same command to continue"
-                    )
+            for task, outcome in outcomes:
                 if outcome.status == _NOT_STORED:
                     raise NotStoredError(
-                        f"{task.simulation.label}: {outcome.sentence}; {done} were stored, and the "
-                        "same command continues with the others"
+                        f"{task.simulation.label}: {outcome.sentence}; {done} of {len(tasks)} "
+                        "simulations were stored, and the same command continues with the others"
                     )
-                yield task.simulation, outcome
+                if outcome.status != _STOPPED:
+                    done += 1
+                    yield task.simulation, outcome
+        if parallel.stop_is_requested() and done < len(tasks):
+            raise KeyboardInterrupt(
+                f"{done} of {len(tasks)} simulations are finished; they and the states of running "
+                "ones are stored; run the same command to continue"
+            )
     finally:
         for writer in writers.values():
             writer.flush()
