@@ -19,6 +19,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from click.testing import CliRunner
+from crackfront.sweep.result_packs import Entry, new_pack
 from matplotlib.figure import Figure
 
 import crackfront as cf
@@ -31,7 +32,6 @@ from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.core.versions import PHYSICS_VERSION, ROWS_VERSION
 from crackfront.plots.style import save_figure
 from crackfront.sweep.configuration import load_configuration
-from crackfront.sweep.result_packs import Entry, new_pack
 from crackfront.sweep.rows import failed_row
 from tests.commands import curves, refused, run
 from tests.topography.made import DETAIL, measure_surfaces_once

@@ -11,6 +11,8 @@ import numpy as np
 import pytest
 import xarray as xr
 from click.testing import CliRunner
+from crackfront.data.packs import members, record
+from crackfront.sweep.result_packs import RowIndex, pack_paths
 from numba.core.errors import NumbaError
 
 from crackfront.cli import main
@@ -19,14 +21,12 @@ from crackfront.core.outcome import DefectError
 from crackfront.core.versions import PHYSICS_VERSION
 from crackfront.data.bounds import TooLargeError
 from crackfront.data.files import read_dataset
-from crackfront.data.packs import members, record
 from crackfront.data.provenance import provenance
 from crackfront.simulate.costs import expected_cost
 from crackfront.simulate.files import write_checkpoint
 from crackfront.simulate.run import run_simulation
 from crackfront.sweep import tasks
 from crackfront.sweep.configuration import load_configuration
-from crackfront.sweep.result_packs import RowIndex, pack_paths
 from crackfront.sweep.store import Store
 from tests.commands import curves
 
