@@ -356,7 +356,7 @@ def status(folder: Path, as_json: bool) -> None:
     system knows them all.
     """
     from crackfront.sweep.configuration import load_configuration
-    from crackfront.sweep.store import Store
+    from crackfront.sweep.store import Inventory, Store
 
     store = Store(folder, warn)
     if not store.configuration.is_file():
@@ -364,8 +364,9 @@ def status(folder: Path, as_json: bool) -> None:
     sweep = load_configuration(store.configuration)
     inventories = {item.name: store.progress(sweep, item) for item in sweep.spectra}
     progress, running = _progress(inventories), store.running_shards()
-    content = {"spectra": progress, "running": running}
-    echo_answer(content, _status_lines(progress, running), as_json=as_json)
+    sentences = sum(inventories.values(), Inventory()).sentences()
+    content = {"spectra": progress, "running": running, "older": sentences}
+    echo_answer(content, [*_status_lines(progress, running), *sentences], as_json=as_json)
 
 
 def warn(sentence: str) -> None:

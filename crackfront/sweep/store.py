@@ -105,6 +105,8 @@ class Inventory:
     """What is to be simulated."""
     older: int = 0
     """Missing simulations that are stored of an older version of the physics."""
+    remade: int = 0
+    """Stored simulations whose rows are of an older version, and made anew from their states."""
     changed: Counter[str] = field(default_factory=Counter)
     """Stored simulations of other parameters, by the names of what differs."""
     arithmetic: frozenset[str] = frozenset()
@@ -120,6 +122,7 @@ class Inventory:
             self.failed + other.failed,
             self.missing + other.missing,
             self.older + other.older,
+            self.remade + other.remade,
             self.changed + other.changed,
             self.arithmetic | other.arithmetic,
             self.cpu_seconds + other.cpu_seconds,
@@ -148,6 +151,11 @@ class Inventory:
                 f"{self.older} stored simulations belong to an older version of the physics (now "
                 f"{PHYSICS_VERSION}) and run again"
             )
+        if self.remade:
+            found.append(
+                f"{self.remade} stored simulations have rows of an older version (now "
+                f"{ROWS_VERSION}), which are made again from their states"
+            )
         if self.changed:
             listed = ", ".join(f"{n} with another {name}" for name, n in self.changed.most_common())
             found.append(f"stored simulations of other parameters stay unused: {listed}")
@@ -170,6 +178,12 @@ class LocatedRows:
     def missing(self) -> NDArray[np.bool_]:
         """Which simulations no file has, (n_series, n_realisation)."""
         return self.file == _NOWHERE
+
+    @property
+    def n_older_rows(self) -> int:
+        """Number of simulations whose rows are of an older version."""
+        older = [number for number, rows in enumerate(self.files) if _is_older(rows)]
+        return int(np.count_nonzero(np.isin(self.file, older)))
 
     def column(self, name: str) -> NDArray[Any]:
         """Values of a column of the simulations that are there, series by series."""
@@ -295,6 +309,7 @@ class Store:
         return found + Inventory(
             n_done,
             int(np.count_nonzero(~missing)) - n_done,
+            remade=located.n_older_rows,
             arithmetic=frozenset(located.column("arithmetic").tolist()),
             cpu_seconds=float(np.nansum(located.column("cpu_seconds"))),
             expected_seconds=float(np.sum((~missing).sum(axis=1) * costs)),
@@ -343,6 +358,7 @@ class Store:
             found += Inventory(
                 size - min(n_failed, size),
                 min(n_failed, size),
+                remade=size if summary.rows_version != ROWS_VERSION else 0,
                 arithmetic=summary.arithmetic,
                 cpu_seconds=share * float(summary.cpu_seconds[rows].sum()),
                 expected_seconds=costs * len(taken),
