@@ -18,7 +18,7 @@ from collections.abc import Callable, Generator, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
 from dataclasses import dataclass
 from types import FrameType
-from typing import Any, TypeVar
+from typing import Any, TypeVar, cast
 
 Task = TypeVar("Task")
 Result = TypeVar("Result")
@@ -142,7 +142,9 @@ def ranks() -> Iterator[Ranks | None]:
     sys.excepthook = abort
     n_here = world.Split_type(MPI.COMM_TYPE_SHARED).size
     with MPICommExecutor(world, root=0) as executor:
-        yield None if executor is None else Ranks(executor, max(1, n_here - 1))
+        # On the manager it is an executor, whatever the stubs of mpi4py say.
+        pool = cast("Executor | None", executor)
+        yield None if pool is None else Ranks(pool, max(1, n_here - 1))
 
 
 def _refuse_small_shared_memory() -> None:
