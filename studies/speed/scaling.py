@@ -30,7 +30,6 @@ from crackfront.simulate.costs import Cost, expected_cost
 from crackfront.simulate.run import run_simulation
 from crackfront.sweep.configuration import load_configuration
 from crackfront.sweep.curves import FinishedSimulation
-from crackfront.sweep.parallel import default_launcher
 from crackfront.sweep.postprocessing import postprocessing_costs
 from crackfront.sweep.requests import shard_request
 from crackfront.sweep.rows import row_columns, sweep_row
@@ -151,41 +150,39 @@ def disk_of_simulation() -> float:
     return float(np.mean([expected_cost(one).disk for one in firsts]))
 
 
-def hand_out_seconds(n_worker: int = 4, n_task: int = 5000) -> float:
-    """Time of the rank that hands out, for a simulation of the default sweep that it stores.
-
-    Each worker runs one, and answers with its curve and row from then on.
-    """
-    script = f"""
+_HAND_OUT = """
 import sys, time
 from pathlib import Path
-from crackfront.sweep import parallel
-manager = parallel.is_manager({n_worker})
-from crackfront.sweep import tasks
+from crackfront.cli.sweep import run_missing
+from crackfront.sweep import parallel, tasks
+from crackfront.sweep.library import opened
 run, first = tasks._run, []
 def answer(task, between):
     first[:] = first or [run(task, between)]
     return first[0]
 tasks._run = answer
-if not manager:
-    for _ in range(2):
-        parallel.serve_tasks("time")
-    sys.exit()
-from crackfront.cli.sweep import run_missing
-from crackfront.sweep.library import opened
-sweep, store, origin = opened(Path(sys.argv[2]), Path(sys.argv[1]))
-[shard, *_] = sweep.shards()
-simulations = list(sweep.simulations(shard.item))
-run_missing(store, [(shard, simulations[:{n_worker}])], origin)
-started = time.perf_counter()
-run_missing(store, [(shard, (simulations * {n_task})[:{n_task}])], origin)
-print((time.perf_counter() - started) / {n_task})
+folder, configuration, n_task = sys.argv[1:]
+with parallel.ranks() as workers:
+    if workers is not None:
+        sweep, store, origin = opened(Path(configuration), Path(folder))
+        shard = sweep.shards()[0]
+        simulations = [*sweep.simulations(shard.item)] * int(n_task)
+        run_missing(store, [(shard, simulations[:50])], origin, workers)
+        started = time.perf_counter()
+        run_missing(store, [(shard, simulations[: int(n_task)])], origin, workers)
+        print((time.perf_counter() - started) / int(n_task))
 """
+"""Ranks that run one simulation each, and answer with its curve and row from then on."""
+
+
+def hand_out_seconds(n_worker: int = 4, n_task: int = 5000) -> float:
+    """Time of the rank that hands out, for a simulation of the default sweep that it stores."""
+    mpiexec = [str(Path(sys.executable).with_name("mpiexec")), "-n", str(n_worker + 1)]
     with tempfile.TemporaryDirectory() as folder:
-        mpi = [*default_launcher().split(), "-n", str(n_worker + 1), sys.executable, "-m", "mpi4py"]
-        (path := Path(folder) / "dispatch.py").write_text(script)
+        (script := Path(folder) / "dispatch.py").write_text(_HAND_OUT)
+        arguments = [folder, str(ROOT / "config/default.yaml"), str(n_task)]
         done = subprocess.run(
-            [*mpi, str(path), folder, str(ROOT / "config/default.yaml")],
+            [*mpiexec, sys.executable, str(script), *arguments],
             capture_output=True,
             text=True,
             timeout=250,
