@@ -637,7 +637,7 @@ def test_a_sweep_that_was_stopped_goes_on_to_its_table(tmp_path, monkeypatch):
 
     with monkeypatch.context() as patched:
         patched.setattr(parallel, "stop_is_requested", notice)
-        with pytest.raises(KeyboardInterrupt, match="are stored; the same call continues"):
+        with pytest.raises(KeyboardInterrupt, match="are stored; run the same"):
             cf.run_sweep(TEST, tmp_path, progress=False)
     assert 0 < len(curves(tmp_path)) < 8
     found = cf.run_sweep(TEST, tmp_path, progress=False)

@@ -1,38 +1,59 @@
-"""SHA256SUMS: the checksums of a folder of results, as `sha256sum --check SHA256SUMS` reads them.
+"""SHA-256 checksums of results: in a list, in a file next to one, or in the name of one.
 
-A command that finishes a folder writes the list, and one that changes the folder removes it first.
+`SHA256SUMS` lists a finished folder, as `sha256sum --check` reads it. A derived netCDF file has its
+checksum in `<file>.sha256`, in the same format. The names of finished simulations and checkpoints
+end with the first digits of their own checksum, because one renaming then replaces both.
 """
 
 from __future__ import annotations
 
 import hashlib
+import os
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 
 SUMS = "SHA256SUMS"
 """Name of the list of checksums in a folder."""
 
-_DIGEST_SUFFIX = ".sha256"
-"""Ending of the name of the file that states the checksum of one other file."""
-
 DAMAGED_SUFFIX = ".damaged"
 """Ending of the name of a file that was set aside."""
 
-_NO_RESULTS = {"logs", "benchmarks", "checkpoints"}
+DIGITS_IN_NAME = 16
+"""Digits of the checksum of a file that end its name, before its suffix."""
+
+_NAMED = re.compile(rf"(batch|curves|checkpoint)-.*-([0-9a-f]{{{DIGITS_IN_NAME}}})\.nc")
+"""Names that end with a checksum."""
+
+_LINE = re.compile(r"([0-9a-f]{64})  (.+)\n")
+"""Line of a list: a checksum, two blanks and a name."""
+
+_NO_RESULTS = {"logs", "benchmarks"}
 """Folders whose files are not results and change while results are made."""
 
 
-def result_files(folder: Path) -> Iterator[Path]:
-    """Files of a folder of results, in the order of their names.
+def result_files(folder: Path) -> list[str]:
+    """Names of the files of a folder of results, relative to it, in their order.
 
-    Hidden ones, links, files that were set aside, logs, times and checkpoints are left out.
+    Links are followed. Hidden files, files that were set aside, checkpoints, the list of checksums,
+    and what is not a regular file are left out.
     """
-    for path in sorted(folder.rglob("[!.]*")):
-        parts = path.relative_to(folder).parts
-        left_out = path.is_symlink() or path.suffix == DAMAGED_SUFFIX or path.name == SUMS
-        if path.is_file() and not left_out and _NO_RESULTS.isdisjoint(parts):
-            yield path
+    names, visited = [], set()
+    for place, folders, files in os.walk(folder, followlinks=True):
+        if (real := os.path.realpath(place)) in visited:
+            folders.clear()  # a loop of links
+            continue
+        visited.add(real)
+        folders[:] = [name for name in folders if name not in _NO_RESULTS and name[0] != "."]
+        paths = (Path(place, name) for name in files if _is_result(name))
+        names += [path.relative_to(folder).as_posix() for path in paths if path.is_file()]
+    return sorted(names)
+
+
+def _is_result(name: str) -> bool:
+    """Whether a file of this name is a result."""
+    left_out = name == SUMS or name.endswith(DAMAGED_SUFFIX) or name.startswith("checkpoint-")
+    return not left_out and name[0] != "."
 
 
 def file_digest(path: Path) -> str:
@@ -43,15 +64,27 @@ def file_digest(path: Path) -> str:
 
 def digest_path(path: Path) -> Path:
     """Path of the file that states the checksum of one file, as `sha256sum --check` reads it."""
-    return path.with_name(path.name + _DIGEST_SUFFIX)
+    return path.with_name(f"{path.name}.sha256")
 
 
 def stated_digest(path: Path) -> str | None:
-    """Checksum of a file as the one at its :func:`digest_path` states it; None without one."""
-    try:
-        return digest_path(path).read_text(encoding="utf-8", errors="replace").partition(" ")[0]
-    except FileNotFoundError:
-        return None
+    """First digits of the checksum of a file, as its name or the file next to it states them.
+
+    None if nothing states them.
+    """
+    if match := _NAMED.fullmatch(path.name):
+        return match[2]
+    beside = digest_path(path)
+    return beside.read_text(encoding="utf-8", errors="replace")[:64] if beside.is_file() else None
+
+
+def is_whole(path: Path) -> bool:
+    """Whether a file agrees with the checksum in its name or next to it.
+
+    False if nothing states a checksum: the caller knows which files must have one.
+    """
+    known = stated_digest(path)
+    return bool(known) and file_digest(path).startswith(str(known))
 
 
 def sums_text(digests: Mapping[str, str]) -> str:
@@ -59,35 +92,32 @@ def sums_text(digests: Mapping[str, str]) -> str:
     return "".join(f"{digest}  {name}\n" for name, digest in digests.items())
 
 
+def parsed_sums(text: str, place: Path) -> dict[str, str]:
+    """Checksums by names, from the content of the list of a folder or an archive.
+
+    ValueError if it is not a whole list of different files.
+    """
+    lines = [_LINE.fullmatch(line) for line in text.splitlines(keepends=True)]
+    digests = {match[2]: match[1] for match in lines if match}
+    if not digests or len(digests) < len(lines):
+        raise ValueError(
+            f"{SUMS} of {place} is empty, cut or damaged; remove it and run make, or crackfront "
+            "checksums"
+        )
+    return digests
+
+
 def read_sums(folder: Path) -> dict[str, str]:
-    """Checksums in the list of a folder by the names of its files; empty without a list."""
+    """Checksums in the list of a folder by the names of its files; ValueError without a list."""
     path = folder / SUMS
     if not path.is_file():
-        return {}
-    lines = path.read_text(encoding="utf-8", errors="surrogateescape").splitlines()
-    return {name: digest for digest, _, name in (line.partition("  ") for line in lines)}
+        raise ValueError(
+            f"{folder} has no {SUMS}, so nothing says which files belong to it; run make, or "
+            "crackfront checksums if it is finished"
+        )
+    return parsed_sums(path.read_text(encoding="utf-8", errors="replace"), folder)
 
 
 def forget_sums(folder: Path) -> None:
     """Remove the list of a folder before its files change."""
     (folder / SUMS).unlink(missing_ok=True)
-
-
-DIGITS_IN_NAME = 16
-"""Digits of the checksum of a file that end its name, before its suffix."""
-
-_NAMED = re.compile(r"(batch|curves|checkpoint)-.+-([0-9a-f]{16})\.nc")
-
-
-def named_digest(path: Path) -> str | None:
-    """First digits of the checksum of a file as its own name states them; None without any."""
-    match = _NAMED.fullmatch(path.name)
-    return match[2] if match else None
-
-
-def is_whole(path: Path) -> bool:
-    """Whether a file agrees with the checksum that its name or the file beside it states."""
-    known = named_digest(path)
-    if known is not None:
-        return file_digest(path).startswith(known)
-    return stated_digest(path) == file_digest(path)

@@ -248,9 +248,14 @@ def set_aside_if_damaged(path: Path) -> str:
     """
     if is_whole(path):
         return ""
-    aside = path.replace(path.with_name(path.name + DAMAGED_SUFFIX))
+    aside = set_aside(path)
     digest_path(path).unlink(missing_ok=True)
     return f"{path} is damaged and was set aside as {aside.name}"
+
+
+def set_aside(path: Path) -> Path:
+    """Rename a file that is of no use, and return its new path."""
+    return path.replace(path.with_name(path.name + DAMAGED_SUFFIX))
 
 
 def read_derived(path: Path, names: Collection[str] | None = None) -> xr.Dataset:

@@ -255,7 +255,7 @@ class Store:
             except FileNotFoundError:  # another process has merged it meanwhile
                 continue
             if sentence:
-                self.announce(f"{sentence}; what it had is computed again")
+                self.announce(f"{sentence}; what it had is made again")
             else:
                 yield path
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from crackfront.simulate.run import run_simulation
 from crackfront.sweep.configuration import load_configuration
-from crackfront.sweep.rows import sweep_row
+from crackfront.sweep.rows import row_columns, sweep_row
 from crackfront.sweep.table import columns_dataset
 from studies.law.cells import law_cells, measured_cells
 from studies.law.fitting import fitted_law
@@ -25,7 +25,8 @@ def _fronts() -> Mapping[str, Number]:
     sweep = load_configuration(Path("config/line-quick.yaml"))
     sweep = replace(sweep, spectra=sweep.spectra[-1:], elastic_energies=sweep.elastic_energies[-1:])
     rows = [sweep_row(run_simulation(simulation)) for simulation in sweep.simulations()]
-    (cell,) = law_cells(sweep, columns_dataset(sweep, rows, range(sweep.n_realisation)))
+    columns = row_columns(rows, (1, 1, sweep.n_realisation))
+    (cell,) = law_cells(sweep, columns_dataset(sweep, columns, range(sweep.n_realisation)))
     return {"k": Number(cell.both, cell.numerical_error, reason=_SAME_SURFACES)}
 
 

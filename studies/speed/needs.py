@@ -27,13 +27,15 @@ from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.core.variables import variable
 from crackfront.data.files import write_dataset
 from crackfront.data.provenance import provenance
-from crackfront.simulate.files import cycle_dataset, simulation_dataset
+from crackfront.simulate.files import cycle_dataset
 from crackfront.simulate.laws import Settings
 from crackfront.simulate.numerics import Numerics
 from crackfront.simulate.run import compile_solver, run_simulation
 from crackfront.simulate.simulation import Simulation, simulation_field, simulation_of
 from crackfront.simulate.sphere.cycle import FullCycle
 from crackfront.simulate.sphere.steady import SteadySchedule
+from crackfront.sweep.curves import FinishedSimulation, curves_dataset
+from crackfront.sweep.rows import sweep_row
 from studies.pages import markdown_table
 from studies.speed.machine import restart_peak
 
@@ -146,7 +148,9 @@ def measured(scene: Scene, need: Need) -> Row:
     if need.rays:
         dataset = cycle_dataset(record)
     else:
-        dataset = simulation_dataset(result)
+        row, origin = sweep_row(result), provenance()
+        finished = FinishedSimulation(result.simulation, row, record, origin.arithmetic)
+        dataset = curves_dataset([finished])
         field = simulation_field(simulation(scene, need))
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "run.nc"

@@ -25,10 +25,12 @@ import click
 from crackfront.analysis.measures import RunMeasures
 from crackfront.core.cycle.record import Recorder
 from crackfront.core.variables import variable
-from crackfront.simulate.files import simulation_dataset
+from crackfront.data.provenance import provenance
 from crackfront.simulate.run import SimulationResult, compile_solver
 from crackfront.simulate.simulation import Simulation, simulation_adhesion, simulation_field
 from crackfront.sweep.configuration import load_configuration
+from crackfront.sweep.curves import FinishedSimulation, curves_dataset
+from crackfront.sweep.rows import sweep_row
 from studies.pages import markdown_table
 
 CONFIGURATION = Path("config/default.yaml")
@@ -99,7 +101,7 @@ def shares() -> list[Share]:
         Path(names).unlink()
     solver = _solver_shares(told.stdout)
     seconds = {part: loads * share for part, share in solver.items()}
-    seconds |= {"making the tile and its splines": tile, "making and packing the dataset": store}
+    seconds |= {"making the tile and its splines": tile, "making the row and the dataset": store}
     total = sum(seconds.values())
     ordered = sorted(seconds.items(), key=lambda item: -item[1])
     return [Share(part, spent, spent / total) for part, spent in ordered]
@@ -170,8 +172,10 @@ def _timed(simulation: Simulation, tell: Callable[[str], None]) -> tuple[float, 
     loaded = time.process_time() - begin
     tell("disable")
     measures = RunMeasures(adhesion.e_el, adhesion.w_rms, 0.0, 0.0, 0.0, 0.0)
+    arithmetic = provenance().arithmetic
     begin = time.process_time()
-    simulation_dataset(SimulationResult(simulation, record, measures)).to_netcdf()
+    row = sweep_row(SimulationResult(simulation, record, measures))
+    curves_dataset([FinishedSimulation(simulation, row, record, arithmetic)]).to_netcdf()
     return made, loaded, time.process_time() - begin
 
 

@@ -21,24 +21,23 @@ from pathlib import Path
 
 import numpy as np
 
-from crackfront.analysis.table import SweepRow
 from crackfront.cli import main
 from crackfront.core.arrays import Array
 from crackfront.core.memory import peak_memory
-from crackfront.core.versions import PHYSICS_VERSION, ROWS_VERSION
-from crackfront.data.files import dataset_content, write_text
-from crackfront.data.provenance import provenance
+from crackfront.data.files import write_text
+from crackfront.data.provenance import Provenance, provenance
 from crackfront.simulate.costs import Cost, expected_cost
-from crackfront.simulate.files import simulation_dataset
 from crackfront.simulate.run import run_simulation
-from crackfront.simulate.simulation import stems
 from crackfront.sweep.configuration import load_configuration
+from crackfront.sweep.curves import FinishedSimulation
 from crackfront.sweep.parallel import default_launcher
 from crackfront.sweep.postprocessing import postprocessing_costs
-from crackfront.sweep.result_packs import Entry
-from crackfront.sweep.rows import sweep_row
+from crackfront.sweep.requests import shard_request
+from crackfront.sweep.rows import row_columns, sweep_row
 from crackfront.sweep.shards import write_shard
-from crackfront.sweep.store import Store
+from crackfront.sweep.store import Store, write_request
+from crackfront.sweep.sweep import NamedSpectrum, Shard, Sweep
+from crackfront.sweep.tasks import BatchWriter
 from studies.pages import markdown_table
 from studies.speed.costs import measured_runs, predicted_seconds
 from studies.speed.machine import in_fresh_process
@@ -55,7 +54,7 @@ JOBS = ((1000, 16), (250, 32), (160, 32))
 REALISATIONS_OF_A_SHARD = 2000
 """Of a synthetic sweep: its two amplitudes make shards of 4000 simulations, 250 of a million."""
 
-_MOST_PACKED = 10**5
+_MOST_WITH_CURVES = 10**5
 """Simulations up to which the curves of a synthetic sweep are stored: a million take 60 GB."""
 
 
@@ -146,7 +145,7 @@ def million(
 
 
 def disk_of_simulation() -> float:
-    """Expected mean size of a curve and its row in a pack, of `config/default.yaml`, in bytes."""
+    """Expected mean size of the states and the row of `config/default.yaml`, in bytes."""
     sweep = load_configuration(ROOT / "config/default.yaml")
     firsts = [one for item in sweep.spectra for one in sweep.one_per_amplitude(item)]
     return float(np.mean([expected_cost(one).disk for one in firsts]))
@@ -164,8 +163,8 @@ from crackfront.sweep import parallel
 manager = parallel.is_manager({n_worker})
 from crackfront.sweep import tasks
 run, first = tasks._run, []
-def answer(task):
-    first[:] = first or [run(task)]
+def answer(task, between):
+    first[:] = first or [run(task, between)]
     return first[0]
 tasks._run = answer
 if not manager:
@@ -175,10 +174,11 @@ if not manager:
 from crackfront.cli.sweep import run_missing
 from crackfront.sweep.library import opened
 sweep, store, origin = opened(Path(sys.argv[2]), Path(sys.argv[1]))
-simulations = list(sweep.simulations())
-run_missing(store, tuple(simulations[:{n_worker}]), origin)
+[shard, *_] = sweep.shards()
+simulations = list(sweep.simulations(shard.item))
+run_missing(store, [(shard, simulations[:{n_worker}])], origin)
 started = time.perf_counter()
-run_missing(store, tuple((simulations * {n_task})[:{n_task}]), origin)
+run_missing(store, [(shard, (simulations * {n_task})[:{n_task}])], origin)
 print((time.perf_counter() - started) / {n_task})
 """
     with tempfile.TemporaryDirectory() as folder:
@@ -212,11 +212,11 @@ def start_seconds() -> float:
     return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
 
 
-def synthetic(folder: Path, n_simulation: int, *, packed: bool = True) -> Path:
+def synthetic(folder: Path, n_simulation: int, *, curves: bool = True) -> Path:
     """Configuration of a finished sweep, whose realisations have the rows of the first ones.
 
-    Its shards have :data:`REALISATIONS_OF_A_SHARD`. Unless `packed` there are no curves, which
-    nothing reads of a finished sweep but what checks them.
+    Its shards have :data:`REALISATIONS_OF_A_SHARD`. Without `curves` there are only the files of
+    rows; nothing else is read of a finished sweep but its example of a loop.
     """
     path = folder / "test.yaml"
     text = (ROOT / "config/test.yaml").read_text(encoding="utf-8")
@@ -224,25 +224,46 @@ def synthetic(folder: Path, n_simulation: int, *, packed: bool = True) -> Path:
     sweep, rng = load_configuration(path), np.random.default_rng(1)
     store, origin = Store(folder), provenance()
     write_text(store.configuration, path.read_text(encoding="utf-8"))
-    first: dict[tuple[str, float], tuple[SweepRow, bytes]] = {}
+    firsts = {item.name: _finished(sweep, item, origin) for item in sweep.spectra}
     for shard in sweep.shards(REALISATIONS_OF_A_SHARD):
-        simulations, rows = list(sweep.simulations(shard.item, shard.realisations)), []
-        with store.packs(simulations) as packs:
-            for one, stem in zip(simulations, stems(simulations), strict=True):
-                place = one.spectrum_name, one.elastic_energy
-                if place not in first:
-                    result = run_simulation(one)
-                    content = dataset_content(simulation_dataset(result), origin)
-                    first[place] = sweep_row(result), content
-                row, curve = first[place]
-                w_appr = row.w_appr * rng.normal(1, 0.01)
-                rows.append(replace(row, w_appr=w_appr, seed=one.seed, curve=f"{stem}.nc"))
-                if packed:
-                    versions = PHYSICS_VERSION, ROWS_VERSION
-                    entry = Entry(stem, one.parameters, *versions, rows[-1], origin.arithmetic)
-                    packs[one.spectrum_name].append(entry.files(curve))
-        write_shard(store.shard_path(shard), sweep, shard, rows, [origin.arithmetic], origin)
+        if curves:
+            writer = BatchWriter(store.curve_folder(shard), origin, seconds=60)
+            for first in firsts[shard.item.name]:
+                for number in shard.realisations:
+                    simulation = replace(first.simulation, realisation=number)
+                    w_appr = first.row.w_appr * rng.normal(1, 0.01)
+                    row = replace(first.row, w_appr=w_appr, seed=simulation.seed)
+                    writer.add(replace(first, simulation=simulation, row=row))
+            writer.flush()
+            store.finish_shard(sweep, shard, origin)
+        else:
+            columns = _repeated_rows(firsts[shard.item.name], shard, rng)
+            write_request(folder, shard_request(sweep, shard))
+            path_of_shard = store.shard_path(shard)
+            write_shard(path_of_shard, sweep, shard, columns, [origin.arithmetic], origin)
     return path
+
+
+def _finished(sweep: Sweep, item: NamedSpectrum, origin: Provenance) -> list[FinishedSimulation]:
+    """The first simulation of each amplitude of a spectrum."""
+    results = map(run_simulation, sweep.one_per_amplitude(item))
+    return [
+        FinishedSimulation(one.simulation, sweep_row(one), one.record, origin.arithmetic)
+        for one in results
+    ]
+
+
+def _repeated_rows(
+    firsts: Sequence[FinishedSimulation], shard: Shard, rng: np.random.Generator
+) -> dict[str, Array]:
+    """Columns of a shard, whose realisations have the row of the first one and other values."""
+    count = len(shard.realisations)
+    rows = row_columns([first.row for first in firsts], (len(firsts),))
+    columns = {name: np.repeat(values, count) for name, values in rows.items()}
+    return columns | {
+        "w_appr": columns["w_appr"] * rng.normal(1, 0.01, len(firsts) * count),
+        "seed": rng.integers(2**62, size=len(firsts) * count),
+    }
 
 
 def late(configuration: Path, command: str) -> tuple[float, float]:
@@ -276,10 +297,10 @@ def late_table(sizes: Sequence[int]) -> str:
     for n_row in sizes:
         with tempfile.TemporaryDirectory() as above:
             (folder := Path(above, "results", "test")).mkdir(parents=True)
-            path = synthetic(folder, n_row, packed=(packed := n_row <= _MOST_PACKED))
+            path = synthetic(folder, n_row, curves=(curves := n_row <= _MOST_WITH_CURVES))
             rows.append(["snakemake -n", f"{n_row}", *_late_cells(in_fresh_process(planned, path))])
             costs = postprocessing_costs(load_configuration(path))
-            commands = ("plan", "status", *costs, *(("checksums", "verify") if packed else ()))
+            commands = ("plan", "status", *costs, *(("checksums", "verify") if curves else ()))
             rows += [
                 [
                     name,
@@ -288,7 +309,7 @@ def late_table(sizes: Sequence[int]) -> str:
                 ]
                 for name in commands
             ]
-            if packed:
+            if curves:
                 rows.append(["sha256sum", f"{n_row}", f"{_sum_seconds(folder):.0f}", "-", "", "-"])
                 next((folder / "shards").glob("*.nc")).unlink()
                 cells = _late_cells(in_fresh_process(late, path, "plan"))
@@ -329,6 +350,6 @@ def parts() -> dict[str, str]:
         "efficiency": f"{sum(map(len, sweeps[0][0]))} simulations of {useful:.0f} core hours; "
         f"{1e3 * losses.hand_out:.2f} ms to hand out and store one, {losses.start:.1f} s to start "
         f"a job. A simulation takes {slower:.2f} times what the cost model expects, and "
-        f"{disk_of_simulation() / 1e3:.0f} kB of a pack."
+        f"{disk_of_simulation() / 1e3:.0f} kB of a file."
         f"\n\n{markdown_table(header, cells)}",
     }

@@ -9,7 +9,6 @@ import re
 import shutil
 import subprocess
 import sys
-import time
 from dataclasses import asdict, fields, replace
 from pathlib import Path
 
@@ -19,7 +18,7 @@ import xarray as xr
 
 from crackfront.analysis.steady import STEADY_DEFINITION
 from crackfront.analysis.sweep import fit_sweep
-from crackfront.analysis.table import PLACE, SweepAxes, SweepRow
+from crackfront.analysis.table import SweepAxes, SweepRow
 from crackfront.core.adhesion import AdhesionMap
 from crackfront.core.cycle.record import CycleRecord
 from crackfront.core.geometry.sphere import ContactState
@@ -30,25 +29,21 @@ from crackfront.data.files import (
     FileSystemError,
     UnreadableFileError,
     read_dataset,
-    reset_future_dates,
     write_dataset,
+    write_derived,
     write_text,
 )
 from crackfront.data.labels import flag_words
 from crackfront.data.provenance import Provenance
-from crackfront.simulate.files import (
-    cycle_dataset,
-    cycle_record,
-    read_simulation,
-    simulation_dataset,
-)
+from crackfront.simulate.files import cycle_dataset, cycle_record
 from crackfront.simulate.numerical_errors import numerical_error
-from crackfront.simulate.run import SimulationResult, run_simulation
+from crackfront.simulate.run import run_simulation
 from crackfront.simulate.user_surface import read_field, surface_adhesion
 from crackfront.sweep.configuration import load_configuration
+from crackfront.sweep.curves import FinishedSimulation, curves_dataset, read_result, write_curves
 from crackfront.sweep.fit_files import write_fit
-from crackfront.sweep.rows import sweep_row
-from crackfront.sweep.table import read_statuses, read_table, rows_dataset
+from crackfront.sweep.rows import row_columns, sweep_row
+from crackfront.sweep.table import columns_dataset, read_statuses, read_table
 
 SWEEP = load_configuration(Path(__file__).parents[2] / "config/test.yaml")
 ORIGIN = Provenance("1.2.3", "abc", "crackfront test", "seed: 1\n")
@@ -62,6 +57,11 @@ def result():
     return run_simulation(
         replace(simulation, resolution=small, record_fronts=True, record_energy=True)
     )
+
+
+def finished(result):
+    """A result as a rank returns it."""
+    return FinishedSimulation(result.simulation, sweep_row(result), result.record, "processor")
 
 
 def assert_same(one: CycleRecord, other: CycleRecord):
@@ -103,15 +103,18 @@ def assert_follows_cf(dataset):
         assert values.attrs["long_name"], name
 
 
-def test_a_curve_says_what_it_is_in_which_units_and_which_simulation(tmp_path, result):
-    write_dataset(tmp_path / "one.nc", simulation_dataset(result), ORIGIN)
-    dataset = xr.load_dataset(tmp_path / "one.nc")
+def test_a_file_of_curves_says_what_it_has_in_which_units_and_of_which_simulations(
+    tmp_path, result
+):
+    path = write_curves(tmp_path, "curves", "flat", curves_dataset([finished(result)]), ORIGIN)
+    dataset = xr.load_dataset(path)
     assert_follows_cf(dataset)
     assert dataset.force.attrs["reduced_unit"] == "pi w_int R"
-    labels = {name: dataset.coords[name].item() for name in PLACE}
-    assert labels == {"spectrum": "flat", "amplitude": 0.1, "realisation": 0}
-    assert dataset["radius"].dims == ("step", "angle")
-    assert dataset["angle"].values == pytest.approx(2 * np.pi * np.arange(32) / 32)
+    labels = [dataset[name].item() for name in ("spectrum", "elastic_energy", "realisation")]
+    assert labels == ["flat", 0.1, 0]
+    assert dataset["seed"].item() == result.simulation.seed
+    [front] = (dataset[name] for name in dataset.data_vars if name == "front")
+    assert front.sizes["front_site"] == 32 * dataset.sizes["state"]
 
 
 def test_every_file_says_where_it_comes_from(tmp_path, result):
@@ -124,18 +127,19 @@ def test_every_file_says_where_it_comes_from(tmp_path, result):
     assert attributes["status_sentence"] == Status.LOST_CONTACT.value
 
 
-def test_a_simulation_is_read_back_with_its_cost(tmp_path, result):
-    path = tmp_path / "one.nc"
-    write_dataset(path, simulation_dataset(result), ORIGIN)
-    again = read_simulation(path, result.simulation)
-    assert_same(again.record, result.record)
-    for item in fields(SimulationResult)[2:]:
-        assert getattr(again, item.name) == getattr(result, item.name)
-    assert xr.load_dataset(path).attrs["seed"] == result.simulation.seed
+def test_simulations_are_read_back_with_their_costs(tmp_path, result):
+    plain = replace(result, record=replace(result.record, fronts=None))
+    written = [plain, result]
+    dataset = curves_dataset([finished(one) for one in written])
+    path = write_curves(tmp_path, "curves", "flat", dataset, ORIGIN)
+    for place, expected in enumerate(written):
+        again = read_result(path, place, expected.simulation)
+        assert_same(again.record, expected.record)
+        assert again.measures == expected.measures
 
 
 def test_a_file_of_something_else_is_refused(tmp_path):
-    xr.Dataset({"a": ("x", [1.0])}).to_netcdf(tmp_path / "a.nc")
+    write_derived(tmp_path / "a.nc", xr.Dataset({"a": ("x", [1.0])}), ORIGIN)
     with pytest.raises(UnreadableFileError, match="is no loop: it lacks penetration"):
         cycle_record(read_dataset(tmp_path / "a.nc"))
     with pytest.raises(UnreadableFileError, match=r"a.nc lacks .*spectrum"):
@@ -158,17 +162,6 @@ def test_a_failed_write_leaves_the_old_file_and_no_other(tmp_path, result, monke
         write_dataset(path, cycle_dataset(result.record), ORIGIN)
     assert path.read_bytes() == before
     assert [item.name for item in tmp_path.iterdir()] == ["cycle.nc"]
-
-
-def test_files_of_the_future_get_one_date_of_now_and_others_keep_theirs(tmp_path):
-    for name, moment in (("a.nc", 4e9), ("b.nc", 4e9 + 5), ("old.nc", 1e9), ("flat.tar", 4e9)):
-        (tmp_path / name).write_text("text")
-        os.utime(tmp_path / name, (moment, moment))
-    before = time.time()
-    reset_future_dates(tmp_path)
-    found = {path.name: path.stat().st_mtime for path in tmp_path.iterdir()}
-    assert before <= found["a.nc"] == found["b.nc"] <= time.time()
-    assert (found["old.nc"], found["flat.tar"]) == (1e9, 4e9)
 
 
 def test_a_text_is_replaced_as_a_whole(tmp_path):
@@ -263,7 +256,8 @@ def hysteresis(tmp_path, results):
     """File of the sweep."""
     path = tmp_path / "hysteresis.nc"
     rows = [sweep_row(one) for one in results.values()]
-    write_dataset(path, rows_dataset(SWEEP, rows, range(2)), ORIGIN)
+    columns = row_columns(rows, (2, 2, 2))
+    write_derived(path, columns_dataset(SWEEP, columns, range(2)), ORIGIN)
     return path
 
 
@@ -277,7 +271,7 @@ def test_the_file_of_a_sweep_has_everything_under_its_labels(hysteresis, results
         assert cell["e_el"] == result.measures.e_el
         assert cell["w_rms"] == result.measures.w_rms
         assert cell["seed"] == result.simulation.seed
-        assert cell["curve"] == f"{result.simulation.stem}.nc"
+        assert cell["max_sweeps"] == result.simulation.solver.max_sweeps
         assert cell["iterations"] == np.sum(result.record.states.iterations)
     assert np.array_equal(dataset["hurst"], [1.0, 0.8])
     assert dataset["w_rms_requested"].values == pytest.approx(2 * np.sqrt(SWEEP.elastic_energies))
@@ -407,7 +401,6 @@ def test_files_are_whole_where_locks_are_absent(tmp_path):
         )
         return done.stdout + done.stderr
 
-    assert "nothing is damaged or missing" in output("-m", "crackfront", "verify", folder)
     told = output("-c", READ, folder / "file.nc")
     remedy = "cannot be locked: No locks available; set HDF5_USE_FILE_LOCKING=FALSE in the envi"
     assert told.count(remedy) == 2

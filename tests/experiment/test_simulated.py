@@ -2,8 +2,6 @@
 
 import functools
 import json
-from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -13,13 +11,7 @@ import crackfront as cf
 from crackfront import measured_loop
 from crackfront.analysis.steady import mean_adhesion
 from crackfront.cli import main
-from crackfront.data.files import write_dataset
-from crackfront.data.provenance import provenance
-from crackfront.simulate.files import cycle_record, simulation_dataset
-from crackfront.simulate.run import run_simulation
-from crackfront.simulate.sphere.cycle import FullCycle
-from crackfront.sweep.configuration import load_configuration
-from crackfront.sweep.rows import sweep_row
+from crackfront.simulate.files import cycle_record
 
 SPHERE = cf.Scales("1.25mm", "63mJ/m2", "0.93MPa")
 WORKS = ("w_appr", "w_retr", "hysteresis")
@@ -78,18 +70,6 @@ def test_a_file_in_si_units_has_them_times_w_int(cycle, tmp_path):
     assert found.pull_off_force.value == pytest.approx(-SPHERE.force * float(cycle.force.min()))
     assert (found.sphere_radius, found.contact_modulus.value) == (1.25e-3, 0.93e6)
     assert found.window == pytest.approx(np.array(reduced.window) * SPHERE.lateral)
-
-
-def test_a_curve_of_a_sweep_has_the_works_of_its_row(tmp_path):
-    config = Path(__file__).parents[2] / "config/test.yaml"
-    sweep = load_configuration(config)
-    simulation = replace(sweep.simulation(sweep.spectra[1], 0.1, 0), schedule=FullCycle(2.0, 0.05))
-    result = run_simulation(simulation)
-    row, path = sweep_row(result), tmp_path / "curve.nc"
-    write_dataset(path, simulation_dataset(result), provenance())
-    found = measured_loop(path)
-    for name in WORKS:
-        assert getattr(found, name).value == pytest.approx(getattr(row, name), rel=1e-12)
 
 
 def test_the_energy_lost_is_that_of_all_instabilities():

@@ -108,8 +108,6 @@ FIRSTS = {item.name: SWEEP.one_per_amplitude(item) for item in SWEEP.spectra}
 RANK_BYTES = max(
     expected_cost(one).memory for firsts in FIRSTS.values() for one in firsts
 )
-
-
 TIMES = {
     name: [expected_cost(one).seconds for one in FIRSTS[shard.item.name]]
     for name, shard in SHARDS.items()
@@ -151,19 +149,19 @@ LONGEST = [
 ]
 
 
-def figure_parameters(wildcards):
-    """Parameters of a figure of the paper."""
-    name = getattr(wildcards, "figure", "si-5")
-    return load_figure(Path(FIGURE_SETTINGS, f"{name}.yaml"), SCALE)
+def figure_request(name):
+    """What a figure of the paper is asked for."""
+    parameters = load_figure(Path(FIGURE_SETTINGS, f"{name}.yaml"), SCALE)
+    text = f"{parameters!r}\nversions {PHYSICS_VERSION} and {ROWS_VERSION}\n"
+    return requested(PAPER, Request(name, text))
 
 
 def figure_inputs(wildcards):
     """What data of a figure are computed from: its request, module, and files of its parameters."""
     name = getattr(wildcards, "figure", "si-5")
-    parameters = figure_parameters(wildcards)
-    text = f"{parameters!r}\nversions {PHYSICS_VERSION} and {ROWS_VERSION}\n"
-    request = requested(PAPER, Request(name, text))
-    return [request, str(figure_sources(name)[0]), *files_of_figure(parameters)]
+    parameters = load_figure(Path(FIGURE_SETTINGS, f"{name}.yaml"), SCALE)
+    files = files_of_figure(parameters)
+    return [figure_request(name), str(figure_sources(name)[0]), *files]
 
 
 def figure_drawing_module(wildcards):

@@ -18,6 +18,8 @@ rule figures:
         expand("{results}/{figure}.gif", results=PAPER, figure=ANIMATED),
         "results/figures/checks.md",
         "results/figures/SHA256SUMS",
+        # Listed, since Snakemake does not make a missing input of a file that is there.
+        lambda wildcards: [figure_request(name) for name in FIGURES],
 
 
 rule figure_data:

@@ -5,6 +5,8 @@ rule validation:
         f"{VALIDATED}/hysteresis.nc",
         f"{VALIDATED}/picture.nc",
         multiext(f"{VALIDATED}/validation", ".md", ".pdf", ".png"),
+        # Listed, since Snakemake does not make a missing input of a file that is there.
+        validation_request,
 
 
 rule validate:

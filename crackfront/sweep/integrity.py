@@ -1,0 +1,170 @@
+"""Whether results are as they were written: verification, lists of checksums and archives.
+
+Nothing here opens a netCDF file: HDF5 may loop for ever on damaged metadata.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import zlib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from zipfile import ZIP_DEFLATED, BadZipFile, ZipFile, ZipInfo
+
+from crackfront.data.bounds import in_bytes
+from crackfront.data.digests import (
+    SUMS,
+    file_digest,
+    is_whole,
+    parsed_sums,
+    read_sums,
+    result_files,
+    stated_digest,
+    sums_text,
+)
+from crackfront.data.files import replace_atomically, write_text
+
+_DERIVED = "hysteresis.nc", "fit.nc"
+"""Files of a sweep that must have a checksum next to them, as those in its shards."""
+
+_MOST_EXPANSION = 1000
+"""How many times larger than an archive its files may be; those of sweeps are twice as large."""
+
+_UNREADABLE = BadZipFile, EOFError, NotImplementedError, RuntimeError, zlib.error
+"""What a damaged, encrypted or unusual archive raises."""
+
+
+@dataclass(frozen=True, slots=True)
+class Verification:
+    """What a verification found; names are relative to the folder of results."""
+
+    verified: int
+    """Number of files that agree with the list."""
+    damaged: tuple[str, ...]
+    missing: tuple[str, ...]
+    """Files of the list that do not agree with it, and that are not there."""
+    unlisted: tuple[str, ...]
+    """Results that the list does not name."""
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether all results are in the list, there, and as they were written."""
+        return self.verified > 0 and not (self.damaged or self.missing or self.unlisted)
+
+
+def verification(place: Path) -> Verification:
+    """Compare the files of a folder of results, or of its archive, with their list.
+
+    An archive is read, not unpacked. ValueError if there is no list, or it is not whole; if the
+    place is neither a folder nor an archive; or if the archive would become far too large.
+    """
+    if place.is_dir():
+        sums = read_sums(place)
+        return _compared(sums, {name: file_digest(place / name) for name in result_files(place)})
+    if not place.is_file():
+        raise ValueError(f"{place} is neither a folder of results nor its archive (ZIP)")
+    try:
+        with ZipFile(place) as archive:
+            digests = _archive_digests(place, archive)
+            members = {_name(member): member for member in archive.infolist()}
+            if SUMS not in members:
+                raise ValueError(f"{place} has no {SUMS}; pack it with crackfront archive")
+            text = archive.read(members[SUMS]).decode("utf-8", "replace")
+    except _UNREADABLE as error:
+        raise ValueError(f"{place} cannot be read as an archive (ZIP): {error}") from error
+    return _compared(parsed_sums(text, place), digests)
+
+
+def _compared(sums: Mapping[str, str], digests: Mapping[str, str]) -> Verification:
+    """Compare the checksums of files with those of the list."""
+    damaged = [name for name in sums if name in digests and digests[name] != sums[name]]
+    missing = [name for name in sums if name not in digests]
+    return Verification(
+        verified=len(sums) - len(damaged) - len(missing),
+        damaged=tuple(damaged),
+        missing=tuple(missing),
+        unlisted=tuple(name for name in digests if name not in sums),
+    )
+
+
+def _archive_digests(place: Path, archive: ZipFile) -> dict[str, str]:
+    """Checksums of the files in an archive but its list; empty where one cannot be read."""
+    members = [member for member in archive.infolist() if not member.is_dir()]
+    size, packed = sum(member.file_size for member in members), place.stat().st_size
+    if size > _MOST_EXPANSION * packed:
+        raise ValueError(
+            f"{place} would grow from {in_bytes(packed)} to {in_bytes(size)}, which results do "
+            "not; do not unpack it"
+        )
+    digests = {}
+    for member in members:
+        try:
+            with archive.open(member) as file:
+                found = hashlib.file_digest(file, "sha256")  # type: ignore[arg-type]
+                digests[_name(member)] = found.hexdigest()
+        except _UNREADABLE:
+            digests[_name(member)] = ""
+    digests.pop(SUMS, None)
+    return digests
+
+
+def _name(member: ZipInfo) -> str:
+    """Name of a file in an archive relative to the folder that was packed."""
+    return member.filename.partition("/")[2]
+
+
+def write_sums(folder: Path) -> Path:
+    """Write the list of the checksums of a finished folder of results, and return its path.
+
+    ValueError if the folder has no results, a file does not agree with the checksum in its name or
+    next to it, a file must have one and has none, or a list cannot state the name of a file.
+    """
+    names = result_files(folder)
+    if not names:
+        raise ValueError(f"{folder} has no files; name a folder of results")
+    is_sweep = (folder / "shards").is_dir()
+    digests = {}
+    for name in names:
+        path = folder / name
+        if not name.isprintable():
+            raise ValueError(
+                f"{folder} has a file {name!r}, whose name no list can state; rename it"
+            )
+        derived = is_sweep and (name in _DERIVED or path.parent == folder / "shards")
+        needs_digest = derived and path.suffix == ".nc"
+        if (needs_digest or stated_digest(path) is not None) and not is_whole(path):
+            raise ValueError(
+                f"{path} does not agree with its checksum; remove it and run make, which makes it "
+                "again"
+            )
+        digests[name] = file_digest(path)
+    write_text(folder / SUMS, sums_text(digests))
+    return folder / SUMS
+
+
+def archive_results(folder: Path, path: Path, *, curves: bool) -> int:
+    """Pack the files of a folder into a ZIP file, with their list; return their number.
+
+    Names begin with the name of the folder: unpack, go there, `sha256sum --check SHA256SUMS`.
+    `curves` includes the files of finished simulations. ValueError, and no archive, if the folder
+    is not whole.
+    """
+    found = verification(folder)
+    if not found.is_whole:
+        raise ValueError(
+            f"{folder} has {len(found.damaged)} damaged, {len(found.missing)} missing and "
+            f"{len(found.unlisted)} unlisted files, which crackfront verify names; run make before "
+            "it is archived"
+        )
+    listed = read_sums(folder).items()
+    packed = {name: digest for name, digest in listed if curves or not name.startswith("curves/")}
+
+    def write(part: Path) -> None:
+        with ZipFile(part, "w", ZIP_DEFLATED, compresslevel=1, strict_timestamps=False) as archive:
+            for name in packed:
+                archive.write(folder / name, f"{folder.name}/{name}")
+            archive.writestr(f"{folder.name}/{SUMS}", sums_text(packed))
+
+    replace_atomically(path, write)
+    return len(packed)
