@@ -17,7 +17,6 @@ from crackfront.analysis.standard_error import FEWEST_STATES
 from crackfront.core.adhesion import FieldKind, larkin_length
 from crackfront.core.units import Scales
 from crackfront.data.bounds import counted, refuse_beyond_memory, refuse_beyond_time
-from crackfront.data.digests import digest_path
 from crackfront.data.section import (
     ConfigurationError,
     Count,
@@ -269,9 +268,7 @@ SOURCE = "configuration.path"
 
 def refuse_older_layout(results: Path) -> None:
     """Raise ConfigurationError if results are of a version that kept curves in tar files."""
-    table = results / "hysteresis.nc"
-    unstated = not (digest_path(table).exists() or (results / "requests").exists())
-    if any((results / "curves").glob("*.tar")) or (table.is_file() and unstated):
+    if any((results / "curves").glob("*.tar")):
         raise ConfigurationError(
             f"{results} has results in the layout of an older version, which this one does not "
             "read; start a new folder: rename this one, or name another by --output"
