@@ -12,6 +12,7 @@ from crackfront.analysis.measures import RunMeasures
 from crackfront.analysis.steady import SteadyMeasures
 from crackfront.core.arrays import Array
 from crackfront.core.spectrum import SelfAffineSpectrum, Spectrum
+from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.core.variables import ADHESION, FORCE, LATERAL, VERTICAL, variable, variables
 
 SPECTRUM, AMPLITUDE, REALISATION = "spectrum", "amplitude", "realisation"
@@ -19,6 +20,9 @@ SPECTRUM, AMPLITUDE, REALISATION = "spectrum", "amplitude", "realisation"
 
 PLACE = SPECTRUM, AMPLITUDE, REALISATION
 """Dimensions whose coordinates together identify one simulation of a sweep."""
+
+_MOST_OF_ADHESION = 100 * WORK_OF_ADHESION
+"""Work of adhesion, or energy, beyond which a value is damage. (Units: work of adhesion)"""
 
 _SHAPE = SPECTRUM, AMPLITUDE
 _SHAPE_TEXT = "JSON of a spectrum's parameters in reduced units, where not all are self-affine"
@@ -72,7 +76,8 @@ class SweepAxes:
 class SweepTable:
     """Arrays of a sweep that a fit reads: works of adhesion, NaN where a simulation failed.
 
-    ValueError if the shapes disagree, or a measured e_el or w_rms is not positive.
+    ValueError if the shapes disagree, a measured e_el or w_rms is not positive, or a value is far
+    from that of any contact, as after damage.
     """
 
     spectrum: NDArray[np.str_] = variable("name of the spectrum", "1", SPECTRUM)
@@ -100,6 +105,14 @@ class SweepTable:
             if values is not None and np.shape(values) != whole:
                 raise ValueError(
                     f"{item.name} has shape {np.shape(values)}; ({', '.join(item.dims)}) is {whole}"
+                )
+        for name in ("e_el", "w_rms", "w_appr", "w_retr"):
+            values = getattr(self, name)
+            largest = np.max(np.abs(values), where=np.isfinite(values), initial=0.0)
+            if largest > _MOST_OF_ADHESION:
+                raise ValueError(
+                    f"{name} is up to {largest / WORK_OF_ADHESION:.3g} w_int, a value that no "
+                    "contact can have; make the table again"
                 )
         for name in ("e_el", "w_rms"):
             lowest = np.min(getattr(self, name), where=self.finite, initial=np.inf)

@@ -9,12 +9,12 @@ from typing import Any
 import click
 
 from crackfront.cli.cycle import cycle
-from crackfront.cli.integrity import checksums, compare, repair, verify
+from crackfront.cli.integrity import checksums, verify
 from crackfront.cli.law import law
 from crackfront.cli.loop import loop
 from crackfront.cli.output import output_that_may_close
 from crackfront.cli.report import StoppedError, announce_compilation, examples
-from crackfront.cli.results import aggregate, archive, curves, figures, fit, summary
+from crackfront.cli.results import aggregate, archive, figures, fit, summary
 from crackfront.cli.samples import samples
 from crackfront.cli.surface import predict, surface
 from crackfront.cli.sweep import plan, simulate, status
@@ -100,7 +100,7 @@ SECTIONS: dict[str, tuple[click.Command, ...]] = {
     "Predictions": (predict, samples, surface, law),
     "One contact": (cycle, loop),
     "Sweeps, in this order": (plan, simulate, status, aggregate, fit, figures, summary, archive),
-    "Stored results": (curves, verify, repair, checksums, compare),
+    "Stored results": (verify, checksums),
     "The machine": (compile_solvers,),
 }
 """All commands, by what they are for."""
@@ -110,7 +110,7 @@ Exit codes:
   0   done
   1   computed, but not as requested: too many simulations without a value, a cycle
       that ended early, ranks that failed, memory that ran out, results that are
-      damaged or do not agree
+      damaged or missing
   2   the input cannot be used; one sentence says why, and nothing was computed
   3   predict, samples with --strict: the theory applies with reservations, or it
       cannot be decided whether it applies

@@ -170,38 +170,23 @@ def summary(configuration: Path, output: Path | None) -> None:
 )
 @click.argument("folder", type=FILE)
 @click.option("--output", type=FILE, help="The archive.  [default: <folder>.zip]")
-@click.option("--no-curves", is_flag=True, help="Leave out the curves of single simulations.")
+@click.option("--no-curves", is_flag=True, help="Leave out the finished simulations, curves/.")
 def archive(folder: Path, output: Path | None, no_curves: bool) -> None:
-    """Pack the results of a sweep into a ZIP file with checksums, SHA256SUMS."""
-    from crackfront.sweep.store import Store
-    from crackfront.sweep.verification import mixture_sentences
+    """Pack the results of a folder into a ZIP file with their checksums, SHA256SUMS.
 
-    for sentence in mixture_sentences(Store(folder)):
-        raise ValueError(
-            f"{sentence}; run crackfront simulate and crackfront aggregate with one configuration, "
-            "or the workflow, before it is archived"
-        )
+    The folder must have the list. Each file is compared with it while it is packed; links are
+    followed.
+    """
+    from crackfront.sweep.integrity import archive_results
+
     named = folder if folder.name not in ("", "..") else folder.resolve()
     path = named.with_name(f"{named.name}.zip") if output is None else output
     if path.suffix.lower() != ".zip":
         raise ValueError(f"--output is {path}; name a ZIP file, as in {named.name}.zip")
     if Path(os.path.realpath(folder)) in Path(os.path.realpath(path)).parents:
         raise ValueError(f"--output is {path}, among the results; name a file outside of {folder}")
-    click.echo(f"archive: {path}, {Store(folder).archive(path, curves=not no_curves)} files")
-
-
-@click.command(epilog=examples("crackfront curves results/default --output curves"))
-@click.argument("folder", type=FILE)
-@click.option("--output", type=FILE, required=True, help="Folder of the files of the curves.")
-def curves(folder: Path, output: Path) -> None:
-    """Unpack the curves of the table of a sweep, a netCDF file for each simulation.
-
-    Packs may also hold curves of other numerics, from before the configuration was changed; these
-    are left out.
-    """
-    from crackfront.sweep.store import Store
-
-    click.echo(f"curves: {Store(folder).unpack_curves(output)} files in {output}")
+    number = archive_results(named, path, curves=not no_curves)
+    click.echo(f"archive: {path}, {number} files")
 
 
 def fit_of_sweep(configuration: Path) -> SweepFit:

@@ -254,7 +254,7 @@ def set_aside_if_damaged(path: Path) -> str:
 
 
 def set_aside(path: Path) -> Path:
-    """Rename a damaged file, and return its new path."""
+    """Rename a file that is of no use, and return its new path."""
     return path.replace(path.with_name(path.name + DAMAGED_SUFFIX))
 
 

@@ -36,12 +36,18 @@ def opened(
 ) -> tuple[Sweep, Store, Provenance]:
     """Sweep of a configuration file, its store, and the origin of what is computed for it.
 
-    ConfigurationError if the results are those of another configuration that is still there.
+    ConfigurationError if the results are those of another configuration that is still there;
+    ValueError if they have the layout of earlier versions.
     """
     sweep = load_configuration(configuration)
     if output is not None and output.exists() and not output.is_dir():
         raise ValueError(f"the output is {output}, a file; name a folder for the results")
     store = Store(results_folder(configuration) if output is None else output, announce)
+    if any((store.folder / "curves").glob("*.tar")):
+        raise ValueError(
+            f"{store.folder} has results of an earlier version, which are not read; name a new "
+            "folder by --output, or move this one away"
+        )
     refuse_other_configuration(configuration, store.folder)
     return sweep, store, provenance(movable_text(configuration))
 

@@ -255,7 +255,7 @@ class Store:
             except FileNotFoundError:  # another process has merged it meanwhile
                 continue
             if sentence:
-                self.announce(f"{sentence}; what it had is computed again")
+                self.announce(f"{sentence}; what it had is made again")
             else:
                 yield path
 
@@ -385,7 +385,7 @@ class Store:
                 file = files.enter_context((folder / ".lock").open("ab"))
                 waited |= self._hold(file, shard)
                 # Only this process writes here now: what is half-written has no writer any more.
-                for part in folder.glob(".*.part"):
+                for part in (*folder.glob(".*.part"), *folder.glob(".*.nc")):
                     part.unlink(missing_ok=True)
             yield waited
 
@@ -601,7 +601,9 @@ def _unused(
     for stored in rows:
         within = np.isin(stored.realisation, realisations)
         if stored.physics_version != PHYSICS_VERSION:
-            older += int(np.count_nonzero(within & np.isin(stored.series, [*wanted])))
+            for first, lacking in zip(firsts, missing, strict=True):
+                again = np.isin(stored.realisation, np.array(realisations)[lacking])
+                older += int(np.count_nonzero(again & (stored.series == first.series)))
             continue
         for series, parameters in stored.parameters.items():
             if series not in wanted and missing.any():

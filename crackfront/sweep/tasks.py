@@ -6,8 +6,9 @@ writes what is finished in batches.
 
 from __future__ import annotations
 
+import sys
 import time
-from collections.abc import Callable, Generator, Sequence
+from collections.abc import Callable, Generator, Iterable, Sequence
 from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
@@ -16,8 +17,8 @@ from numba.core.errors import NumbaError
 
 from crackfront.core.outcome import DefectError
 from crackfront.data.bounds import TooLargeError
-from crackfront.data.digests import forget_sums, is_whole
-from crackfront.data.files import write_text
+from crackfront.data.digests import forget_sums
+from crackfront.data.files import set_aside_if_damaged, write_text
 from crackfront.data.provenance import Provenance
 from crackfront.simulate.costs import expected_cost
 from crackfront.simulate.files import read_checkpoint, write_checkpoint
@@ -35,6 +36,9 @@ _STOPPED, _NOT_STORED = "stopped", "not_stored"
 
 _CHECKPOINT = "checkpoint"
 """Beginning of the names of the files of checkpoints."""
+
+_WRITING_ERRORS = (OSError, RuntimeError)
+"""What writing a file raises where the machine cannot; netCDF has errors of its own."""
 
 _MOST_WAITING = 2000
 """Finished simulations that are written at once, however short the time since the last batch."""
@@ -61,6 +65,7 @@ class BatchWriter:
         self._finished: list[FinishedSimulation] = []
         self._written = time.monotonic()
         self._count = 0
+        self.n_written = 0
 
     def add(self, finished: FinishedSimulation) -> None:
         """Take a finished simulation; it is written with others in time."""
@@ -84,6 +89,7 @@ class BatchWriter:
         for finished in self._finished:
             for path in checkpoint_files(self._folder, finished.simulation):
                 path.unlink(missing_ok=True)
+        self.n_written += len(self._finished)
         self._finished = []
 
 
@@ -128,7 +134,7 @@ def run_and_store(
             if result.finished is not None:
                 writers[task.folder].add(result.finished)
             write_in_time()
-        except OSError as error:
+        except _WRITING_ERRORS as error:
             return _not_stored(error)
         return result.outcome
 
@@ -136,21 +142,34 @@ def run_and_store(
     try:
         with closing(runs) as outcomes:
             for count, (task, outcome) in enumerate(outcomes):
-                done = f"{count} of {len(tasks)} simulations"
                 if outcome.status == _STOPPED:
                     raise KeyboardInterrupt(
-                        f"{done} are finished; they and the states of running ones are stored; run "
-                        "the same command to continue"
+                        f"{count} of {len(tasks)} simulations are finished; they and the states of "
+                        "running ones are stored; run the same command to continue"
                     )
                 if outcome.status == _NOT_STORED:
+                    _flush_all(writers.values())
+                    count = sum(writer.n_written for writer in writers.values())
                     raise NotStoredError(
-                        f"{task.simulation.label}: {outcome.sentence}; {done} were stored, and the "
-                        "same command continues with the others"
+                        f"{task.simulation.label}: {outcome.sentence}; {count} of {len(tasks)} "
+                        "simulations were stored, and the same command continues with the others"
                     )
                 yield task.simulation, outcome
     finally:
-        for writer in writers.values():
+        unwritten = _flush_all(writers.values())
+        if unwritten and not isinstance(sys.exception(), NotStoredError):
+            raise NotStoredError(unwritten)
+
+
+def _flush_all(writers: Iterable[BatchWriter]) -> str:
+    """Write what is finished of all shards; why some of it could not be written, or nothing."""
+    sentence = ""
+    for writer in writers:
+        try:
             writer.flush()
+        except _WRITING_ERRORS as error:
+            sentence = _not_stored(error).sentence
+    return sentence
 
 
 @dataclass(frozen=True, slots=True)
@@ -192,8 +211,8 @@ def _result(task: _Task, between: Callable[[], None]) -> tuple[SimulationResult,
 
     for path in reversed(checkpoint_files(task.folder, simulation)):
         try:
-            if not is_whole(path):
-                raise ValueError(f"{path} is damaged")
+            if sentence := set_aside_if_damaged(path):
+                raise ValueError(sentence)
             resume = read_checkpoint(path, simulation)
             return run_simulation(simulation, resume=resume, keep=keep), ""
         except (*_REPRODUCIBLE_ERRORS, LookupError, TypeError) as error:

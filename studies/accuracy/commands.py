@@ -19,10 +19,11 @@ from crackfront.cli.report import (
 from crackfront.data.arguments import nearest_name
 from crackfront.data.bounds import Range
 from crackfront.data.digests import forget_sums
-from crackfront.data.files import read_attributes, write_dataset, write_sums, write_text
+from crackfront.data.files import read_attributes, write_dataset, write_text
 from crackfront.data.provenance import provenance
 from crackfront.plots.style import save_figure
 from crackfront.simulate.run import compile_solver
+from crackfront.sweep.integrity import write_sums
 from crackfront.topography.scan.reading import read_measurements
 from studies.accuracy import energies as synthetic
 from studies.accuracy import energy_balance as balance

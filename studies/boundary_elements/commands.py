@@ -36,9 +36,9 @@ def validate(configuration: Path, output: Path | None) -> None:
     from tqdm import tqdm
 
     from crackfront.data.digests import forget_sums
-    from crackfront.data.files import write_sums
     from crackfront.data.provenance import provenance
     from crackfront.sweep.configuration import results_folder
+    from crackfront.sweep.integrity import write_sums
     from studies.boundary_elements import study
     from studies.boundary_elements.parameters import load_validation
 

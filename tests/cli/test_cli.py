@@ -19,6 +19,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from click.testing import CliRunner
+from crackfront.sweep.result_packs import Entry, new_pack
 from matplotlib.figure import Figure
 
 import crackfront as cf
@@ -31,7 +32,6 @@ from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.core.versions import PHYSICS_VERSION, ROWS_VERSION
 from crackfront.plots.style import save_figure
 from crackfront.sweep.configuration import load_configuration
-from crackfront.sweep.result_packs import Entry, new_pack
 from crackfront.sweep.rows import failed_row
 from tests.commands import curves, refused, run
 from tests.topography.made import DETAIL, measure_surfaces_once
@@ -632,7 +632,7 @@ def settings():
 before = settings()
 import crackfront as cf
 [getattr(cf, name) for name in cf.__all__]
-import crackfront.cli, crackfront.sweep.tasks, crackfront.sweep.verification
+import crackfront.cli, crackfront.sweep.tasks, crackfront.sweep.integrity
 assert settings() == before
 """
     subprocess.run([sys.executable, "-c", code], check=True, timeout=600)
@@ -708,18 +708,6 @@ def test_a_full_disk_is_told_as_that_whatever_netcdf_says(smooth_tile, tmp_path,
     sentence = refused("cycle", *options, "--output", tmp_path / "cycle.nc")
     told = f"{tmp_path / 'cycle.nc'} cannot be written: No space left on device; make room and rep"
     assert told in sentence
-
-
-def test_an_archive_has_the_whole_name_of_its_folder_and_an_empty_one_is_refused(tmp_path):
-    folder = tmp_path / "of.2026"
-    folder.mkdir()
-    sentence = refused("archive", folder)
-    assert "holds no hysteresis.nc; run the sweep before it is archived" in sentence
-    (folder / "hysteresis.nc").write_bytes(b"data")
-    assert "holds 1 damaged file" in refused("archive", folder)
-    xr.Dataset().to_netcdf(folder / "hysteresis.nc")
-    assert run("archive", folder).exit_code == 0
-    assert [path.name for path in tmp_path.glob("*.zip")] == ["of.2026.zip"]
 
 
 def test_branches_of_a_straight_front_are_told_as_forward_and_back(smooth_tile, tmp_path):

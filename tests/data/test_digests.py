@@ -1,7 +1,8 @@
-"""Checksums: whatever bit of a result is flipped, its list or its reader finds it."""
+"""Checksums: whatever bit of a result is flipped, its checksum or its reader finds it."""
 
-import subprocess
+import hashlib
 from contextlib import contextmanager
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -10,14 +11,8 @@ from click.testing import CliRunner
 
 import crackfront as cf
 from crackfront.cli import main
-from crackfront.data.digests import SUMS, result_files
-from crackfront.data.files import (
-    UnreadableFileError,
-    damaged_files,
-    read_dataset,
-    write_dataset,
-    write_sums,
-)
+from crackfront.data.digests import digest_path, is_whole, named_digest, sums_text
+from crackfront.data.files import UnreadableFileError, read_dataset, write_dataset
 from crackfront.data.provenance import provenance
 
 
@@ -34,60 +29,35 @@ def flipped(path, bit):
                 yield
 
 
-@pytest.fixture
-def listed(tmp_path):
-    """A folder of results of several kinds, with its list."""
-    for name in ("fit.json", "figures/loop.pdf", "summary.html", "shards/notes.txt"):
-        (tmp_path / name).parent.mkdir(exist_ok=True)
-        (tmp_path / name).write_text(f"{name}\n")
-    write_sums(tmp_path)
-    return tmp_path
+@pytest.mark.parametrize("named", [True, False])
+def test_a_file_is_whole_if_its_name_or_the_file_next_to_it_states_its_checksum(tmp_path, named):
+    content = b"content"
+    digest = hashlib.sha256(content).hexdigest()
+    path = tmp_path / (f"batch-0-3-{digest[:16]}.nc" if named else "fit.nc")
+    path.write_bytes(content)
+    assert is_whole(path) == named
+    if not named:
+        digest_path(path).write_text(sums_text({path.name: digest}))
+    assert is_whole(path)
+    for bit in range(8 * len(content)):
+        with flipped(path, bit):
+            assert not is_whole(path)
+    path.unlink()
+    assert not is_whole(path)
 
 
-def test_the_list_of_a_folder_is_what_sha256sum_checks(listed):
-    command = ["sha256sum", "--check", SUMS]
-    done = subprocess.run(command, cwd=listed, capture_output=True, text=True, check=True)
-    assert done.stdout.count(": OK") == 4
-    assert damaged_files(listed) == []
-    (listed / "fit.json").write_text("else\n")
-    assert subprocess.run(command, cwd=listed, capture_output=True, check=False).returncode == 1
-    assert damaged_files(listed) == [listed / "fit.json"]
-
-
-@pytest.mark.parametrize("stride", [7, pytest.param(1, marks=pytest.mark.slow)])
-def test_every_single_bit_of_a_listed_file_counts(listed, stride):
-    for path in result_files(listed):
-        for bit in range(0, 8 * path.stat().st_size, stride):
-            with flipped(path, bit):
-                assert damaged_files(listed) == [path], f"bit {bit}"
-    assert damaged_files(listed) == []
-
-
-def test_a_listed_file_that_is_cut_or_emptied_is_damaged(listed):
-    path = listed / "fit.json"
-    content = path.read_bytes()
-    for left in (*(content[:length] for length in range(len(content))), content + b" "):
-        path.write_bytes(left)
-        assert damaged_files(listed) == [path]
-
-
-def test_logs_checkpoints_and_what_was_set_aside_are_not_listed(listed):
-    for name in ("logs/fit.log", "checkpoints/a.nc", "benchmarks/fit.tsv", "fit.md.damaged", ".a"):
-        (listed / name).parent.mkdir(exist_ok=True)
-        (listed / name).write_text("text")
-    assert len(list(result_files(listed))) == 4
-
-
-def test_a_damaged_folder_gets_no_list(listed):
-    (listed / "fit.nc").write_bytes(b"half")
-    with pytest.raises(ValueError, match=r"fit.nc is damaged; run crackfront repair"):
-        write_sums(listed)
-    assert not (listed / SUMS).exists()
-
-
-def test_an_empty_folder_gets_no_list(tmp_path):
-    with pytest.raises(ValueError, match="holds no file; name a folder of results"):
-        write_sums(tmp_path)
+@pytest.mark.parametrize(
+    ("name", "digits"),
+    [
+        ("curves-0123456789abcdef.nc", "0123456789abcdef"),
+        ("checkpoint-flat-r3-0123456789abcdef.nc", "0123456789abcdef"),
+        ("main-0123456789abcdef.nc", None),
+        ("batch-0123456789ABCDEF.nc", None),
+        ("batch-1-0123456789abcdef.nc.damaged", None),
+    ],
+)
+def test_only_simulations_and_checkpoints_state_their_checksum_in_their_name(name, digits):
+    assert named_digest(Path("curves") / name) == digits
 
 
 @pytest.mark.parametrize("values", ["numbers", "counts", "letters"])

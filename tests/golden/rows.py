@@ -55,8 +55,8 @@ _LINE = replace(
     schedule=LineSchedule(spring=1.5, length=4.0, period=3.0, lead_in=1.5, step=0.3),
 )
 
-_RUN_DEPENDENT = ("seconds", "cpu_seconds", "peak_memory")
-"""Entries of a row that say what the simulation cost."""
+_RUN_DEPENDENT = ("seconds", "cpu_seconds", "peak_memory", "max_sweeps")
+"""Entries of a row that say what the simulation cost, and what it was allowed."""
 
 
 def _sweep(

@@ -1,13 +1,9 @@
 """The store: what is finished stays, what is missing or broken is found and run."""
 
-import itertools
-import json
 import os
-import re
 import shutil
 import subprocess
 import sys
-import zipfile
 from dataclasses import replace
 from pathlib import Path
 
@@ -15,28 +11,24 @@ import numpy as np
 import pytest
 import xarray as xr
 from click.testing import CliRunner
+from crackfront.data.packs import members, record
+from crackfront.sweep.result_packs import RowIndex, pack_paths
 from numba.core.errors import NumbaError
 
 from crackfront.cli import main
 from crackfront.cli.results import _loop_example
 from crackfront.core.outcome import DefectError
-from crackfront.core.versions import PHYSICS_VERSION, ROWS_VERSION
+from crackfront.core.versions import PHYSICS_VERSION
 from crackfront.data.bounds import TooLargeError
-from crackfront.data.comparison import comparison
-from crackfront.data.digests import SUMS
-from crackfront.data.files import read_dataset, write_sums
-from crackfront.data.packs import members, record
+from crackfront.data.files import read_dataset
 from crackfront.data.provenance import provenance
 from crackfront.simulate.costs import expected_cost
 from crackfront.simulate.files import write_checkpoint
 from crackfront.simulate.run import run_simulation
 from crackfront.sweep import tasks
 from crackfront.sweep.configuration import load_configuration
-from crackfront.sweep.result_packs import Entry, RowIndex, new_pack, pack_paths
-from crackfront.sweep.rows import failed_row
 from crackfront.sweep.store import Store
-from crackfront.sweep.verification import mixture_sentences, verification
-from tests.commands import curves, refused
+from tests.commands import curves
 
 TEST = Path(__file__).parents[2] / "config/test.yaml"
 SWEEP = load_configuration(TEST)
@@ -157,23 +149,6 @@ def test_a_new_version_of_the_physics_runs_all_again_and_says_so(store, monkeypa
     assert inventory.stale_sentence() == (
         "2 stored simulations are stale: 2 as version of the physics (now 2) changed"
     )
-
-
-def test_a_store_of_mixed_origin_is_told_where_it_is_planned_and_verified(store):
-    run_and_store(store, FLAT[:1])
-    here = provenance().arithmetic
-    assert "numpy" in here
-    assert store.inventory(FLAT).arithmetic == {here}
-    for one in FLAT[1:]:
-        row = failed_row(one, "refused", "")
-        entry = Entry(one.stem, one.parameters, PHYSICS_VERSION, ROWS_VERSION, row, "another")
-        new_pack(store.curves, "flat", range(2)).append(entry.files())
-    words = f"and may in their last digits: another; {here}"
-    plan = ["plan", str(TEST), "--output", str(store.folder)]
-    assert words in CliRunner().invoke(main, plan).stdout
-    store.finish_shard(SWEEP, SWEEP.shards()[0], provenance())
-    for command in (plan, ["verify", str(store.folder)]):
-        assert words in CliRunner().invoke(main, command).stdout
 
 
 def test_spectra_of_one_shape_and_two_names_have_rows_of_their_own(store, monkeypatch):
@@ -347,29 +322,6 @@ def test_a_row_that_is_lost_is_made_of_its_curve(store, made):
     assert whole.equals(read_dataset(made.hysteresis))
 
 
-@pytest.mark.parametrize("with_curves", [True, False])
-def test_an_archive_holds_what_was_archived_under_checksums_that_fit(whole, tmp_path, with_curves):
-    (whole.folder / "curves/.killed.part").write_text("half")
-    (whole.folder / "elsewhere").symlink_to(__file__)
-    os.utime(whole.folder / "hysteresis.nc", (0, 0))  # written under a clock at 1970
-    path = tmp_path / "sweep.zip"
-    n_file = whole.archive(path, curves=with_curves)
-    with zipfile.ZipFile(path) as archive:
-        assert len(archive.namelist()) == n_file + 1
-        archive.extractall(tmp_path / "unpacked")
-    unpacked = tmp_path / "unpacked/sweep"
-    command = ["sha256sum", "--check", "SHA256SUMS"]
-    done = subprocess.run(command, cwd=unpacked, capture_output=True, text=True, check=True)
-    assert done.stdout.count(": OK") == n_file
-    names = {str(file.relative_to(unpacked)) for file in unpacked.rglob("*") if file.is_file()}
-    wanted = {"hysteresis.nc", "configuration.yaml", "SHA256SUMS"}
-    for name in ("flat", "rough"):
-        wanted |= {f"shards/{name}.nc", f"shards/{name}.nc.sha256"}
-    if with_curves:
-        wanted |= {f"curves/{path.name}" for path in whole.curves.glob("*.tar")}
-    assert names == wanted
-
-
 def test_what_a_killed_process_left_half_written_is_removed_by_the_next_run(store):
     run_and_store(store, FLAT[:1])
     old, new = (store.folder / "curves" / f".{name}.part" for name in ("old", "new"))
@@ -519,23 +471,6 @@ def test_the_shard_of_a_curve_that_is_damaged_or_gone_is_taken_back(whole, tmp_p
     assert [path.name for path in (whole.folder / "shards").glob("flat*")] == []
 
 
-@pytest.mark.parametrize("name", ["hysteresis.nc", "shards/flat.nc", "configuration.yaml"])
-@pytest.mark.parametrize("damage", ["flipped", "truncated"])
-def test_a_damaged_file_is_set_aside_and_told(whole, tmp_path, name, damage):
-    path = whole.folder / name
-    write_sums(whole.folder)
-    if damage == "flipped":
-        flip(path)
-    else:
-        path.write_bytes(path.read_bytes()[:-40])
-    (tmp_path / "sweep.yaml").write_text("text")
-    [first, *_] = whole.repair(tmp_path / "sweep.yaml")
-    assert first.startswith(f"{path} is damaged; it is made anew, and set aside as {path.name}.dam")
-    assert path.exists() == (name == "configuration.yaml")
-    assert path.with_name(f"{path.name}.damaged").exists()
-    assert not (whole.folder / "SHA256SUMS").exists()
-
-
 def test_the_table_of_another_configuration_is_refused(whole):
     other = replace(SWEEP, fit=replace(SWEEP.fit, n_bootstrap=7))
     assert whole.table(other).w_appr.shape == (2, 2, 2)
@@ -543,177 +478,10 @@ def test_the_table_of_another_configuration_is_refused(whole):
         whole.table(replace(SWEEP, n_realisation=1))
 
 
-def test_a_damaged_file_is_not_archived(whole, tmp_path):
-    flip_curve(whole, FLAT[0])
-    with pytest.raises(ValueError, match=r"holds 1 damaged file, the first is .*flat.0-1"):
-        whole.archive(tmp_path / "sweep.zip", curves=True)
-    assert not (tmp_path / "sweep.zip").exists()
-    whole.archive(tmp_path / "sweep.zip", curves=False)
-
-
-def test_an_archive_takes_the_place_of_a_link_to_itself(whole, tmp_path):
-    (tmp_path / "loop.zip").symlink_to("loop.zip")
-    assert whole.archive(tmp_path / "loop.zip", curves=False) > 5
-    assert not (tmp_path / "loop.zip").is_symlink()
-
-
-def test_a_folder_and_its_archive_are_verified(whole, tmp_path):
-    archive = tmp_path / "sweep.zip"
-    whole.archive(archive, curves=True)
-    for place in (whole.folder, archive):
-        found = verification(place)
-        assert found.damaged == found.missing == ()
-        assert (found.listed, found.unlisted) == ((8, 0) if place == archive else (0, 8))
-    write_sums(whole.folder)
-    without(whole, f"{FLAT[1].stem}.nc")
-    flip_curve(whole, FLAT[0])
-    flip(whole.hysteresis)
-    found = verification(whole.folder)
-    assert {name.partition("/")[0] for name in found.damaged} == {"curves", "hysteresis.nc"}
-    assert found.missing == (f"{FLAT[1].stem}.nc",)
-    result = CliRunner().invoke(main, ["verify", str(whole.folder)])
-    assert result.exit_code == 1
-    assert "2 damaged files, 1 missing" in result.output
-    flip(archive)
-    result = CliRunner().invoke(main, ["verify", str(archive)])
-    assert result.exit_code in (1, 2)
-    assert "Traceback" not in result.output
-
-
-def test_a_list_of_checksums_that_is_none_is_damaged(whole):
-    (whole.folder / SUMS).write_text("no list\n")
-    found = verification(whole.folder)
-    assert (found.damaged, found.missing) == ((SUMS,), ())
-    list(whole.repair(TEST))
-    assert verification(whole.folder).damaged == ()
-
-
-def test_an_archive_without_curves_is_whole(whole, tmp_path):
-    archive = tmp_path / "sweep.zip"
-    whole.archive(archive, curves=False)
-    found = verification(archive)
-    assert found.damaged == found.missing == ()
-
-
-def test_what_is_no_result_is_neither_whole_nor_damaged(tmp_path):
-    (tmp_path / "notes").mkdir()
-    for name in ("fit.md", "notes/a.txt"):
-        (tmp_path / name).write_text("text")
-    assert "is neither a folder of results nor an archive" in refused("verify", tmp_path / "fit.md")
-    assert "holds no results" in refused("verify", tmp_path / "notes")
-
-
-def test_an_archive_is_a_zip_file_outside_of_the_results(whole, tmp_path):
-    told = ("archive", whole.folder, "--output")
-    assert "name a ZIP file" in refused(*told, tmp_path / "sweep.tar.gz")
-    assert "among the results" in refused(*told, whole.folder / "sweep.zip")
-
-
-def test_what_needs_the_table_names_the_command_that_makes_it(whole, tmp_path):
-    whole.hysteresis.unlink()
-    with pytest.raises(ValueError, match=r"holds no hysteresis.nc; run crackfront aggregate"):
-        whole.table(SWEEP)
-    with pytest.raises(ValueError, match=r"holds no hysteresis.nc; run crackfront aggregate"):
-        whole.unpack_curves(tmp_path / "curves")
-
-
-@pytest.mark.parametrize("encrypted", ["all", "one"])
-def test_an_encrypted_archive_is_told_and_an_encrypted_entry_is_damaged(whole, tmp_path, encrypted):
-    archive = tmp_path / "sweep.zip"
-    whole.archive(archive, curves=True)
-    content = bytearray(archive.read_bytes())
-    # The bit stands in the head of each entry and in the list at the end.
-    heads = {b"PK\x03\x04": 6, b"PK\x01\x02": 8}
-    for sign, place in heads.items():
-        starts = [match.start() for match in re.finditer(re.escape(sign), bytes(content))]
-        for start in starts[: None if encrypted == "all" else 1]:
-            content[start + place] |= 1
-    archive.write_bytes(content)
-    result = CliRunner().invoke(main, ["verify", str(archive)])
-    assert "Traceback" not in result.output
-    if encrypted == "all":
-        assert result.exit_code == 2
-        assert f"{archive} is encrypted; unpack it with its password" in result.output
-    else:
-        assert result.exit_code == 1
-        [line] = [one for one in result.output.splitlines() if one.startswith("missing: ")]
-        assert line.endswith("configuration.yaml")
-
-
-def test_a_damaged_entry_costs_no_other_one(whole, tmp_path):
-    archive = tmp_path / "sweep.zip"
-    whole.archive(archive, curves=True)
-    with zipfile.ZipFile(archive) as opened:
-        [entry] = [one for one in opened.infolist() if one.filename.endswith("hysteresis.nc")]
-    content = bytearray(archive.read_bytes())
-    begin = entry.header_offset + 30 + len(entry.filename)
-    content[begin : begin + 8] = bytes([255] * 8)
-    archive.write_bytes(content)
-    found = verification(archive)
-    assert {*found.damaged, *found.missing} == {"hysteresis.nc"}
-
-
 def command(*arguments):
     """Exit code and output of a command."""
     result = CliRunner().invoke(main, [*map(str, arguments)])
     return result.exit_code, result.output
-
-
-def test_rows_whose_shards_are_gone_are_told(whole):
-    whole.configuration.write_text(TEST.read_text(encoding="utf-8"))
-    for path in (whole.folder / "curves").iterdir():
-        path.unlink()
-    code, output = command("repair", whole.folder)
-    assert code == 0
-    assert output.count("is made anew, as it lacks 4 curves") == 2
-    code, output = command("verify", whole.folder)
-    assert code == 1
-    assert "8 of 8 rows of hysteresis.nc are in no file of shards, which are to be sim" in output
-    assert command("archive", whole.folder)[0] == 2
-
-
-def test_a_list_of_checksums_is_written_anew_only_of_files_that_are_those_of_the_old_one(whole):
-    path = whole.folder / "notes.txt"
-    path.write_text("whole")
-    assert command("checksums", whole.folder)[0] == 0
-    path.write_text("cut")
-    code, output = command("checksums", whole.folder)
-    assert (code, "is not as it was written; run crackfront repair" in output) == (2, True)
-    assert command("verify", whole.folder)[0] == 1
-
-
-def test_fit_and_summary_of_different_ranges_do_not_stand_side_by_side(whole, tmp_path):
-    shorter = tmp_path / "shorter.yaml"
-    text = TEST.read_text(encoding="utf-8")
-    shorter.write_text(text.replace("lowest_elastic_energy: 0.02", "lowest_elastic_energy: 0.05"))
-    assert command("fit", TEST, "--output", whole.folder)[0] == 0
-    code, output = command("summary", TEST, "--output", whole.folder)
-    assert (code, "factor.png is not there; run crackfront figures" in output) == (2, True)
-    assert command("fit", shorter, "--output", whole.folder)[0] == 0
-    code, output = command("summary", TEST, "--output", whole.folder)
-    assert code == 2
-    assert "fit.nc is the fit of another range or table than those of the config" in output
-    whole.configuration.write_text(text)
-    [told] = mixture_sentences(whole)
-    assert told.startswith(f"{whole.folder / 'fit.nc'} is the fit of another range than that of")
-
-
-def test_fit_and_figures_of_another_table_do_not_stand_in_a_summary(finished, store, tmp_path):
-    shutil.copytree(finished, store.folder)
-    assert list(mixture_sentences(store)) == []
-    wider = tmp_path / "wider.yaml"
-    text = TEST.read_text(encoding="utf-8").replace("realisations: 2", "realisations: 3")
-    wider.write_text(text)
-    assert command("simulate", wider, "--output", store.folder)[0] == 0
-    assert command("aggregate", wider, "--output", store.folder)[0] == 0
-    code, output = command("summary", wider, "--output", store.folder)
-    assert (code, "fit.nc is the fit of another range or table" in output) == (2, True)
-    [told] = mixture_sentences(store)
-    assert told.endswith(f"fit.nc is the fit of another table than {store.hysteresis}")
-    assert command("fit", wider, "--output", store.folder)[0] == 0
-    assert list(mixture_sentences(store)) == []
-    code, output = command("summary", wider, "--output", store.folder)
-    assert (code, ".png was drawn with another configuration" in output) == (2, True)
 
 
 def test_the_loop_that_is_drawn_is_one_with_a_value(whole, tmp_path):
@@ -731,117 +499,3 @@ def test_the_loop_that_is_drawn_is_one_with_a_value(whole, tmp_path):
     third = _loop_example(SWEEP, replace(table, w_retr=gone))
     assert third.spectrum_name == first.spectrum_name
     assert third.elastic_energy != first.elastic_energy
-
-
-def test_repair_touches_no_folder_of_another_kind(tmp_path):
-    foreign = tmp_path / "measurements.nc"
-    foreign.write_text("data")
-    assert command("repair", TEST, "--output", tmp_path) == (0, "")
-    assert foreign.read_text() == "data"
-    for name in ("plan", "simulate", "repair"):
-        code, output = command(name, TEST, "--output", "")
-        assert (code, "the name is empty; name a file or folder" in output) == (2, True)
-        code, output = command(name, TEST, "--output", foreign)
-        assert (code, "a file; name a folder for the results" in output) == (2, True)
-
-
-def test_the_archive_of_a_folder_is_named_after_it_wherever_it_is_called_from(whole, monkeypatch):
-    monkeypatch.chdir(whole.folder)
-    code, output = command("archive", ".")
-    assert code == 0, output
-    assert whole.folder.with_name(f"{whole.folder.name}.zip").is_file()
-
-
-def test_a_folder_with_files_of_different_sweeps_is_told_and_not_archived(whole, other, tmp_path):
-    text = TEST.read_text(encoding="utf-8")
-    assert list(mixture_sentences(whole)) == []
-    whole.configuration.write_text(text.replace("hurst: 0.8", "hurst: 0.8 # as in the paper"))
-    assert list(mixture_sentences(whole)) == []
-    # The configuration, then the curves, then the rows of the other one.
-    whole.configuration.write_text(text.replace("seed: 1", "seed: 2"))
-    [told] = mixture_sentences(whole)
-    assert told.endswith(f"hysteresis.nc is the table of another sweep than {whole.configuration}")
-    result = CliRunner().invoke(main, ["archive", str(whole.folder)])
-    assert result.exit_code == 2
-    assert "is the table of another sweep than" in result.output
-    assert not whole.folder.with_name("sweep.zip").exists()
-    whole.configuration.write_text(text)
-    for part, words in (
-        ("curves", "holds no curve of"),
-        ("shards", "8 of 8 rows of .*/hysteresis.nc are in no file of"),
-    ):
-        shutil.move(whole.folder / part, tmp_path / part)
-        shutil.copytree(other.folder / part, whole.folder / part)
-        [told] = mixture_sentences(whole)
-        assert re.search(words, told)
-        result = CliRunner().invoke(main, ["verify", str(whole.folder)])
-        assert result.exit_code == 1
-        assert re.search(words.replace(".*/", ""), result.output)
-        shutil.rmtree(whole.folder / part)
-        shutil.move(tmp_path / part, whole.folder / part)
-
-
-def test_the_curves_of_the_table_are_unpacked_without_those_of_other_numerics(whole, tmp_path):
-    finer = replace(FLAT[0], solver=replace(FLAT[0].solver, tolerance=1e-5))
-    run_and_store(whole, [finer])
-    assert f"{finer.stem}.nc" in curves(whole.folder)
-    folder = tmp_path / "curves"
-    result = CliRunner().invoke(main, ["curves", str(whole.folder), "--output", str(folder)])
-    assert result.exit_code == 0, result.output
-    assert result.output == f"curves: 8 files in {folder}\n"
-    assert {path.name for path in folder.iterdir()} == {
-        f"{one.stem}.nc" for one in SWEEP.simulations()
-    }
-    flip_curve(whole, FLAT[1])
-    shutil.rmtree(folder)
-    result = CliRunner().invoke(main, ["curves", str(whole.folder), "--output", str(folder)])
-    assert result.exit_code == 2
-    assert f"1 of 8 curves of {whole.hysteresis} are missing or damaged" in result.output
-    assert not folder.exists()
-
-
-def test_two_stores_of_one_sweep_agree_in_bits_and_another_sweep_does_not(made, store, other):
-    finish(store, SWEEP)
-    found = comparison(made.folder, store.folder)
-    assert found.in_bits
-    assert found.n_file == 11
-    found = comparison(made.folder, other.folder)
-    assert found.n_file == 11  # keys do not matter
-    assert not found.in_bits
-    assert found.by_variable()["force"].largest > 0
-    result = CliRunner().invoke(main, ["compare", str(made.folder), str(store.folder)])
-    assert result.exit_code == 0
-    assert "agreement of 11 files in bits" in result.output
-
-
-def test_the_fit_of_a_sweep_that_was_interrupted_is_that_of_an_undisturbed_one(
-    made, whole, tmp_path
-):
-    undisturbed = tmp_path / "undisturbed"
-    shutil.copytree(made.folder, undisturbed)
-    # What a killed process leaves: some curves, one on its way, and half a file.
-    simulations = list(SWEEP.simulations())
-    path, last = pack_paths(whole.curves)
-    last.unlink()
-    place = [one.place for one in members(path)[0] if one.name == f"{simulations[3].stem}.nc"]
-    path.write_bytes(path.read_bytes()[: place[0] + 300])
-    kept = []
-    run_simulation(simulations[3], keep=lambda make: kept.append(make()))
-    write_checkpoint(whole.checkpoint(simulations[3]), kept[5], provenance())
-    shutil.rmtree(whole.folder / "shards")
-    missing = whole.inventory(simulations).missing
-    assert len(missing) > 4
-    assert len(run_and_store(whole, missing)) == len(missing)
-    for shard in SWEEP.shards():
-        whole.finish_shard(SWEEP, shard, provenance())
-    folders = (undisturbed, whole.folder)
-    for folder, name in itertools.product(folders, ("aggregate", "fit")):
-        result = CliRunner().invoke(main, [name, str(TEST), "--output", str(folder)])
-        assert result.exit_code == 0, result.output
-    one, other = ((folder / "fit.md").read_bytes() for folder in folders)
-    assert one == other
-    assert comparison(*(folder / "fit.nc" for folder in folders)).in_bits
-    one, other = (json.loads((folder / "fit.json").read_text()) for folder in folders)
-    assert {name for name in one if one[name] != other[name]} <= {"origin"}
-    differing = {name for name, text in one["origin"].items() if text != other["origin"][name]}
-    assert differing <= {"date", "command"}
