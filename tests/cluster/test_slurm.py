@@ -153,7 +153,7 @@ def test_the_profile_runs_a_shard_and_the_sweep_is_the_undisturbed_one(started, 
     told = process.communicate(timeout=850)[1]
     assert process.returncode == 0, told
     assert "has been submitted with SLURM jobid" in told
-    assert len(list((results / "curves").glob("*.tar"))) == 1
+    assert len(list((results / "curves/flat").glob("curves-*.nc"))) == 1
     if target != "hysteresis.nc":
         main(["aggregate", str(sweep), "--output", str(results)], standalone_mode=False)
     assert dataset(results).equals(undisturbed(sweep, folder / "alone"))
@@ -204,9 +204,12 @@ def checkpoint_at_the_limit(folder, results, command):
     """What a job has stored of its one simulation when its time is over, and what it printed."""
     job = ["sbatch", "--parsable", "--ntasks=2", "--time=60", "--signal=TERM@58", "--wrap", command]
     number = run(job, cwd=folder).stdout.strip()
-    before = [path.stat().st_mtime for path in (results / "checkpoints").glob("*.nc")]
+    before = [path.stat().st_mtime for path in (results / "curves/flat").glob("checkpoint-*.nc")]
     until(
-        lambda: [path.stat().st_mtime for path in (results / "checkpoints").glob("*.nc")] != before
+        lambda: (
+            [path.stat().st_mtime for path in (results / "curves/flat").glob("checkpoint-*.nc")]
+            != before
+        )
     )
     time.sleep(3)  # for more than the first states
     # Limits are in minutes: with notice 58 s before its end, the minute that runs is the last.
@@ -214,7 +217,7 @@ def checkpoint_at_the_limit(folder, results, command):
     run(["scontrol", "update", f"JobId={number}", f"TimeLimit={int(used) + 1}"])
     until(lambda: not run(["squeue", "--noheader", "--jobs", number]).stdout.strip())
     assert "Interrupted. 0 of 1" in (folder / f"slurm-{number}.out").read_text()
-    [path] = (results / "checkpoints").glob("*.nc")
+    [path] = (results / "curves/flat").glob("checkpoint-*.nc")
     return xr.load_dataset(path)
 
 
