@@ -9,13 +9,14 @@ from __future__ import annotations
 
 import contextlib
 import os
+import queue
 import shutil
 import signal
 import sys
 import threading
 import traceback
 from collections.abc import Callable, Generator, Iterator, Sequence
-from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
+from concurrent.futures import Executor, Future
 from dataclasses import dataclass
 from types import FrameType
 from typing import Any, TypeVar, cast
@@ -194,11 +195,15 @@ class Ranks:
         running: dict[Future[Result], Task] = {
             self.executor.submit(function, task, nothing): task for task in tasks
         }
+        # Waiting for all of them would look at each whenever one ends.
+        ended: queue.SimpleQueue[Future[Result]] = queue.SimpleQueue()
+        for future in running:
+            future.add_done_callback(ended.put)
         try:
             while running and not stop_is_requested():
-                ended, _ = wait(running, _SECONDS, FIRST_COMPLETED)
                 idle()
-                for future in ended:
+                with contextlib.suppress(queue.Empty):
+                    future = ended.get(timeout=_SECONDS)
                     task = running.pop(future)
                     yield task, keep(task, future.result())
         finally:

@@ -188,6 +188,12 @@ def command(name):
     return path.replace("{", "{{").replace("}", "}}")
 
 
+def launcher():
+    """The mpiexec of the environment, or that of the system (`make env MPI=system`)."""
+    path = Path(sys.executable).parent / "mpiexec"
+    return shlex.quote(str(path)) if path.exists() else "mpiexec"
+
+
 def importable(path):
     """Setting of a shell by which Python finds modules in a folder."""
     quoted = shlex.quote(str(path)).replace("{", "{{").replace("}", "}}")

@@ -33,18 +33,20 @@ rule simulate:
     priority: lambda wildcards: 100 + SECONDS[wildcards.shard]
     threads: RANKS
     resources:
-        # A profile may set tasks and launcher. What is not done in time goes on in the next job.
+        # A profile may set both: Slurm lets a launcher start two tasks or more, and no launcher one.
         tasks=lambda wildcards, threads: threads + 1 if threads > 1 else 1,
-        mpi=command("mpiexec"),
+        mpi=lambda wildcards, threads: launcher() if threads > 1 else "",
         cpus_per_task=1,
         mem_mb_per_cpu=megabytes(RANK_BYTES),
-        runtime=240,
+        runtime=240,  # minutes; what is not done by then goes on in the next job
     params:
         spectrum=lambda wildcards: SHARDS[wildcards.shard].item.name,
         block=lambda wildcards: block_option(SHARDS[wildcards.shard]),
         # One task needs no launcher. As a function of resources this is no reason to run again.
         launch=lambda wildcards, resources: (
-            f"{resources.mpi} -n {resources.tasks}" if resources.tasks > 1 else ""
+            f"{resources.mpi or launcher()} -n {resources.tasks}"
+            if resources.tasks > 1
+            else ""
         ),
         configuration=configuration,
         results=folder_above,
