@@ -282,7 +282,7 @@ def run_missing(
         announce_compilation()
     try:
         with (
-            closing(run_and_store(store, lacking, origin, workers, checkpoint_seconds)) as outcomes,
+            closing(run_and_store(store, lacking, origin, checkpoint_seconds, workers)) as outcomes,
             tqdm(total=total, unit="simulation", disable=not terminal, file=sys.stderr) as bar,
         ):
             for count, (simulation, finished) in enumerate(outcomes, start=1):

@@ -25,7 +25,7 @@ from crackfront.sweep.configuration import (
     refuse_other_configuration,
     results_folder,
 )
-from crackfront.sweep.parallel import Ranks, deferring_stops
+from crackfront.sweep.parallel import deferring_stops
 from crackfront.sweep.rows import COMPLETE
 from crackfront.sweep.store import Announce, Store
 from crackfront.sweep.sweep import Sweep
@@ -96,7 +96,7 @@ def run_sweep(
         bar = tqdm(total=n_missing, unit="simulation", disable=not (progress and n_missing))
         with (
             bar,
-            contextlib.closing(run_and_store(store, lacking, origin, Ranks(None, 1))) as outcomes,
+            contextlib.closing(run_and_store(store, lacking, origin)) as outcomes,
         ):
             for _ in outcomes:
                 bar.update()
