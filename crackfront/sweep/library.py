@@ -21,10 +21,11 @@ from crackfront.data.section import movable_text
 from crackfront.sweep.configuration import (
     SOURCE,
     load_configuration,
+    refuse_older_layout,
     refuse_other_configuration,
     results_folder,
 )
-from crackfront.sweep.parallel import Ranks, deferring_stops
+from crackfront.sweep.parallel import deferring_stops
 from crackfront.sweep.rows import COMPLETE
 from crackfront.sweep.store import Announce, Store
 from crackfront.sweep.sweep import Sweep
@@ -36,18 +37,14 @@ def opened(
 ) -> tuple[Sweep, Store, Provenance]:
     """Sweep of a configuration file, its store, and the origin of what is computed for it.
 
-    ConfigurationError if the results are those of another configuration that is still there;
-    ValueError if they have the layout of earlier versions.
+    ConfigurationError if the results are those of another configuration that is still there,
+    or of an older layout.
     """
     sweep = load_configuration(configuration)
     if output is not None and output.exists() and not output.is_dir():
         raise ValueError(f"the output is {output}, a file; name a folder for the results")
     store = Store(results_folder(configuration) if output is None else output, announce)
-    if any((store.folder / "curves").glob("*.tar")):
-        raise ValueError(
-            f"{store.folder} has results of an earlier version, which are not read; name a new "
-            "folder by --output, or move this one away"
-        )
+    refuse_older_layout(store.folder)
     refuse_other_configuration(configuration, store.folder)
     return sweep, store, provenance(movable_text(configuration))
 
@@ -99,7 +96,7 @@ def run_sweep(
         bar = tqdm(total=n_missing, unit="simulation", disable=not (progress and n_missing))
         with (
             bar,
-            contextlib.closing(run_and_store(store, lacking, origin, Ranks(None, 1))) as outcomes,
+            contextlib.closing(run_and_store(store, lacking, origin)) as outcomes,
         ):
             for _ in outcomes:
                 bar.update()

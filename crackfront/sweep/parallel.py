@@ -120,7 +120,7 @@ def ranks() -> Iterator[Ranks | None]:
     has started several processes, each of which sees itself alone.
     """
     if not is_launched():
-        yield Ranks(None, 1)
+        yield ALONE
         return
     _refuse_small_shared_memory()
     from mpi4py import MPI
@@ -212,3 +212,7 @@ class Ranks:
             for future, task in running.items():
                 if not future.cancelled() and future.exception() is None:
                     keep(task, future.result())
+
+
+ALONE = Ranks(None, 1)
+"""This process, without other ranks."""

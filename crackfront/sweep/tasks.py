@@ -103,8 +103,8 @@ def run_and_store(
     store: Store,
     shards: Sequence[tuple[Shard, Sequence[Simulation]]],
     origin: Provenance,
-    ranks: parallel.Ranks,
     seconds: float = 60.0,
+    ranks: parallel.Ranks = parallel.ALONE,
 ) -> Generator[tuple[Simulation, SimulationOutcome], None, None]:
     """Run simulations of shards, the longest first, and store them in batches.
 

@@ -8,7 +8,6 @@ import re
 import shlex
 import shutil
 import signal
-import socket
 import subprocess
 import sys
 from contextlib import nullcontext
@@ -19,7 +18,6 @@ import numpy as np
 import pytest
 import xarray as xr
 from click.testing import CliRunner
-from crackfront.sweep.result_packs import Entry, new_pack
 from matplotlib.figure import Figure
 
 import crackfront as cf
@@ -29,11 +27,14 @@ from crackfront.core import jkr
 from crackfront.core.outcome import DefectError, Status
 from crackfront.core.solver.relax import named_solver
 from crackfront.core.units import WORK_OF_ADHESION
-from crackfront.core.versions import PHYSICS_VERSION, ROWS_VERSION
+from crackfront.data.provenance import provenance
 from crackfront.plots.style import save_figure
 from crackfront.sweep.configuration import load_configuration
+from crackfront.sweep.curves import FinishedSimulation
 from crackfront.sweep.rows import failed_row
-from tests.commands import curves, refused, run
+from crackfront.sweep.store import Store
+from crackfront.sweep.tasks import BatchWriter
+from tests.commands import curves, refused, run, simulated
 from tests.topography.made import DETAIL, measure_surfaces_once
 
 TEST = Path(__file__).parents[2] / "config/test.yaml"
@@ -228,36 +229,33 @@ def test_a_plan_tells_what_is_left_to_run_and_what_it_costs(tmp_path, copy_store
     assert float(rough.split()[3]) == 0
 
 
-def test_a_plan_tells_what_is_stale_and_why(tmp_path, copy_store):
+def test_a_plan_tells_what_stored_simulations_are_of_no_use_and_why(tmp_path, copy_store):
     copy_store("flat", tmp_path)
     finer = tmp_path / "finer.yaml"
     finer.write_text(TEST.read_text().replace("tolerance: 1e-6", "tolerance: 1e-7"))
-    result = run("plan", finer, "--output", tmp_path)
-    assert "4 stored simulations are stale: 4 as numerics changed" in result.output
-    result = run("simulate", finer, "--spectrum", "flat", "--output", tmp_path)
-    assert "4 stored simulations are stale: 4 as numerics changed\n[1/4]" in result.output
+    for command in (("plan", finer), ("simulate", finer, "--spectrum", "flat")):
+        result = run(*command, "--output", tmp_path)
+        assert "4 with another " in result.output
+        assert "tolerance" in result.output or "numerics" in result.output
 
 
 def test_the_status_counts_what_is_done_failed_and_left(tmp_path, copy_store):
     sweep = load_configuration(TEST)
     copy_store("rough", tmp_path)
-    flat = tuple(sweep.simulations(sweep.spectra[0]))
-    refused_row = failed_row(flat[0], "refused", "too rough")
-    entry = Entry(flat[0].stem, flat[0].parameters, PHYSICS_VERSION, ROWS_VERSION, refused_row)
-    pack = new_pack(tmp_path / "curves", "flat", range(2))
-    pack.append(entry.files())
+    flat, store = sweep.shards()[0], Store(tmp_path)
+    simulation = next(sweep.simulations(flat.item))
+    row = failed_row(simulation, "refused", "too rough")
+    writer = BatchWriter(store.curve_folder(flat), provenance(), seconds=60)
+    writer.add(FinishedSimulation(simulation, row, None, "processor"))
+    writer.flush()
     result = run("status", tmp_path)
     assert result.exit_code == 0, result.output
-    [_, first, second, process, sentence] = result.output.splitlines()
-    assert process == f"process {os.getpid()} on {socket.gethostname()} stores flat 0-1"
+    [_, first, second, sentence] = result.output.splitlines()
     assert first.split()[:4] == ["flat", "0", "1", "3"]
     assert float(first.split()[4]) > 0
     assert second.split() == ["rough", "4", "0", "0", "0"]
-    assert sentence == "5 of 8 simulations have ended"
-    told = json.loads(run("status", tmp_path, "--json").stdout)["processes"]
-    assert [(one["spectrum"], one["realisations"]) for one in told] == [("flat", "0-1")]
-    pack.close()
-    assert run("status", tmp_path).output.endswith("no process that is seen here stores any\n")
+    assert sentence.startswith("5 of 8 simulations have ended; no process that is seen here")
+    assert json.loads(run("status", tmp_path, "--json").stdout)["running"] == []
 
 
 def test_the_status_of_a_folder_without_a_sweep_is_refused(tmp_path):
@@ -291,19 +289,17 @@ def test_a_configuration_whose_name_is_no_name_for_results_is_refused(tmp_path, 
     assert "the results are named after" in refused("plan", bad)
 
 
-def test_a_damaged_curve_is_named_and_replaced_by_the_job_of_its_shard(tmp_path, copy_store):
+def test_a_damaged_file_of_curves_is_named_and_its_simulations_run_again(tmp_path, copy_store):
     copy_store("flat", tmp_path)
-    broken = min((tmp_path / "curves").glob("*.tar"))
+    [broken] = (tmp_path / "curves/flat").glob("curves-*.nc")
     content = bytearray(broken.read_bytes())
     content[5000] ^= 1
     broken.write_bytes(content)
     (tmp_path / "shards/flat.nc").unlink()
     result = run("simulate", TEST, "--spectrum", "flat", "--output", tmp_path)
     assert result.exit_code == 0
-    [warning] = result.stderr.splitlines()
-    assert str(broken) in warning
-    assert "computed anew" in warning
-    assert "[1/1]" in result.output
+    assert f"{broken} is damaged and was set aside" in result.stderr
+    assert len(simulated(result.output)) == 4
 
 
 def test_simulations_without_a_value_are_counted_and_too_many_fail(tmp_path):
@@ -327,12 +323,10 @@ def test_a_simulation_that_cannot_be_stored_ends_the_run_with_exit_code_one(tmp_
     def full(*_):
         raise OSError("no space left on device")
 
-    monkeypatch.setattr("crackfront.sweep.tasks.dataset_content", full)
+    monkeypatch.setattr("crackfront.sweep.tasks.write_curves", full)
     result = run("simulate", TEST, "--output", tmp_path)
     assert result.exit_code == 1
     assert "could not compute or store it (no space left on device); free disk" in result.stderr
-    assert "0 of 8 simulations were stored" in result.stderr
-    assert "[2/8]" not in result.output
     assert not (tmp_path / "shards").exists()
 
 
@@ -341,7 +335,7 @@ def test_missing_input_of_the_later_steps_is_refused(tmp_path):
     assert "8 of 8 simulations are in no finished shard" in refused("aggregate", TEST, *output)
     for command in ("fit", "figures"):
         sentence = refused(command, TEST, *output)
-        assert "holds no hysteresis.nc; run crackfront aggregate" in sentence
+        assert "has no hysteresis.nc; run crackfront aggregate" in sentence
 
 
 @pytest.mark.parametrize("command", ["plan", "simulate", "aggregate", "fit", "figures"])

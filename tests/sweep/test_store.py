@@ -86,7 +86,7 @@ def in_batches(configuration, folder):
     """Store simulations in a batch each, as a process leaves them that is killed in the end."""
     sweep, store = load_configuration(configuration), Store(folder)
     shards = [(one, [*sweep.simulations(one.item, one.realisations)]) for one in sweep.shards()]
-    for _ in tasks.run_and_store(store, shards, provenance("text"), 0):
+    for _ in tasks.run_and_store(store, shards, provenance("text"), 0.01):
         pass
     return sweep, store
 
@@ -296,7 +296,7 @@ def test_what_the_machine_could_not_store_runs_again(
             raise error
         return write(folder, *arguments)
 
-    told = ("simulate", configuration, "--output", folder, "--checkpoint", "0")
+    told = ("simulate", configuration, "--output", folder, "--checkpoint", "0.01")
     with monkeypatch.context() as patched:
         patched.setattr(tasks, "write_curves", fail_after_three)
         result = run(*told)
@@ -560,6 +560,17 @@ def test_two_configurations_of_one_name_in_two_folders_do_not_share_results(tmp_
     done("plan", "b/sweep.yaml")
 
 
+def test_results_in_the_layout_of_an_older_version_are_refused_and_left_alone(folder):
+    (folder / "curves/flat.0-1.host-1-ab.tar").write_bytes(b"")
+    before = sorted(folder.rglob("*"))
+    for command in ("plan", "simulate", "aggregate", "fit"):
+        sentence = refused(command, TEST, "--output", folder)
+        assert "in the layout of an older version" in sentence
+        assert "start a new folder" in sentence
+    assert "start a new folder" in refused("status", folder)
+    assert sorted(folder.rglob("*")) == before
+
+
 RECORDED = "realisations: 2", "realisations: 2\nrecord: [fronts, energy]"
 
 
@@ -643,7 +654,7 @@ def test_files_take_the_disk_that_a_plan_expects(made):
 
 
 def test_spectra_of_one_shape_and_two_names_have_results_of_their_own(configuration, tmp_path):
-    change(configuration, "rough", "twin", "roll_off: 0.2, hurst: 0.8", "hurst: 1.0")
+    change(configuration, "name: rough", "name: twin", "roll_off: 0.2, hurst: 0.8", "hurst: 1.0")
     folder = tmp_path / "sweep"
     assert len(simulate(configuration, folder)) == 8
     found = aggregated(configuration, folder)
