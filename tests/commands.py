@@ -1,17 +1,22 @@
-"""Commands as tests run them, in their own process, and parameters that run at night."""
+"""Commands as tests run them, in their own process, and what they stored."""
 
+import contextlib
 import functools
+import re
 
+import numpy as np
 import pytest
 import xarray as xr
 from click.testing import CliRunner
 
 from crackfront.cli import main
-from crackfront.data.packs import members
-from crackfront.sweep.result_packs import pack_paths
+from crackfront.sweep.curves import SIMULATION, curve_files, selected
 
 slow = functools.partial(pytest.param, marks=pytest.mark.slow)
 """Parameters whose test is left to the night."""
+
+COSTS = ("seconds", "cpu_seconds", "peak_memory")
+"""Variables in which equal simulations differ."""
 
 
 def run(*arguments):
@@ -19,20 +24,11 @@ def run(*arguments):
     return CliRunner().invoke(main, [str(argument) for argument in arguments])
 
 
-def curves(folder):
-    """Contents of the curves in the packs of a store, by their names."""
-    found = [one for path in pack_paths(folder / "curves") for one in members(path)[0]]
-    return {one.name: one.content() for one in found if one.name.endswith(".nc")}
-
-
-def datasets(folder):
-    """The same as datasets, without costs."""
-    return {
-        name: xr.load_dataset(content, engine="netcdf4").drop_vars(
-            ["seconds", "cpu_seconds", "peak_memory"]
-        )
-        for name, content in sorted(curves(folder).items())
-    }
+def done(*arguments):
+    """Result of a command that succeeds."""
+    result = run(*arguments)
+    assert result.exit_code == 0, result.output
+    return result
 
 
 def refused(*arguments):
@@ -43,3 +39,33 @@ def refused(*arguments):
     assert "Traceback" not in result.output
     [sentence] = [line for line in result.stderr.splitlines() if line.startswith("Error: ")]
     return sentence
+
+
+def simulated(output):
+    """Labels of the simulations that a command ran, by what it printed."""
+    return set(re.findall(r"^\[\d+/\d+\] (.+?): ", output, re.MULTILINE))
+
+
+def curves(folder):
+    """Stored simulations by spectrum, e_el, realisation and series, as datasets of one each."""
+    found = {}
+    for shard in sorted((folder / "curves").glob("*")):
+        for path in curve_files(shard):
+            with contextlib.suppress(FileNotFoundError):  # merged meanwhile
+                dataset = xr.load_dataset(path)
+                for place in range(dataset.sizes[SIMULATION]):
+                    chosen = selected(dataset, np.array([place]))
+                    words = (chosen[name].item() for name in ("spectrum", "elastic_energy"))
+                    numbers = (chosen[name].item() for name in ("realisation", "series"))
+                    found["{}-e{:g}-r{}-{}".format(*words, *numbers)] = chosen.drop_attrs()
+    return found
+
+
+def stored(folder):
+    """Stored simulations with their wall times, which say that it was the same run."""
+    return {name: dataset["seconds"].item() for name, dataset in curves(folder).items()}
+
+
+def table(path):
+    """A table or shard without its costs, and what it says of its origin."""
+    return xr.load_dataset(path).drop_vars(COSTS).drop_attrs()

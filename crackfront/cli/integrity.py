@@ -2,18 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import asdict
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import click
 
 from crackfront.cli.report import FILE, as_json, echo_answer, examples
 from crackfront.data.bounds import counted
-
-if TYPE_CHECKING:
-    from crackfront.sweep.integrity import Verification
 
 
 @click.command(
@@ -24,56 +19,26 @@ if TYPE_CHECKING:
 def verify(place: Path, as_json: bool) -> None:
     """Check a folder of results, or its archive (ZIP), against its checksums, SHA256SUMS.
 
-    `sha256sum --check SHA256SUMS` in the folder does nearly the same. The checksums in the names of
-    finished simulations and next to tables are checked too, also before the list is written. An
-    archive is read without unpacking it. The exit code is 1 if a file is damaged, missing or not in
-    the list, or if there is no list.
+    `sha256sum --check SHA256SUMS` in the folder does the same, but for files that the list does not
+    name. The exit code is 1 if a file is damaged, missing or not in the list.
     """
     from crackfront.sweep.integrity import verification
 
     found = verification(place)
-    content = {"whole": found.is_whole, **asdict(found)}
-    echo_answer(content, _lines(place, found), as_json=as_json)
+    lines = [f"{counted(found.verified, 'file')} verified"]
+    for kind, names in (
+        ("damaged", found.damaged),
+        ("missing", found.missing),
+        ("not in the list", found.unlisted),
+    ):
+        lines += [f"{kind}: {name!r}" for name in names]
+    echo_answer(asdict(found), lines, as_json=as_json)
     if not found.is_whole:
-        raise click.ClickException(_problem(place, found))
-
-
-def _lines(place: Path, found: Verification) -> Iterator[str]:
-    """What a verification found, a line for each file that needs attention."""
-    from crackfront.data.digests import SUMS, shown
-
-    yield f"{counted(found.listed, 'file')} in {SUMS}, {found.verified} verified"
-    kinds = {
-        "damaged": found.damaged,
-        "missing": found.missing,
-        f"not in {SUMS}": found.unlisted,
-        "not a regular file": found.irregular,
-    }
-    for kind, names in kinds.items():
-        for name in names:
-            yield f"{kind}: {shown(name)}"
-    if found.is_whole:
-        yield f"{place}: nothing is damaged or missing"
-
-
-def _problem(place: Path, found: Verification) -> str:
-    """What is wrong with results, and what to do."""
-    sentences = []
-    if found.damaged or found.missing or found.unlisted:
-        remedy = "pack the archive again"
-        if place.is_dir():
-            remedy = "remove damaged files and run make, which makes them again"
-            if not found.damaged and not found.missing:
-                remedy = "remove what does not belong to the results, or run crackfront checksums"
-        sentences.append(
-            f"{place} has {counted(len(found.damaged), 'damaged file')}, {len(found.missing)} "
-            f"missing, {len(found.unlisted)} not in the list; {remedy}"
+        raise click.ClickException(
+            f"{place} is not as it was written: {len(found.damaged)} damaged, "
+            f"{len(found.missing)} missing, {len(found.unlisted)} not in the list; remove damaged "
+            "files and run make, or pack an archive again"
         )
-    if found.fault:
-        sentences.append(found.fault)
-    if not found.verified:
-        sentences.append("Nothing was verified")
-    return ". ".join(sentences)
 
 
 @click.command(epilog=examples("crackfront checksums results/default"))
@@ -81,8 +46,8 @@ def _problem(place: Path, found: Verification) -> str:
 def checksums(folders: tuple[Path, ...]) -> None:
     """Write SHA256SUMS, the checksums of a folder of results that is finished.
 
-    Commands that change the folder later remove the list. The workflow writes it at its end. A file
-    that does not agree with its own checksum, or with the list that is there, is an error.
+    The workflow writes it at its end; commands that change the folder later remove it. A file that
+    does not agree with the checksum in its name or next to it is an error.
     """
     from crackfront.sweep.integrity import write_sums
 

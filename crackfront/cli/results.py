@@ -174,8 +174,7 @@ def summary(configuration: Path, output: Path | None) -> None:
 def archive(folder: Path, output: Path | None, no_curves: bool) -> None:
     """Pack the results of a folder into a ZIP file with their checksums, SHA256SUMS.
 
-    The folder must have the list. Each file is compared with it while it is packed; links are
-    followed.
+    The folder must have the list, and agree with it; links are followed.
     """
     from crackfront.sweep.integrity import archive_results
 

@@ -355,10 +355,11 @@ def status(folder: Path, as_json: bool) -> None:
     Shards that run on other machines are shown where the file system passes their locks on; a batch
     system knows them all.
     """
-    from crackfront.sweep.configuration import load_configuration
+    from crackfront.sweep.configuration import load_configuration, refuse_older_layout
     from crackfront.sweep.store import Inventory, Store
 
     store = Store(folder, warn)
+    refuse_older_layout(folder)
     if not store.configuration.is_file():
         raise ValueError(f"{folder} holds no sweep that was begun; name results/<its name>")
     sweep = load_configuration(store.configuration)

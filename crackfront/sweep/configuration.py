@@ -266,6 +266,15 @@ SOURCE = "configuration.path"
 """File of a results folder that states the path of its configuration, relative to the folder."""
 
 
+def refuse_older_layout(results: Path) -> None:
+    """Raise ConfigurationError if results are of a version that kept curves in tar files."""
+    if any((results / "curves").glob("*.tar")):
+        raise ConfigurationError(
+            f"{results} has results in the layout of an older version, which this one does not "
+            "read; start a new folder: rename this one, or name another by --output"
+        )
+
+
 def refuse_other_configuration(path: Path, results: Path) -> None:
     """Raise ConfigurationError if results are those of another configuration that is still there.
 

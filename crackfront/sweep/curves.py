@@ -28,7 +28,7 @@ from crackfront.core.geometry.line import LineState
 from crackfront.core.geometry.sphere import ContactState
 from crackfront.core.outcome import Status
 from crackfront.core.variables import ADHESION, ENERGY, Variable, variables
-from crackfront.data.digests import named_digest
+from crackfront.data.digests import stated_digest
 from crackfront.data.files import (
     UnreadableFileError,
     read_dataset,
@@ -99,7 +99,7 @@ def curve_files(folder: Path, kind: str = "*") -> list[Path]:
     return [
         path
         for path in paths
-        if path.name.startswith((BATCH, MERGED)) and named_digest(path) and path.is_file()
+        if path.name.startswith((BATCH, MERGED)) and path.is_file() and stated_digest(path)
     ]
 
 

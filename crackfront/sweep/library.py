@@ -21,6 +21,7 @@ from crackfront.data.section import movable_text
 from crackfront.sweep.configuration import (
     SOURCE,
     load_configuration,
+    refuse_older_layout,
     refuse_other_configuration,
     results_folder,
 )
@@ -36,18 +37,14 @@ def opened(
 ) -> tuple[Sweep, Store, Provenance]:
     """Sweep of a configuration file, its store, and the origin of what is computed for it.
 
-    ConfigurationError if the results are those of another configuration that is still there;
-    ValueError if they have the layout of earlier versions.
+    ConfigurationError if the results are those of another configuration that is still there,
+    or of an older layout.
     """
     sweep = load_configuration(configuration)
     if output is not None and output.exists() and not output.is_dir():
         raise ValueError(f"the output is {output}, a file; name a folder for the results")
     store = Store(results_folder(configuration) if output is None else output, announce)
-    if any((store.folder / "curves").glob("*.tar")):
-        raise ValueError(
-            f"{store.folder} has results of an earlier version, which are not read; name a new "
-            "folder by --output, or move this one away"
-        )
+    refuse_older_layout(store.folder)
     refuse_other_configuration(configuration, store.folder)
     return sweep, store, provenance(movable_text(configuration))
 

@@ -18,7 +18,7 @@ from crackfront.cli.report import (
     refuse_unwritable,
 )
 from crackfront.cli.results import fit_of_sweep
-from crackfront.data.digests import forget_sums, read_sums
+from crackfront.data.digests import forget_sums
 from crackfront.data.files import read_attributes, write_text
 from crackfront.data.provenance import provenance
 from crackfront.data.records import read_record, write_record
@@ -83,8 +83,7 @@ def draw_figure(data: Path) -> None:
     """Draw a figure, and its animation if it has one, into the folder of its data."""
     shown, record = _figure_and_record(data)
     folder = data.absolute().parents[1]
-    if str(data.absolute().relative_to(folder)) in read_sums(folder):
-        forget_sums(folder)
+    forget_sums(folder)
     for path in save_figure(shown.draw(record), data.with_suffix("")):
         click.echo(f"figure: {path}")
     if shown.animate is not None:

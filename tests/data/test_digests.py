@@ -2,7 +2,6 @@
 
 import hashlib
 from contextlib import contextmanager
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -11,7 +10,7 @@ from click.testing import CliRunner
 
 import crackfront as cf
 from crackfront.cli import main
-from crackfront.data.digests import digest_path, is_whole, named_digest, sums_text
+from crackfront.data.digests import digest_path, is_whole, sums_text
 from crackfront.data.files import UnreadableFileError, read_dataset, write_dataset
 from crackfront.data.provenance import provenance
 
@@ -42,36 +41,18 @@ def test_a_file_is_whole_if_its_name_or_the_file_next_to_it_states_its_checksum(
     for bit in range(8 * len(content)):
         with flipped(path, bit):
             assert not is_whole(path)
-    path.unlink()
-    assert not is_whole(path)
 
 
-@pytest.mark.parametrize(
-    ("name", "digits"),
-    [
-        ("curves-0123456789abcdef.nc", "0123456789abcdef"),
-        ("checkpoint-flat-r3-0123456789abcdef.nc", "0123456789abcdef"),
-        ("main-0123456789abcdef.nc", None),
-        ("batch-0123456789ABCDEF.nc", None),
-        ("batch-1-0123456789abcdef.nc.damaged", None),
-    ],
-)
-def test_only_simulations_and_checkpoints_state_their_checksum_in_their_name(name, digits):
-    assert named_digest(Path("curves") / name) == digits
-
-
-@pytest.mark.parametrize("values", ["numbers", "counts", "letters"])
+@pytest.mark.parametrize("values", ["numbers", "counts"])
 def test_no_flipped_bit_of_an_array_in_a_netcdf_file_is_believed(tmp_path, rng, values):
     known = {
         "numbers": rng.standard_normal(4000),
         "counts": rng.integers(2**60, size=4000),
-        "letters": np.array([f"{number:032x}" for number in rng.integers(2**60, size=900)]),
     }[values]
     path = tmp_path / "array.nc"
     write_dataset(path, xr.Dataset({"a": ("x", known)}), provenance())
     assert np.array_equal(read_dataset(path).a, known)
-    stored = known.astype("S32") if values == "letters" else known
-    start = path.read_bytes().index(stored.tobytes()[:16000])
+    start = path.read_bytes().index(known.tobytes()[:16000])
     for bit in (8 * start + rng.integers(8 * 16000, size=40)).tolist():
         with (
             flipped(path, bit),

@@ -1,4 +1,4 @@
-"""Faults that really happen to a sweep: nothing is lost, and the dataset is the undisturbed one."""
+"""Faults that happen to processes: nothing stored is lost, and the table is the undisturbed one."""
 
 import os
 import shutil
@@ -12,28 +12,21 @@ from pathlib import Path
 import pytest
 import xarray as xr
 
+from crackfront.data.digests import is_whole
 from crackfront.data.provenance import provenance
 from crackfront.simulate.run import run_simulation
 from crackfront.sweep.configuration import load_configuration
+from crackfront.sweep.curves import curve_files
+from crackfront.sweep.library import run_sweep
 from crackfront.sweep.store import Store
-from tests.commands import curves, datasets, slow
+from crackfront.sweep.tasks import run_and_store
+from tests.commands import done, simulated, slow, stored, table
 from tests.commands import run as run_command
 
 TEST = Path(__file__).parents[2] / "config/test.yaml"
-COSTS = {"seconds", "cpu_seconds", "peak_memory"}
 N_SIMULATION = 12
-
-
-def table(path):
-    """An aggregated file, without costs and origin."""
-    found = xr.load_dataset(path).drop_vars(COSTS)
-    found.attrs = {}
-    return found
-
-
-def dataset(configuration, folder):
-    """The same of what a folder holds now."""
-    return table(Store(folder).aggregate(load_configuration(configuration), provenance()))
+BATCH_SECONDS = "0.1"
+"""Time between batches, less than that of a simulation."""
 
 
 def command(configuration, folder, *more):
@@ -50,31 +43,20 @@ def run(*arguments):
     )
 
 
-def stored(folder):
-    """Names and contents of the stored simulations, which say when each was run."""
-    return {name: content for name, content in curves(folder).items() if content is not None}
-
-
-def repaired(configuration, folder):
-    """Sentences about what the workflow sets aside before it plans."""
-    return list(Store(folder).repair(configuration))
-
-
-def rerun(configuration, folder, *more):
-    """Run again what is missing; the number of simulations that were run."""
+def continued(configuration, folder, *more):
+    """How many simulations the same command runs now; then the sweep is complete."""
     before = stored(folder)
-    done = run_command("simulate", configuration, "--output", folder, *more)
-    assert done.exit_code == 0, done.output
+    done("simulate", configuration, "--output", folder, *more)
     after = stored(folder)
-    assert len(after) == load_configuration(configuration).n_simulation
-    return sum(before.get(name) != content for name, content in after.items())
+    assert len(after) == N_SIMULATION
+    return sum(before.get(name) != seconds for name, seconds in after.items())
 
 
 @contextmanager
 def running(configuration, folder, *more, until=3):
     """A run in a process of its own that has stored some simulations."""
     with subprocess.Popen(
-        command(configuration, folder, *more),
+        command(configuration, folder, "--checkpoint", BATCH_SECONDS, *more),
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
         text=True,
@@ -115,8 +97,7 @@ def undisturbed(tmp_path_factory):
     text = text.replace("angles: 128", "angles: 512").replace("realisations: 2", "realisations: 3")
     configuration = folder / "sweep.yaml"
     configuration.write_text(text.replace("step: 0.1", "step: 0.05"))
-    done = run_command("simulate", configuration, "--output", folder / "alone")
-    assert done.exit_code == 0, done.output
+    run_sweep(configuration, folder / "alone", progress=False)
     return configuration, folder / "alone"
 
 
@@ -126,29 +107,70 @@ def configuration(undisturbed):
     return undisturbed[0]
 
 
-@pytest.fixture(scope="module")
-def expected(undisturbed):
-    """The undisturbed dataset of that configuration."""
-    return dataset(*undisturbed)
-
-
 @pytest.fixture
-def same(configuration, expected):
-    """Whether a folder holds that dataset."""
-    return lambda folder: dataset(configuration, folder).identical(expected)
+def same(undisturbed):
+    """Whether the table of what a folder has is the undisturbed one."""
+    configuration, alone = undisturbed
+
+    def compare(folder):
+        done("aggregate", configuration, "--output", folder)
+        return table(folder / "hysteresis.nc").identical(table(alone / "hysteresis.nc"))
+
+    return compare
 
 
-@pytest.fixture
-def same_as_made(made):
-    """Whether a folder holds the undisturbed dataset of the configuration `test`."""
-    expected = table(made.hysteresis)
-    return lambda folder: dataset(TEST, folder).identical(expected)
+@pytest.mark.parametrize("ranks", ["1", pytest.param("2", marks=pytest.mark.mpi)])
+def test_a_kill_at_any_moment_costs_what_is_in_no_batch_and_corrupts_nothing(
+    configuration, same, tmp_path, rng, ranks
+):
+    n_finished = int(rng.integers(1, 5))
+    with running(configuration, tmp_path, "--ranks", ranks, until=n_finished) as process:
+        found = children(process.pid)
+        time.sleep(rng.uniform(0.5, 1))  # some batches
+        process.kill()
+    assert gone(found, 5)
+    assert_whole(tmp_path)
+    kept = stored(tmp_path)
+    assert len(kept) >= n_finished
+    assert continued(configuration, tmp_path, "--ranks", ranks) == N_SIMULATION - len(kept)
+    assert kept.items() <= stored(tmp_path).items()
+    assert_tidy(tmp_path)
+    assert same(tmp_path)
 
 
-@pytest.fixture
-def copied(made, tmp_path):
-    """A copy of the undisturbed folder of the configuration `test`."""
-    return shutil.copytree(made.folder, tmp_path / "copy")
+@pytest.mark.slow
+@pytest.mark.parametrize("ranks", ["1", pytest.param("2", marks=pytest.mark.mpi)])
+def test_ten_kills_at_random_moments_lose_nothing_that_was_stored(
+    configuration, same, tmp_path, rng, ranks
+):
+    kept, folder = {}, tmp_path / "sweep"
+    told = command(configuration, folder, "--checkpoint", BATCH_SECONDS, "--ranks", ranks)
+    for _ in range(10):
+        with subprocess.Popen(told, stdout=subprocess.DEVNULL, process_group=0) as process:
+            try:
+                process.wait(rng.uniform(1, 8))
+            except subprocess.TimeoutExpired:
+                found = children(process.pid)
+                process.kill()
+                assert gone(found, 5)
+        assert_whole(folder)
+        assert kept.items() <= (kept := stored(folder)).items()
+    assert continued(configuration, folder) == N_SIMULATION - len(kept)
+    assert_tidy(folder)
+    assert same(folder)
+
+
+def assert_whole(folder):
+    """All files of finished simulations and all checkpoints are as they were written."""
+    for path in folder.glob("curves/*/[!.]*.nc"):
+        assert is_whole(path), path
+
+
+def assert_tidy(folder):
+    """Each shard has one file of curves; nothing half-written is there, and no checkpoint."""
+    for shard in (folder / "curves").iterdir():
+        [path] = curve_files(shard)
+        assert {*shard.iterdir()} == {path, shard / ".lock"}
 
 
 @pytest.mark.mpi
@@ -167,43 +189,32 @@ def test_a_killed_rank_or_launcher_ends_the_job_and_costs_what_was_running(
     assert "the same command continues with the others" in output
     assert gone(found)
     kept = len(stored(tmp_path))
-    assert 3 <= kept < N_SIMULATION
-    assert rerun(configuration, tmp_path, "--ranks", again) == N_SIMULATION - kept
+    assert 0 < kept < N_SIMULATION
+    assert continued(configuration, tmp_path, "--ranks", again) == N_SIMULATION - kept
     assert same(tmp_path)
 
 
-@pytest.mark.mpi
-@pytest.mark.slow
-def test_ranks_end_with_the_command_that_started_them_and_nothing_is_computed_twice(
-    configuration, same, tmp_path
-):
-    with running(configuration, tmp_path, "--ranks", "2") as process:
-        found = children(process.pid)
-        process.kill()
-    assert gone(found, 5)
-    kept = len(stored(tmp_path))
-    assert 3 <= kept < N_SIMULATION
-    done = run(*command(configuration, tmp_path))
-    assert f"[1/{N_SIMULATION - kept}]" in done.stdout
-    assert same(tmp_path)
-
-
-@pytest.mark.slow
-def test_of_two_controllers_at_the_same_shard_one_waits_for_the_other(
-    configuration, same, tmp_path
+@pytest.mark.parametrize("first", ["ends", slow("is killed")])
+def test_a_second_writer_of_a_shard_waits_and_computes_nothing_twice(
+    configuration, same, tmp_path, first
 ):
     told = command(configuration, tmp_path)
-    # At once, as by a launcher that states nothing.
-    with (
-        subprocess.Popen(told, stdout=subprocess.DEVNULL) as one,
-        subprocess.Popen(told, stdout=subprocess.DEVNULL) as other,
-    ):
+    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
+    with running(configuration, tmp_path, until=2) as one, subprocess.Popen(told, **pipes) as other:
+        os.kill(one.pid, signal.SIGSTOP)  # until the other one has begun
+        waiting = other.stderr.readline()
+        assert waiting.startswith("Warning: another process simulates flat in ")
+        assert "already; waiting for its results" in waiting
+        os.kill(one.pid, signal.SIGCONT if first == "ends" else signal.SIGKILL)
+        one.stdout.read()
         one.wait()
-        other.wait()
-    assert one.returncode == other.returncode == 0
-    packs = (tmp_path / "curves").glob("*.tar")
-    assert len({path.name.rsplit("-", 2)[1] for path in packs}) == 1
-    assert rerun(configuration, tmp_path) == 0
+        kept = stored(tmp_path)
+        output = other.communicate()[0]
+    assert other.returncode == 0
+    if first == "ends":
+        assert (one.returncode, len(kept)) == (0, N_SIMULATION)
+    assert len(simulated(output)) == N_SIMULATION - len(kept)
+    assert kept.items() <= stored(tmp_path).items()
     assert same(tmp_path)
 
 
@@ -229,38 +240,43 @@ def test_a_signal_stores_what_runs_and_ends_cleanly(configuration, same, tmp_pat
     kept = len(stored(tmp_path))
     assert 3 <= kept < N_SIMULATION
     # A simulation that has not come to its first state, or just ends, leaves none.
-    assert len(list((tmp_path / "checkpoints").iterdir())) <= ranks
+    assert len([*tmp_path.glob("curves/*/checkpoint-*.nc")]) <= ranks
     assert not list(tmp_path.rglob(".stop-*"))
-    assert rerun(configuration, tmp_path) == N_SIMULATION - kept
-    assert not any((tmp_path / "checkpoints").iterdir())
+    assert continued(configuration, tmp_path) == N_SIMULATION - kept
+    assert_tidy(tmp_path)
     assert same(tmp_path)
 
 
 @pytest.mark.slow
-def test_a_killed_process_goes_on_from_its_last_checkpoint(same_as_made, tmp_path, monkeypatch):
-    with running(TEST, tmp_path, "--checkpoint", "0", until=1) as process:
-        while not any((tmp_path / "checkpoints").glob("[!.]*.nc")):
+def test_a_killed_process_goes_on_from_its_last_checkpoint(
+    configuration, same, tmp_path, monkeypatch
+):
+    with running(configuration, tmp_path, "--checkpoint", "0", until=1) as process:
+        while not any(tmp_path.glob("curves/*/checkpoint-*.nc")):
             time.sleep(0.01)
         os.kill(process.pid, signal.SIGSTOP)
-        assert f"process {process.pid} on " in run_command("status", tmp_path).stdout
+        assert "running: flat, rough\n" in done("status", tmp_path).stdout
         process.kill()
-    assert run_command("status", tmp_path).stdout.endswith("stores any\n")
-    [checkpoint] = (tmp_path / "checkpoints").glob("[!.]*.nc")
+    assert done("status", tmp_path).stdout.endswith("stores any\n")
+    *_, checkpoint = tmp_path.glob("curves/*/checkpoint-*.nc")
     known = xr.load_dataset(checkpoint)["force"]
     kept = len(stored(tmp_path))
-    resumed = []
+    resumed = {}
 
     def noted(simulation, **how):
-        resumed.append("resume" in how)
+        if "resume" in how:
+            resumed[simulation] = run_simulation(simulation, **how)
+            return resumed[simulation]
         return run_simulation(simulation, **how)
 
     monkeypatch.setattr("crackfront.sweep.tasks.run_simulation", noted)
-    assert rerun(TEST, tmp_path) == 8 - kept
-    assert sum(resumed) == 1
-    ended = datasets(tmp_path)[checkpoint.name]["force"]
+    assert continued(configuration, tmp_path) == N_SIMULATION - kept
+    [(simulation, result)] = resumed.items()
+    assert checkpoint.name.startswith(f"checkpoint-{simulation.stem}-")
+    ended = result.record.states.force
     assert known.size < ended.size
-    assert ended.values[: known.size].tobytes() == known.values.tobytes()
-    assert same_as_made(tmp_path)
+    assert ended[: known.size].tobytes() == known.values.tobytes()
+    assert same(tmp_path)
 
 
 @pytest.fixture
@@ -268,7 +284,7 @@ def small_disk(tmp_path):
     """A file system of its own that holds some of the simulations only."""
     folder = tmp_path / "disk"
     folder.mkdir()
-    mount = ["mount", "-t", "tmpfs", "-o", "size=192k", "tmpfs", str(folder)]
+    mount = ["mount", "-t", "tmpfs", "-o", "size=384k", "tmpfs", str(folder)]
     if os.getuid() != 0 or subprocess.run(mount, capture_output=True, check=False).returncode != 0:
         pytest.skip("only root can mount a file system of a chosen size, and not everywhere")
     yield folder
@@ -276,17 +292,39 @@ def small_disk(tmp_path):
 
 
 def test_a_full_disk_ends_the_run_and_room_lets_it_go_on(configuration, same, small_disk):
-    done = run_command("simulate", configuration, "--output", small_disk / "out")
-    assert done.exit_code == 1
-    assert isinstance(done.exception, SystemExit)
-    assert "the machine could not compute or store it" in done.stderr
-    assert "No space left on device" in done.stderr
+    told = ("simulate", configuration, "--output", small_disk / "out")
+    told += ("--checkpoint", BATCH_SECONDS)
+    result = run_command(*told)
+    assert result.exit_code == 1, result.output
+    assert isinstance(result.exception, SystemExit)
+    [sentence] = [line for line in result.stderr.splitlines() if line.startswith("Error: ")]
+    assert "the machine could not compute or store it" in sentence
+    assert "No space left on device" in sentence
+    assert_whole(small_disk / "out")
     kept = len(stored(small_disk / "out"))
     assert 1 <= kept < N_SIMULATION
-    grow = ["mount", "-o", "remount,size=8m", str(small_disk)]
-    subprocess.run(grow, check=True)
-    assert rerun(configuration, small_disk / "out") == N_SIMULATION - kept
+    subprocess.run(["mount", "-o", "remount,size=8m", str(small_disk)], check=True)
+    assert continued(configuration, small_disk / "out") == N_SIMULATION - kept
     assert same(small_disk / "out")
+
+
+def test_a_disk_that_is_full_when_all_has_run_costs_no_simulation(configuration, same, small_disk):
+    subprocess.run(["mount", "-o", "remount,size=8m", str(small_disk)], check=True)
+    folder, filler = small_disk / "out", small_disk / "filler"
+    sweep, store = load_configuration(configuration), Store(folder)
+    runs = [(one, [*sweep.simulations(one.item)]) for one in sweep.shards()]
+    for _ in run_and_store(store, runs, provenance(), 0.1):
+        pass
+    subprocess.run(["dd", "if=/dev/zero", f"of={filler}"], capture_output=True, check=False)
+    result = run_command("simulate", configuration, "--output", folder)
+    assert result.exit_code != 0
+    assert isinstance(result.exception, SystemExit)
+    [sentence] = result.stderr.splitlines()
+    assert "No space left on device" in sentence
+    assert_whole(folder)
+    filler.unlink()
+    assert continued(configuration, folder) == 0
+    assert same(folder)
 
 
 @pytest.mark.slow
@@ -294,87 +332,26 @@ def test_a_folder_that_is_read_only_is_refused_before_anything_runs(
     configuration, same, small_disk
 ):
     subprocess.run(["mount", "-o", "remount,size=8m", str(small_disk)], check=True)
-    assert run(*command(configuration, small_disk / "out", "--spectrum", "flat")).returncode == 0
-    kept = len(stored(small_disk / "out"))
+    folder = small_disk / "out"
+    done("simulate", configuration, "--output", folder, "--spectrum", "flat")
+    kept = len(stored(folder))
     subprocess.run(["mount", "-o", "remount,ro,size=8m", str(small_disk)], check=True)
-    done = run(*command(configuration, small_disk / "out"))
-    assert done.returncode == 2
-    assert "Read-only file system; check the path and its permissions" in done.stderr
-    assert "[1/" not in done.stdout
-    assert len(done.stderr.splitlines()) == 1
+    result = run_command("simulate", configuration, "--output", folder)
+    assert result.exit_code == 2
+    assert "Read-only file system; check the path and its permissions" in result.stderr
+    assert simulated(result.stdout) == set()
+    assert len(result.stderr.splitlines()) == 1
     subprocess.run(["mount", "-o", "remount,rw,size=8m", str(small_disk)], check=True)
-    assert rerun(configuration, small_disk / "out") == N_SIMULATION - kept
-    assert same(small_disk / "out")
-
-
-@pytest.mark.parametrize(("left", "lost"), [(0, 4), (100, 4), (-4000, 1), (-1000, 0)])
-def test_what_a_truncated_pack_lost_is_computed_anew_and_no_more(same_as_made, copied, left, lost):
-    path = min((copied / "curves").glob("*.tar"))
-    path.write_bytes(path.read_bytes()[:left])
-    assert run_command("verify", copied).exit_code == 1
-    assert repaired(TEST, copied)
-    assert rerun(TEST, copied) == lost
-    assert same_as_made(copied)
-    assert run_command("verify", copied).exit_code == 0
-
-
-FILES = ("configuration.yaml", "hysteresis.nc", "fit.nc", "fit.json", "fit.md", "summary.html")
-FILES += ("figures/loop.png", "figures/factor.pdf", "shards/flat.nc", "curves/*.tar")
-HARM = {
-    "emptied": lambda content: b"",
-    "halved": lambda content: content[: len(content) // 2],
-    "zeroed": lambda content: bytes(len(content)),
-}
-
-
-ALONE = [{name: harm} for name in FILES for harm in HARM]
-ALL = {name: list(HARM)[place % len(HARM)] for place, name in enumerate(FILES)}
-MADE_BY = {"curves": "simulate", "shards": "simulate", "hysteresis": "aggregate", "fit": "fit"}
-MADE_BY |= {"configuration": "fit", "figures": "figures", "summary": "summary"}
-"""Commands that make the files whose names begin so, in the order of the workflow."""
-
-
-@pytest.mark.parametrize("lost", [ALL, *map(slow, ALONE)], ids=lambda lost: " ".join(lost))
-def test_files_that_lost_their_content_are_found_not_archived_and_made_anew(
-    finished, tmp_path, lost
-):
-    folder = shutil.copytree(finished, tmp_path / "sweep")
-    assert {path.name for path in folder.glob("*.*")} <= set(FILES)
-    harmed = [min(folder.glob(name)) for name in lost]
-    for path, harm in zip(harmed, lost.values(), strict=True):
-        path.write_bytes(HARM[harm](path.read_bytes()))
-    verified = run_command("verify", folder)
-    assert verified.exit_code == 1
-    for path in harmed:
-        assert f"damaged: {path.relative_to(folder)}" in verified.output
-    archived = run_command("archive", folder)
-    assert archived.exit_code == 2
-    assert any(f"the first is {path}" in archived.stderr for path in harmed)
-    # What the workflow does before it plans, and the commands of the files then.
-    told = repaired(TEST, folder)
-    assert all(any(str(path) in one for one in told) for path in harmed)
-    parts = {path.relative_to(folder).parts[0].partition(".")[0] for path in harmed}
-    for command in dict.fromkeys(MADE_BY[part] for part in MADE_BY if part in parts):
-        assert run_command(command, TEST, "--output", folder).exit_code == 0
-    assert run_command("verify", folder).exit_code == 0
-    assert run_command("archive", folder).exit_code == 0
-
-
-@pytest.mark.parametrize("content", [b"", b"PK\5\6" + bytes(18), b"text"])
-def test_an_archive_without_content_is_damaged(tmp_path, content):
-    (tmp_path / "sweep.zip").write_bytes(content)
-    found = run_command("verify", tmp_path / "sweep.zip")
-    assert found.exit_code == 1
-    assert "damaged: sweep.zip" in found.output
+    assert continued(configuration, folder) == N_SIMULATION - kept
+    assert same(folder)
 
 
 @pytest.mark.parametrize("moment", [slow(0), 4e9])
-def test_a_clock_that_jumps_makes_nothing_older_or_newer(same_as_made, copied, moment):
-    for path in copied.rglob("*"):
+def test_the_dates_of_files_make_no_simulation_run_again(
+    configuration, same, undisturbed, tmp_path, moment
+):
+    folder = shutil.copytree(undisturbed[1], tmp_path / "sweep")
+    for path in folder.rglob("*"):
         os.utime(path, (moment, moment))
-    assert rerun(TEST, copied) == 0
-    lost = min((copied / "curves").glob("*.tar"))
-    lost.unlink()
-    assert "it lacks 4 curves of its simulations" in repaired(TEST, copied)[-1]
-    assert rerun(TEST, copied) == 4
-    assert same_as_made(copied)
+    assert continued(configuration, folder) == 0
+    assert same(folder)

@@ -1,213 +1,256 @@
-"""The store: what is finished stays, what is missing or broken is found and run."""
+"""The store: what belongs stays, what is missing, older or damaged is made again, and no more."""
 
 import os
+import re
 import shutil
 import subprocess
 import sys
-from dataclasses import replace
+from dataclasses import fields, is_dataclass, replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 import xarray as xr
-from click.testing import CliRunner
-from crackfront.data.packs import members, record
-from crackfront.sweep.result_packs import RowIndex, pack_paths
 from numba.core.errors import NumbaError
 
-from crackfront.cli import main
 from crackfront.cli.results import _loop_example
 from crackfront.core.outcome import DefectError
-from crackfront.core.versions import PHYSICS_VERSION
+from crackfront.core.versions import PHYSICS_VERSION, ROWS_VERSION
 from crackfront.data.bounds import TooLargeError
-from crackfront.data.files import read_dataset
-from crackfront.data.provenance import provenance
+from crackfront.data.digests import is_whole
+from crackfront.data.files import (
+    UnreadableFileError,
+    read_dataset,
+    write_derived,
+    write_named_by_digest,
+)
+from crackfront.data.provenance import Provenance, provenance
 from crackfront.simulate.costs import expected_cost
 from crackfront.simulate.files import write_checkpoint
 from crackfront.simulate.run import run_simulation
 from crackfront.sweep import tasks
 from crackfront.sweep.configuration import load_configuration
+from crackfront.sweep.curves import curve_files
+from crackfront.sweep.library import run_sweep
 from crackfront.sweep.store import Store
-from tests.commands import curves
+from tests.commands import done, refused, run, simulated, stored, table
 
 TEST = Path(__file__).parents[2] / "config/test.yaml"
+LINE = TEST.with_name("line-test.yaml")
 SWEEP = load_configuration(TEST)
-FLAT = tuple(SWEEP.simulations(SWEEP.spectra[0]))
+ALL = {one.label for one in SWEEP.simulations()}
+FLAT, ROUGH = ({label for label in ALL if name in label} for name in ("flat", "rough"))
 
 
 @pytest.fixture
-def store(tmp_path):
-    """An empty store."""
-    return Store(tmp_path / "sweep")
+def configuration(tmp_path):
+    """The configuration `test`, to be changed."""
+    return shutil.copy(TEST, tmp_path / "sweep.yaml")
 
 
 @pytest.fixture
-def whole(made, store):
-    """A copy of the store that was made."""
-    shutil.copytree(made.folder, store.folder)
-    return store
+def folder(made, tmp_path):
+    """A copy of the results that were made of it."""
+    shutil.copytree(made.folder, tmp_path / "sweep")
+    (tmp_path / "sweep/configuration.path").unlink()
+    return tmp_path / "sweep"
 
 
-def run_and_store(store, simulations):
-    """Fill a store and return how the simulations ended."""
-    return list(tasks.run_and_store(store, simulations, provenance("text")))
+def change(configuration, *texts):
+    """Replace texts of a configuration."""
+    content = configuration.read_text(encoding="utf-8")
+    for old, new in zip(texts[::2], texts[1::2], strict=True):
+        assert old in content
+        content = content.replace(old, new)
+    configuration.write_text(content, encoding="utf-8")
 
 
-def finish(store, sweep):
-    """Run a whole sweep to the file of its rows."""
-    for shard in sweep.shards():
-        run_and_store(store, list(sweep.simulations(shard.item, shard.realisations)))
-        store.finish_shard(sweep, shard, provenance("text"))
-    store.aggregate(sweep, provenance("text"))
+def simulate(configuration, folder, *more):
+    """Labels of the simulations that the command runs."""
+    return simulated(done("simulate", configuration, "--output", folder, *more).stdout)
 
 
-@pytest.fixture(scope="module")
-def other(tmp_path_factory):
-    """A store with the same of a sweep of another seed."""
-    store = Store(tmp_path_factory.mktemp("other") / "sweep")
-    finish(store, replace(SWEEP, seed=SWEEP.seed + 1))
-    return store
+def aggregated(configuration, folder):
+    """The table that is made of what a folder has."""
+    done("aggregate", configuration, "--output", folder)
+    return table(folder / "hysteresis.nc")
 
 
-def without(store, *names):
-    """Take files out of the packs of a store, by the ends of their names."""
-    for path in pack_paths(store.curves):
-        kept = [one for one in members(path)[0] if not one.name.endswith(names)]
-        path.write_bytes(b"".join(record(one.name, one.content()) for one in kept))
+def undisturbed(configuration, tmp_path):
+    """The table of a configuration that was run at once."""
+    run_sweep(configuration, tmp_path / "undisturbed", progress=False)
+    return table(tmp_path / "undisturbed/hysteresis.nc")
 
 
-def flip_curve(store, simulation, place=0.5):
-    """Change one bit of a curve."""
-    [member] = RowIndex(store.curves, simulation.spectrum_name, range(9)).curves(simulation.stem)
-    flip(member.path, (member.place + place * member.size + 0.5) / member.path.stat().st_size)
-    return member
+def in_batches(configuration, folder):
+    """Store simulations in a batch each, as a process leaves them that is killed in the end."""
+    sweep, store = load_configuration(configuration), Store(folder)
+    shards = [(one, [*sweep.simulations(one.item, one.realisations)]) for one in sweep.shards()]
+    for _ in tasks.run_and_store(store, shards, provenance("text"), 0.01):
+        pass
+    return sweep, store
 
 
-def test_a_filled_store_lacks_nothing_and_holds_one_curve_a_simulation_in_one_file(store):
-    outcomes = run_and_store(store, FLAT)
-    assert {finished.status for _, finished in outcomes} == {"lost_contact"}
-    assert {simulation for simulation, _ in outcomes} == set(FLAT)
-    assert store.inventory(FLAT).missing == ()
-    assert len(list(store.curves.iterdir())) == 1
-    assert set(curves(store.folder)) == {f"{simulation.stem}.nc" for simulation in FLAT}
+def raise_version(monkeypatch, name):
+    """State a higher version wherever it is looked up; return it."""
+    versions = {"PHYSICS_VERSION": PHYSICS_VERSION, "ROWS_VERSION": ROWS_VERSION}
+    versions[name] += 1
+    for path, module in [*sys.modules.items()]:
+        if path.startswith("crackfront") and hasattr(module, name):
+            monkeypatch.setattr(module, name, versions[name])
+    _, _, *others = Provenance.__init__.__defaults__
+    monkeypatch.setattr(Provenance.__init__, "__defaults__", (*versions.values(), *others))
+    return versions[name]
 
 
-def test_the_longest_simulations_start_first(store):
-    costs = [
-        expected_cost(simulation).seconds for simulation, _ in run_and_store(store, FLAT[::-1])
-    ]
-    assert costs == sorted(costs, reverse=True)
-
-
-def test_a_simulation_is_stored_before_the_next_one_starts(store):
-    filling = tasks.run_and_store(store, FLAT, provenance())
-    first, _ = next(filling)
-    assert set(curves(store.folder)) == {f"{first.stem}.nc"}
-
-
-def test_added_realisations_are_all_that_is_missing(store):
-    run_and_store(store, FLAT)
-    before = curves(store.folder)
-    more = replace(SWEEP, n_realisation=3)
-    missing = store.inventory(more.simulations(more.spectra[0])).missing
-    assert {simulation.realisation for simulation in missing} == {2}
-    run_and_store(store, missing)
-    assert before.items() < curves(store.folder).items()
+NEW = "spectra:\n  - {name: new, short_cutoff: 0.2, hurst: 1.0}\n"
 
 
 @pytest.mark.parametrize(
-    ("change", "part"),
+    ("old", "new", "mark", "n_new"),
     [
-        ({"solver": replace(FLAT[0].solver, tolerance=1e-7)}, "tolerance"),
-        ({"sweep_seed": 2}, "seed"),
-        ({"solver": replace(FLAT[0].solver, tolerance=1e-6)}, "tolerance"),
+        ("realisations: 2", "realisations: 3", "r=2", 4),
+        ("[0.02, 0.1]", "[0.02, 0.05, 0.1]", "e_el=0.05", 4),
+        ("spectra:\n", NEW, "new", 4),
     ],
 )
-def test_what_is_stale_is_told_with_what_has_changed(store, change, part):
-    run_and_store(store, FLAT[:2])
-    inventory = store.inventory([replace(FLAT[0], **change), FLAT[1]])
-    assert inventory.missing[0].label == FLAT[0].label
-    assert inventory.stale_sentence() == f"1 stored simulations are stale: 1 as {part} changed"
-    assert store.inventory(FLAT).stale_sentence() == ""
+def test_what_is_added_is_all_that_runs_and_the_rest_stays(
+    configuration, folder, tmp_path, old, new, mark, n_new
+):
+    before = stored(folder)
+    change(configuration, old, new)
+    ran = simulate(configuration, folder)
+    assert len(ran) == n_new
+    assert all(mark in label for label in ran)
+    assert before.items() < stored(folder).items()
+    assert aggregated(configuration, folder).identical(undisturbed(configuration, tmp_path))
 
 
-def test_the_reason_is_by_the_stored_key_that_is_nearest(store):
-    other = replace(FLAT[0], sweep_seed=2, solver=replace(FLAT[0].solver, tolerance=1e-7))
-    for stored in (FLAT[0], other):
-        run_and_store(store, [stored])
-    for near in (FLAT[0], other):
-        sentence = store.inventory([replace(near, sweep_seed=3)]).stale_sentence()
-        assert sentence == "1 stored simulations are stale: 1 as seed changed"
+@pytest.mark.parametrize(
+    ("old", "new", "n_new", "said"),
+    [
+        ("seed: 1", "seed: 2", 8, "8 with another seed"),
+        ("tolerance: 1e-6", "tolerance: 1e-7", 8, "8 with another tolerance"),
+        ("realisations: 2", "realisations: 1", 0, ""),
+    ],
+)
+def test_what_is_changed_and_changed_back_is_not_mixed_and_runs_once(
+    configuration, folder, tmp_path, old, new, n_new, said
+):
+    first = table(folder / "hysteresis.nc")
+    change(configuration, old, new)
+    assert said in done("plan", configuration, "--output", folder).stdout
+    if n_new:
+        assert "8 of 8 simulations are in no finished shard" in refused(
+            "aggregate", configuration, "--output", folder
+        )
+    assert "the table of another configuration" in refused("fit", configuration, "--output", folder)
+    assert len(simulate(configuration, folder)) == n_new
+    assert aggregated(configuration, folder).identical(undisturbed(configuration, tmp_path))
+    change(configuration, new, old)
+    assert simulate(configuration, folder) == set()
+    assert aggregated(configuration, folder).identical(first)
 
 
-def test_a_new_version_of_the_physics_runs_all_again_and_says_so(store, monkeypatch):
-    run_and_store(store, FLAT[:2])
-    for module in ("store", "result_packs"):
-        monkeypatch.setattr(f"crackfront.sweep.{module}.PHYSICS_VERSION", PHYSICS_VERSION + 1)
-    inventory = store.inventory(FLAT)
-    assert len(inventory.missing) == 4
-    assert inventory.stale_sentence() == (
-        "2 stored simulations are stale: 2 as version of the physics (now 2) changed"
+def test_blocks_of_realisations_may_change_between_runs(configuration, made, tmp_path):
+    folder, count = tmp_path / "sweep", 0
+    for blocks in (["--spectrum", "flat", "--realisations", "1-1"], ["--realisations", "0-0"], []):
+        ran = simulate(configuration, folder, *blocks)
+        assert ran
+        count += len(ran)
+    assert count == 8
+    assert aggregated(configuration, folder).identical(table(made.hysteresis))
+    for block in ("0-0", "1-1"):
+        assert simulate(configuration, folder, "--realisations", block) == set()
+    shutil.rmtree(folder / "curves")
+    for path in (folder / "shards").glob("[!.]*t.nc*"):
+        path.unlink()  # leaves the blocks of one and the whole of the other
+    assert aggregated(configuration, folder).identical(table(made.hysteresis))
+
+
+def test_a_higher_limit_of_sweeps_runs_again_what_reached_the_lower_one(
+    configuration, made, tmp_path
+):
+    change(configuration, "max_sweeps: 100000", "max_sweeps: 10")
+    folder = tmp_path / "sweep"
+    output = done("simulate", configuration, "--output", folder).stdout
+    stopped = set(re.findall(r"\] (.+?): step_limit", output))
+    assert 0 < len(stopped) < 8
+    change(configuration, "max_sweeps: 10", "max_sweeps: 100000")
+    assert simulate(configuration, folder) == stopped
+    found, expected = aggregated(configuration, folder), table(made.hysteresis)
+    assert found.drop_vars("max_sweeps").identical(expected.drop_vars("max_sweeps"))
+    change(configuration, "max_sweeps: 100000", "max_sweeps: 10")
+    assert simulate(configuration, folder) == set()
+
+
+def test_a_new_version_of_the_physics_runs_all_again_says_so_and_mixes_nothing(
+    configuration, folder, tmp_path, monkeypatch
+):
+    before, first = stored(folder), table(folder / "hysteresis.nc")
+    version = raise_version(monkeypatch, "PHYSICS_VERSION")
+    said = f"8 stored simulations belong to an older version of the physics (now {version})"
+    assert said in done("plan", configuration, "--output", folder).stdout
+    assert said in done("status", folder).stdout
+    assert simulate(configuration, folder, "--spectrum", "flat") == FLAT
+    said = said.replace("8", "4")
+    assert said in done("plan", configuration, "--output", folder).stdout
+    assert "4 of 8 simulations are in no fin" in refused(
+        "aggregate", configuration, "--output", folder
     )
+    assert simulate(configuration, folder) == ROUGH
+    assert "older version" not in done("plan", configuration, "--output", folder).stdout
+    assert aggregated(configuration, folder).identical(first)
+    after = stored(folder)
+    assert after.keys() == before.keys()
+    assert not any(after[name] == before[name] for name in before)
 
 
-def test_spectra_of_one_shape_and_two_names_have_rows_of_their_own(store, monkeypatch):
-    def refuse(*_, **__):
-        raise ValueError("too rough")
-
-    twins = [FLAT[0], replace(FLAT[0], spectrum_name="twin")]
-    assert twins[0].key == twins[1].key
-    monkeypatch.setattr(tasks, "run_simulation", refuse)
-    run_and_store(store, twins)
-    rows = [held.row for held in store.stored_results(twins)]
-    assert [row.status for row in rows] == ["refused", "refused"]
-
-
-def test_a_curve_without_a_row_counts(store):
-    run_and_store(store, FLAT)
-    without(store, ".json")
-    assert store.inventory(FLAT).missing == ()
-
-
-def test_a_row_without_its_curve_does_not_count(store):
-    run_and_store(store, FLAT)
-    without(store, f"{FLAT[2].stem}.nc")
-    assert store.inventory(FLAT).missing == (FLAT[2],)
-
-
-def test_what_a_job_reads_before_it_starts_is_that_of_its_own_block(whole, monkeypatch):
-    read = []
-    monkeypatch.setattr(
-        "crackfront.sweep.result_packs.members", lambda path: (read.append(path), members(path))[1]
+def test_a_new_version_of_rows_remakes_them_from_states_and_runs_nothing(
+    configuration, made, tmp_path, monkeypatch
+):
+    folder = tmp_path / "sweep"
+    with monkeypatch.context() as earlier:
+        make = tasks.sweep_row
+        earlier.setattr(tasks, "sweep_row", lambda result: replace(make(result), w_appr=0.0))
+        run_sweep(configuration, folder, progress=False)
+    assert np.all(table(folder / "hysteresis.nc")["w_appr"] == 0)
+    before = stored(folder)
+    raise_version(monkeypatch, "ROWS_VERSION")
+    assert "8 of 8 simulations are in no fin" in refused(
+        "aggregate", configuration, "--output", folder
     )
-    more = replace(SWEEP, n_realisation=3)
-    assert len(whole.inventory(more.simulations(more.spectra[0], range(2, 3))).missing) == 2
-    assert read == []
-    assert whole.inventory(FLAT[:1]).missing == ()
-    assert [path.name.partition(".")[0] for path in read] == ["flat"]
+    assert simulate(configuration, folder) == set()
+    assert stored(folder) == before
+    assert aggregated(configuration, folder).identical(table(made.hysteresis))
 
 
-def test_a_failed_simulation_is_stored_with_its_status(store):
-    limited = replace(FLAT[0], solver=replace(FLAT[0].solver, max_sweeps=1))
-    [(_, finished)] = run_and_store(store, [limited])
-    assert finished.status == "step_limit"
-    assert store.result(limited).record.status.name == "STEP_LIMIT"
-    assert store.inventory([limited]).missing == ()
+@pytest.mark.parametrize(
+    ("error", "status"), [(ValueError("too rough"), "refused"), (DefectError("a jump"), "defect")]
+)
+def test_a_simulation_that_fails_is_a_row_is_not_tried_again_and_costs_no_other(
+    configuration, made, tmp_path, monkeypatch, error, status
+):
+    folder, failing = tmp_path / "sweep", next(iter(SWEEP.simulations()))
 
+    def fail(simulation, **options):
+        if simulation == failing:
+            raise error
+        return run_simulation(simulation, **options)
 
-def test_a_simulation_that_cannot_be_done_is_a_row_and_is_not_tried_again(store):
-    impossible = replace(FLAT[0], elastic_energy=0.999999, sweep_seed=5)
-    energies = [replace(impossible, realisation=number) for number in range(8)]
-    outcomes = run_and_store(store, [*energies, FLAT[0]])
-    refused = [one for one, finished in outcomes if finished.status == "refused"]
-    assert refused
-    assert not {f"{one.stem}.nc" for one in refused} & set(curves(store.folder))
-    assert store.inventory([*energies, FLAT[0]]).missing == ()
-    rows = [held.row for held in store.stored_results(refused)]
-    assert {row.status for row in rows} == {"refused"}
-    for row in rows:
-        assert "full conformity needs less than w_int" in row.status_sentence
-        assert np.isnan(row.w_appr)
+    change(configuration, "realisations: 2", "realisations: 2\nfailed_fraction: 0.5")
+    with monkeypatch.context() as patched:
+        patched.setattr(tasks, "run_simulation", fail)
+        assert simulate(configuration, folder) == ALL
+    assert simulate(configuration, folder) == set()
+    assert done("status", folder).stdout.splitlines()[1].split()[:4] == ["flat", "3", "1", "0"]
+    result = done("aggregate", configuration, "--output", folder)
+    assert f"1 of 8 simulations have no value: 1 {status} (1: {error})" in result.stderr
+    place = {"spectrum": "flat", "amplitude": 0.02, "realisation": 0}
+    found, expected = table(folder / "hysteresis.nc"), table(made.hysteresis)
+    assert np.isnan(found["w_appr"].sel(place))
+    others = found["w_appr"].where(np.isfinite(found["w_appr"]), expected["w_appr"])
+    assert others.equals(expected["w_appr"])
 
 
 OF_THE_MACHINE = {
@@ -223,54 +266,406 @@ OF_THE_MACHINE = {
 
 
 @pytest.mark.parametrize("lacking", OF_THE_MACHINE)
-@pytest.mark.parametrize("place", ["run_simulation", "dataset_content"])
-def test_what_the_machine_could_not_do_is_never_stored_as_what_physics_did(
-    store, monkeypatch, lacking, place
+def test_what_the_machine_could_not_compute_is_no_row_and_runs_again(
+    configuration, tmp_path, monkeypatch, lacking
 ):
-    error = OF_THE_MACHINE[lacking]
+    error, folder = OF_THE_MACHINE[lacking], tmp_path / "sweep"
 
     def fail(*_, **__):
         raise error
 
+    told = ("simulate", configuration, "--output", folder, "--spectrum", "flat")
     with monkeypatch.context() as patched:
-        patched.setattr(tasks, place, fail)
-        with pytest.raises(tasks.NotStoredError, match="; 0 of 2 simulations were st") as caught:
-            run_and_store(store, FLAT[:2])
-    assert str(error) in str(caught.value) or "start fewer ranks" in str(caught.value)
-    assert store.inventory(FLAT[:2]).missing == FLAT[:2]
-    assert {finished.status for _, finished in run_and_store(store, FLAT[:2])} == {"lost_contact"}
+        patched.setattr(tasks, "run_simulation", fail)
+        result = run(*told)
+    assert result.exit_code == 1
+    [sentence] = [line for line in result.stderr.splitlines() if line.startswith("Error: ")]
+    assert str(error) in sentence or "start fewer ranks" in sentence
+    assert stored(folder) == {}
+    assert simulated(done(*told).stdout) == FLAT
 
 
-def test_an_incomplete_sweep_is_not_aggregated(store):
-    run_and_store(store, FLAT[1:])
-    flat, rough = SWEEP.shards()
-    with pytest.raises(ValueError, match=r"1 of 4 simulations are missing .*, the first is flat"):
-        store.finish_shard(SWEEP, flat, provenance())
-    run_and_store(store, list(SWEEP.simulations(rough.item)))
-    store.finish_shard(SWEEP, rough, provenance())
-    with pytest.raises(ValueError, match="4 of 8 simulations are in no finished shard"):
-        store.aggregate(SWEEP, provenance())
-    assert not (store.folder / "hysteresis.nc").exists()
-
-
-@pytest.mark.parametrize("block", [1, 2])
-def test_a_sweep_is_aggregated_from_the_files_of_its_shards_alone_whatever_the_blocks(
-    store, made, block
+@pytest.mark.parametrize("lacking", ["disk", "device", "netCDF"])
+def test_what_the_machine_could_not_store_runs_again(
+    configuration, made, tmp_path, monkeypatch, lacking
 ):
-    shutil.copytree(made.curves, store.curves)
-    for shard in SWEEP.shards(block):
-        store.finish_shard(SWEEP, shard, provenance("text"))
-    shutil.rmtree(store.curves)
-    whole = read_dataset(store.aggregate(SWEEP, provenance("text")))
-    assert whole.drop_attrs().identical(read_dataset(made.hysteresis).drop_attrs())
-    assert [*whole["curve"].values.flat] == [f"{one.stem}.nc" for one in SWEEP.simulations()]
+    error, folder, write = OF_THE_MACHINE[lacking], tmp_path / "sweep", tasks.write_curves
+
+    def fail_after_three(folder, *arguments):
+        if len(curve_files(folder)) == 3:
+            raise error
+        return write(folder, *arguments)
+
+    told = ("simulate", configuration, "--output", folder, "--checkpoint", "0.01")
+    with monkeypatch.context() as patched:
+        patched.setattr(tasks, "write_curves", fail_after_three)
+        result = run(*told)
+    assert result.exit_code == 1, result.output
+    assert isinstance(result.exception, SystemExit)
+    [sentence] = [line for line in result.stderr.splitlines() if line.startswith("Error: ")]
+    assert str(error) in sentence
+    n_stored = len(stored(folder))
+    assert n_stored >= 3
+    assert len(simulate(configuration, folder)) == 8 - n_stored
+    assert aggregated(configuration, folder).identical(table(made.hysteresis))
+
+
+def test_results_of_several_processors_are_reported(configuration, tmp_path, monkeypatch):
+    folder = tmp_path / "sweep"
+    with monkeypatch.context() as patched:
+        patched.setattr("crackfront.data.provenance._arithmetic", lambda: "another")
+        patched.setattr(Provenance, "here", lambda origin: replace(origin, arithmetic="another"))
+        simulate(configuration, folder, "--realisations", "0-0")
+    plan = ("plan", configuration, "--output", folder)
+    assert "may in their last digits" not in done(*plan).stdout
+    simulate(configuration, folder)
+    words = "stored simulations differ in their origin, and may in their last digits: another; "
+    assert words in done(*plan).stdout
+    assert len(xr.load_dataset(folder / "shards/flat.nc").arithmetic_of_rows.split("; ")) == 2
+
+
+def test_plan_and_status_open_shards_and_no_curves_of_finished_ones(configuration, folder):
+    os.truncate(damaged_curves := next((folder / "curves/flat").glob("*.nc")), 100)
+    plan = done("plan", configuration, "--output", folder)
+    assert " 4/4" in plan.stdout
+    status = done("status", folder)
+    for result in (plan, status, done("simulate", configuration, "--output", folder)):
+        assert "damaged" not in result.output
+    assert "8 of 8 simulations have ended" in status.stdout
+    assert damaged_curves.exists()
+
+
+SECTOR = 512
+
+
+def zeroed(content):
+    """Content with a sector of zeros, of those that are none the first beyond the middle."""
+    first = len(content) // 2 // SECTOR * SECTOR
+    while not any(content[first : first + SECTOR]):
+        first += SECTOR
+    return content[:first] + bytes(SECTOR) + content[first + SECTOR :]
+
+
+def flipped(content):
+    """Content with one bit changed, in the metadata at its beginning."""
+    return content[:200] + bytes([content[200] ^ 1]) + content[201:]
+
+
+HARM = {
+    "a zeroed sector": zeroed,
+    "a flipped bit": flipped,
+    "truncated": lambda content: content[: len(content) // 2],
+    "emptied": lambda content: b"",
+}
+
+
+def harm(path, name):
+    """Damage a file."""
+    path.write_bytes(HARM[name](path.read_bytes()))
+    assert not is_whole(path)
+
+
+def assert_set_aside(path, result):
+    """The command has said once that a file is damaged, and renamed it."""
+    words = f"{path} is damaged and was set aside as {path.name}.damaged"
+    assert result.output.count(words) == 1
+    assert path.with_name(f"{path.name}.damaged").exists()
+    assert "Traceback" not in result.output
+
+
+@pytest.mark.parametrize("how", HARM)
+def test_damaged_curves_are_set_aside_and_computed_again_and_no_others(
+    configuration, folder, made, how
+):
+    before = stored(folder)
+    [path] = (folder / "curves/flat").glob("*.nc")
+    harm(path, how)
+    (folder / "shards/flat.nc").unlink()
+    result = done("simulate", configuration, "--output", folder)
+    assert_set_aside(path, result)
+    assert simulated(result.stdout) == FLAT
+    kept = {name for name, seconds in stored(folder).items() if before[name] == seconds}
+    assert {name.partition("-")[0] for name in kept} == {"rough"}
+    assert aggregated(configuration, folder).identical(table(made.hysteresis))
+
+
+@pytest.mark.parametrize("how", HARM)
+def test_a_damaged_batch_costs_its_own_simulations(configuration, made, tmp_path, how):
+    folder = tmp_path / "sweep"
+    in_batches(configuration, folder)
+    path = min((folder / "curves/rough").glob("batch-*.nc"))
+    with xr.open_dataset(path) as dataset:
+        assert dataset.sizes["simulation"] == 1
+    harm(path, how)
+    result = done("plan", configuration, "--output", folder)
+    assert_set_aside(path, result)
+    assert len(ran := simulate(configuration, folder)) == 1
+    assert ran < ROUGH
+    assert aggregated(configuration, folder).identical(table(made.hysteresis))
+
+
+@pytest.mark.parametrize(
+    ("command", "how"), [*zip(["plan", "status", "simulate", "aggregate"], HARM, strict=True)]
+)
+def test_a_damaged_shard_is_set_aside_and_derived_again_without_simulating(
+    configuration, folder, command, how
+):
+    first = table(folder / "hysteresis.nc")
+    path = folder / "shards/rough.nc"
+    harm(path, how)
+    about = [folder] if command == "status" else [configuration, "--output", folder]
+    result = run(command, *about)
+    assert_set_aside(path, result)
+    assert result.exit_code == (2 if command == "aggregate" else 0)
+    assert simulate(configuration, folder) == set()
+    assert is_whole(path)
+    assert aggregated(configuration, folder).identical(first)
+
+
+@pytest.mark.parametrize(
+    ("command", "how"), [*zip(["plan", "fit", "figures", "summary"], HARM, strict=True)]
+)
+def test_a_damaged_table_is_set_aside_and_aggregated_again(configuration, folder, command, how):
+    path = folder / "hysteresis.nc"
+    first = table(path)
+    harm(path, how)
+    result = run(command, configuration, "--output", folder)
+    assert_set_aside(path, result)
+    assert result.exit_code == (0 if command == "plan" else 2)
+    assert "workflow" in result.stderr
+    assert not (folder / "fit.nc").exists()
+    assert aggregated(configuration, folder).identical(first)
+
+
+def test_a_damaged_fit_is_set_aside_and_not_shown(configuration, folder):
+    path = folder / "fit.nc"
+    done("fit", configuration, "--output", folder)
+    first = xr.load_dataset(path).drop_attrs()
+    harm(path, "a zeroed sector")
+    result = run("summary", configuration, "--output", folder)
+    assert_set_aside(path, result)
+    assert result.exit_code == 2
+    done("fit", configuration, "--output", folder)
+    assert xr.load_dataset(path).drop_attrs().identical(first)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["shards/flat.nc", "hysteresis.nc", "curves/flat/curves-*.nc"])
+def test_no_lost_sector_and_no_flipped_bit_is_believed(folder, rng, name):
+    [path] = folder.glob(name)
+    content = path.read_bytes()
+    places = [*range(0, len(content), SECTOR)]
+    assert is_whole(path)
+    for place in places:
+        if any(content[place : place + SECTOR]):
+            path.write_bytes(content[:place] + bytes(SECTOR) + content[place + SECTOR :])
+            assert not is_whole(path), place
+    for place in rng.integers(len(content), size=300):
+        bit = 1 << int(rng.integers(8))
+        path.write_bytes(content[:place] + bytes([content[place] ^ bit]) + content[place + 1 :])
+        assert not is_whole(path), (place, bit)
+
+
+@pytest.mark.parametrize("how", ["missing", "of another file", "emptied"])
+def test_a_shard_without_its_checksum_is_derived_again(configuration, folder, how):
+    beside = folder / "shards/flat.nc.sha256"
+    match how:
+        case "missing":  # as after a kill between both files
+            beside.unlink()
+        case "emptied":
+            beside.write_bytes(b"")
+        case _:
+            shutil.copy(folder / "shards/rough.nc.sha256", beside)
+    first = table(folder / "shards/flat.nc")
+    result = done("simulate", configuration, "--output", folder)
+    assert_set_aside(folder / "shards/flat.nc", result)
+    assert simulated(result.stdout) == set()
+    assert table(folder / "shards/flat.nc").identical(first)
+
+
+@pytest.mark.parametrize("how", [*HARM, "of another load", "without a front"])
+def test_a_checkpoint_that_is_of_no_use_costs_time_and_is_no_refusal(made, tmp_path, how):
+    simulation, kept = next(SWEEP.simulations()), []
+    run_simulation(simulation, keep=lambda make: kept.append(make()))
+    store, [shard, _] = Store(tmp_path), SWEEP.shards()
+    folder, name = store.curve_folder(shard), f"checkpoint-{simulation.stem}"
+    path = write_checkpoint(folder, name, kept[3], provenance())
+    if how in HARM:
+        harm(path, how)
+    else:
+        dataset = xr.load_dataset(path)
+        path.unlink()
+        later = dataset.assign(penetration=dataset["penetration"] + 0.5)
+        wrong = later if how == "of another load" else dataset.drop_vars("turning_front")
+        write_named_by_digest(folder, name, wrong, provenance())
+    [(_, outcome)] = tasks.run_and_store(store, [(shard, [simulation])], provenance("text"))
+    assert outcome.status == "lost_contact"
+    assert outcome.sentence.startswith("begun anew without its checkpoint: ")
+    force, expected = (one.result(SWEEP, simulation).record.states.force for one in (store, made))
+    assert force.tobytes() == expected.tobytes()
+    assert not [*folder.glob("checkpoint-*.nc")]
+    assert len([*folder.glob("checkpoint-*.nc.damaged")]) == (how in HARM)
+
+
+@pytest.mark.parametrize("name", ["w_appr", "w_retr", "e_el"])
+@pytest.mark.parametrize("value", [9.97e36, -1e3])
+def test_a_fit_refuses_rows_with_values_that_no_contact_can_have(folder, name, value):
+    path = folder / "hysteresis.nc"
+    dataset = read_dataset(path)
+    dataset[name][1, 0, 1] = value
+    write_derived(path, dataset, provenance())
+    sentence = refused("fit", TEST, "--output", folder)
+    assert f"{name} " in sentence
+    assert "that no contact can have" in sentence
+    assert not (folder / "fit.nc").exists()
+
+
+MADE = {"shard-flat": "shards/flat.nc", "shard-rough": "shards/rough.nc"}
+MADE |= {"table": "hysteresis.nc", "fit": "fit.nc"}
+
+
+def test_each_stage_writes_what_it_was_asked_for_before_its_results_and_removes_what_it_was(
+    configuration, folder
+):
+    earlier = set()
+    for old, new in (("seed: 1", "seed: 2"), ("realisations: 2", "realisations: 1")):
+        change(configuration, old, new)
+        for command in ("simulate", "aggregate", "fit"):
+            done(command, configuration, "--output", folder)
+        names = {path.name for path in (folder / "requests").iterdir()}
+        assert len(names) == len(MADE)
+        assert names.isdisjoint(earlier)
+        for stage, name in MADE.items():
+            digest = xr.load_dataset(folder / name).attrs["request"]
+            request = folder / "requests" / f"{stage}-{digest}.txt"
+            assert request.stat().st_mtime_ns < (folder / name).stat().st_mtime_ns
+        earlier = names
+    change(configuration, "highest_elastic_energy: 0.1", "highest_elastic_energy: 0.05")
+    done("fit", configuration, "--output", folder)
+    names = {path.name for path in (folder / "requests").iterdir()}
+    assert {name.partition("-")[0] for name in earlier - names} == {"fit"}
+
+
+def test_two_configurations_of_one_name_in_two_folders_do_not_share_results(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    for name, seed in (("a", 1), ("b", 2)):
+        Path(name).mkdir()
+        shutil.copy(TEST, f"{name}/sweep.yaml")
+        change(Path(name, "sweep.yaml"), "seed: 1", f"seed: {seed}")
+    simulate("a/sweep.yaml", "results/sweep", "--spectrum", "flat")
+    for command in ("plan", "simulate", "aggregate", "fit"):
+        sentence = refused(command, "b/sweep.yaml")
+        assert "results/sweep has the results of a/sweep.yaml, another configuration" in sentence
+    shutil.move("a", "moved")
+    done("plan", "b/sweep.yaml")
+
+
+def test_results_in_the_layout_of_an_older_version_are_refused_and_left_alone(folder):
+    (folder / "curves/flat.0-1.host-1-ab.tar").write_bytes(b"")
+    before = sorted(folder.rglob("*"))
+    for command in ("plan", "simulate", "aggregate", "fit"):
+        sentence = refused(command, TEST, "--output", folder)
+        assert "in the layout of an older version" in sentence
+        assert "start a new folder" in sentence
+    assert "start a new folder" in refused("status", folder)
+    assert sorted(folder.rglob("*")) == before
+
+
+RECORDED = "realisations: 2", "realisations: 2\nrecord: [fronts, energy]"
+
+
+@pytest.mark.parametrize("original", [TEST, LINE])
+def test_recorded_fronts_and_energies_survive_batches_and_merging_to_the_last_bit(
+    tmp_path, monkeypatch, original
+):
+    configuration, folder = shutil.copy(original, tmp_path / "sweep.yaml"), tmp_path / "sweep"
+    change(configuration, *RECORDED)
+    failing, *simulations = load_configuration(configuration).simulations()
+
+    def fail(simulation, **options):
+        if simulation == failing:
+            raise ValueError("too rough")
+        return run_simulation(simulation, **options)
+
+    monkeypatch.setattr(tasks, "run_simulation", fail)
+    sweep, store = in_batches(configuration, folder)
+    expected = [run_simulation(simulation).record for simulation in simulations]
+    for kind in ("batch", "curves"):
+        files = {path.name.partition("-")[0] for path in (folder / "curves").glob("*/*.nc")}
+        assert files == {kind}
+        for simulation, record in zip(simulations, expected, strict=True):
+            assert same(store.result(sweep, simulation).record, record)
+            assert record.fronts.shape[0] == record.dissipated_energy.size > 1
+        with pytest.raises(UnreadableFileError, match="which failed"):
+            store.result(sweep, failing)
+        assert simulate(configuration, folder) == set()
+
+
+def same(record, other):
+    """Whether two records, or parts of them, agree in every bit."""
+    if is_dataclass(record):
+        names = [one.name for one in fields(record)]
+        return all(same(getattr(record, name), getattr(other, name)) for name in names)
+    if isinstance(record, np.ndarray):
+        return record.dtype == other.dtype and record.tobytes() == other.tobytes()
+    return record == other
+
+
+@pytest.mark.parametrize("original", [TEST, LINE])
+def test_every_file_opens_without_arguments_and_says_what_its_variables_are(tmp_path, original):
+    configuration, folder = shutil.copy(original, tmp_path / "sweep.yaml"), tmp_path / "sweep"
+    change(configuration, *RECORDED)
+    sweep, store = in_batches(configuration, folder)
+    kept, simulation = [], next(sweep.simulations())
+    run_simulation(simulation, keep=lambda make: kept.append(make()))
+    shard = sweep.shards()[0]
+    write_checkpoint(store.curve_folder(shard), "checkpoint-of-it", kept[3], provenance())
+    assert_described(folder, 2 if original == LINE else 3)
+    for command in ("simulate", "aggregate", "fit"):
+        done(command, configuration, "--output", folder)
+    assert_described(folder, 5)
+
+
+def assert_described(folder, least):
+    """Every file of a folder is netCDF whose variables have units and names, or text."""
+    paths = [path for path in folder.rglob("*") if path.is_file()]
+    files = [path for path in paths if path.suffix == ".nc"]
+    assert len(files) >= least
+    for path in {*paths} - {*files}:
+        path.read_text(encoding="utf-8")
+    for path in files:
+        with xr.open_dataset(path) as dataset:
+            for name, values in dataset.variables.items():
+                assert values.attrs.keys() >= {"units", "long_name"}, (path, name)
+
+
+def test_the_longest_simulations_start_first(tmp_path):
+    shard = SWEEP.shards()[0]
+    runs = [*SWEEP.simulations(shard.item)][::-1]
+    ended = tasks.run_and_store(Store(tmp_path), [(shard, runs)], provenance("text"))
+    costs = [expected_cost(simulation).seconds for simulation, _ in ended]
+    assert costs == sorted(costs, reverse=True)
+
+
+def test_files_take_the_disk_that_a_plan_expects(made):
+    expected = sum(expected_cost(one).disk for one in SWEEP.simulations())
+    size = sum(path.stat().st_size for path in made.folder.glob("curves/*/*.nc"))
+    assert 0.5 < size / expected < 2
+
+
+def test_spectra_of_one_shape_and_two_names_have_results_of_their_own(configuration, tmp_path):
+    change(configuration, "name: rough", "name: twin", "roll_off: 0.2, hurst: 0.8", "hurst: 1.0")
+    folder = tmp_path / "sweep"
+    assert len(simulate(configuration, folder)) == 8
+    found = aggregated(configuration, folder)
+    assert np.array_equal(found["w_retr"][0], found["w_retr"][1])
 
 
 @pytest.mark.slow
 def test_a_table_is_written_in_less_memory_than_its_rows_take(tmp_path):
     script = """
 import resource, sys
-from dataclasses import fields, replace
+from dataclasses import fields, is_dataclass, replace
 from pathlib import Path
 import netCDF4, numpy as np
 from crackfront.analysis.table import SweepRow
@@ -303,52 +698,6 @@ assert netCDF4.get_chunk_cache() == cache
     assert float(done.stdout) < 1  # beside the rows themselves
 
 
-def test_rows_that_stand_in_two_files_count_once(made, store):
-    shutil.copytree(made.folder, store.folder)
-    for shard in SWEEP.shards(1)[:2]:
-        store.finish_shard(SWEEP, shard, provenance())
-    found = store.progress(SWEEP, SWEEP.spectra[0])
-    assert (found.done, found.failed, found.missing) == (4, 0, ())
-    whole = read_dataset(store.aggregate(SWEEP, provenance("text")))
-    assert whole.equals(read_dataset(made.hysteresis))
-
-
-def test_a_row_that_is_lost_is_made_of_its_curve(store, made):
-    shutil.copytree(made.curves, store.curves)
-    without(store, ".json")
-    for shard in SWEEP.shards():
-        store.finish_shard(SWEEP, shard, provenance())
-    whole = read_dataset(store.aggregate(SWEEP, provenance("text")))
-    assert whole.equals(read_dataset(made.hysteresis))
-
-
-def test_what_a_killed_process_left_half_written_is_removed_by_the_next_run(store):
-    run_and_store(store, FLAT[:1])
-    old, new = (store.folder / "curves" / f".{name}.part" for name in ("old", "new"))
-    for path in (old, new):
-        path.write_text("half")
-    moment = old.stat().st_mtime - 7200
-    os.utime(old, (moment, moment))
-    run_and_store(store, FLAT[1:2])
-    assert not old.exists()
-    assert new.exists()
-
-
-def test_a_defect_that_the_solver_finds_in_itself_is_a_row_and_the_others_run(store, monkeypatch):
-    def defective(simulation, **options):
-        if simulation == FLAT[1]:
-            raise DefectError("the solver moved a site past its equilibrium")
-        return run_simulation(simulation, **options)
-
-    monkeypatch.setattr(tasks, "run_simulation", defective)
-    ended = {
-        one: (finished.status, finished.sentence)
-        for one, finished in run_and_store(store, FLAT[:3])
-    }
-    assert ended.pop(FLAT[1]) == ("defect", "the solver moved a site past its equilibrium")
-    assert {status for status, _ in ended.values()} == {"lost_contact"}
-
-
 _STARTS = """
 import os, sys
 from pathlib import Path
@@ -373,7 +722,8 @@ sys.exit(any([os.waitpid(start, 0)[1] for start in starts]))
 
 
 @pytest.mark.slow
-def test_fifty_starts_in_one_instant_do_not_meet(store):
+def test_fifty_starts_in_one_instant_do_not_meet(tmp_path):
+    store = Store(tmp_path)
     command = [sys.executable, "-c", _STARTS, str(store.folder)]
     done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=600)
     assert done.returncode == 0, done.stderr
@@ -381,121 +731,17 @@ def test_fifty_starts_in_one_instant_do_not_meet(store):
     assert not list(store.folder.rglob(".*.part"))
 
 
-def flip(path, place=0.5):
-    """Change one bit of a file."""
-    content = bytearray(path.read_bytes())
-    content[int(place * len(content))] ^= 16
-    path.write_bytes(content)
-
-
-@pytest.mark.parametrize("rows", [True, False])
-@pytest.mark.parametrize("place", [0.0, 0.3, 0.6, 0.999])
-def test_a_curve_with_a_flipped_bit_is_named_and_computed_anew(whole, rows, place):
-    expected = [held.row for held in whole.stored_results(FLAT)]
-    if not rows:
-        without(whole, ".json")
-    member = flip_curve(whole, FLAT[1], place)
-    inventory = whole.inventory(FLAT)
-    assert inventory.missing == (FLAT[1],)
-    [sentence] = inventory.unreadable
-    assert str(member) in sentence
-    assert "is damaged, its checksum is wrong" in sentence
-    run_and_store(whole, inventory.missing)
-    found = [held.row for held in whole.stored_results(FLAT)]
-    assert [row.w_retr for row in found] == [row.w_retr for row in expected]
-
-
-def test_a_valid_file_of_another_simulation_is_not_believed(store):
-    run_and_store(store, FLAT[:2])
-    first, second = (f"{one.stem}.nc" for one in FLAT[:2])
-    [path], content = pack_paths(store.curves), curves(store.folder)[first]
-    path.write_bytes(record(first, content) + record(second, content))
-    inventory = store.inventory(FLAT[:2])
-    assert inventory.missing == (FLAT[1],)
-    assert "is not the result of" in inventory.unreadable[0]
-
-
-def damaging(checkpoint):
-    """What a checkpoint may be: damaged, cut, of another load, or no netCDF at all."""
-    content = checkpoint.read_bytes()
-    yield content[:200] + bytes([content[200] ^ 1]) + content[201:]
-    yield content[: len(content) // 2]
-    with xr.open_dataset(checkpoint) as dataset:
-        wrong = dataset.load()
-    wrong["penetration"] = wrong["penetration"] + 0.5
-    wrong.to_netcdf(checkpoint)
-    yield checkpoint.read_bytes()
-    wrong.drop_vars("turning_front").to_netcdf(checkpoint)
-    yield checkpoint.read_bytes()
-    yield b"text"
-
-
-def test_a_checkpoint_that_is_of_no_use_costs_time_and_no_refusal_is_stored(store):
-    run_and_store(store, FLAT[:1])
-    [expected] = [held.row for held in store.stored_results(FLAT[:1])]
-    kept = []
-    run_simulation(FLAT[0], keep=lambda make: kept.append(make()))
-    path = store.checkpoint(FLAT[0])
-    write_checkpoint(path, kept[3], provenance())
-    for content in list(damaging(path)):
-        shutil.rmtree(store.folder)
-        path.parent.mkdir(parents=True)
-        path.write_bytes(content)
-        [(_, finished)] = run_and_store(store, FLAT[:1])
-        assert finished.status == "lost_contact"
-        assert finished.sentence.startswith("begun anew without its checkpoint: ")
-        [held] = store.stored_results(FLAT[:1])
-        assert held.row.w_appr == expected.w_appr
-        assert held.row.iterations == expected.iterations
-        assert not path.exists()
-
-
-def test_nothing_is_taken_back_of_a_store_that_is_whole(whole, tmp_path):
-    assert list(whole.repair(tmp_path / "none.yaml")) == []
-    assert len(list((whole.folder / "shards").glob("*.nc"))) == 2
-
-
-def test_packs_take_the_disk_that_a_plan_expects(made):
-    expected = sum(expected_cost(one).disk for one in SWEEP.simulations())
-    packed = sum(path.stat().st_size for path in pack_paths(made.curves))
-    assert packed == pytest.approx(expected, rel=0.15)
-
-
-@pytest.mark.parametrize("damage", ["flipped", "removed"])
-def test_the_shard_of_a_curve_that_is_damaged_or_gone_is_taken_back(whole, tmp_path, damage):
-    [path, _] = pack_paths(whole.curves)
-    flip_curve(whole, FLAT[0]) if damage == "flipped" else without(whole, f"{FLAT[0].stem}.nc")
-    told = list(whole.repair(tmp_path / "none.yaml"))
-    assert any(f"{path} is damaged" in line for line in told) == (damage == "flipped")
-    assert "flat.nc is made anew, as it lacks 1 curve of its simulations" in told[-1]
-    assert [path.name for path in (whole.folder / "shards").glob("flat*")] == []
-
-
-def test_the_table_of_another_configuration_is_refused(whole):
-    other = replace(SWEEP, fit=replace(SWEEP.fit, n_bootstrap=7))
-    assert whole.table(other).w_appr.shape == (2, 2, 2)
-    with pytest.raises(ValueError, match="is the table of another configuration than the one gi"):
-        whole.table(replace(SWEEP, n_realisation=1))
-
-
-def command(*arguments):
-    """Exit code and output of a command."""
-    result = CliRunner().invoke(main, [*map(str, arguments)])
-    return result.exit_code, result.output
-
-
-def test_the_loop_that_is_drawn_is_one_with_a_value(whole, tmp_path):
-    """What is refused or a defect has no curve, and the next realisation is drawn."""
-    table = whole.table(SWEEP)
-    first = _loop_example(SWEEP, table)
+def test_the_loop_that_is_drawn_is_one_with_a_value(made):
+    found = made.table(SWEEP)
+    first = _loop_example(SWEEP, found)
     place = [item.name for item in SWEEP.spectra].index(first.spectrum_name)
     amplitude = SWEEP.elastic_energies.index(first.elastic_energy)
-    gone = np.array(table.w_retr)
+    gone = np.array(found.w_retr)
     gone[place, amplitude, 0] = np.nan
-    second = _loop_example(SWEEP, replace(table, w_retr=gone))
+    second = _loop_example(SWEEP, replace(found, w_retr=gone))
     assert (first.realisation, second.realisation) == (0, 1)
     assert replace(second, realisation=0).label == first.label
     gone[place, amplitude] = np.nan
-    third = _loop_example(SWEEP, replace(table, w_retr=gone))
+    third = _loop_example(SWEEP, replace(found, w_retr=gone))
     assert third.spectrum_name == first.spectrum_name
     assert third.elastic_energy != first.elastic_energy
