@@ -401,8 +401,6 @@ def test_files_are_whole_where_locks_are_absent(tmp_path):
         )
         return done.stdout + done.stderr
 
-    assert "checksums: " in output("-m", "crackfront", "checksums", folder)
-    assert "nothing is damaged or missing" in output("-m", "crackfront", "verify", folder)
     told = output("-c", READ, folder / "file.nc")
     remedy = "cannot be locked: No locks available; set HDF5_USE_FILE_LOCKING=FALSE in the envi"
     assert told.count(remedy) == 2

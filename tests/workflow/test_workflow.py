@@ -119,10 +119,11 @@ def test_a_terminal_shows_one_bar_of_the_whole_sweep_and_logs_have_lines(whole_o
 
 
 def zero_sector(path):
-    """Zero 512 bytes in the middle of a file."""
+    """Zero the sector of 512 bytes that has most others."""
     content = bytearray(path.read_bytes())
-    middle = len(content) // 2
-    path.write_bytes(bytes(content[:middle]) + bytes(512) + bytes(content[middle + 512 :]))
+    full = max(range(0, len(content), 512), key=lambda start: 512 - content[start:][:512].count(0))
+    content[full : full + 512] = bytes(len(content[full : full + 512]))
+    path.write_bytes(content)
 
 
 def harm(results):
@@ -411,7 +412,7 @@ def test_make_takes_a_configuration_in_a_folder_of_any_name():
     lines = os.fsdecode(done.stdout).splitlines()
     taken = os.fsdecode(name).replace("$$", "$")
     [checked] = [shlex.split(line) for line in lines if "/crackfront plan " in line]
-    assert checked[-4:] == ["plan", taken, ">", "/dev/null"]
+    assert checked[:4] == ["for", "sweep", "in", taken]
     [planned] = [shlex.split(line) for line in lines if "--config" in line]
     assert planned[-2:] == ["--config", f"sweep={taken}"]
     assert any("results/mine/fit.md" in line for line in lines)
