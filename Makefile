@@ -74,7 +74,8 @@ ended    = echo "$$(date +%s) $(1)" >> .venv/.times
 
 all: env  ## Run the sweep SWEEP to its figure and fit; by default with quick straight fronts
 	@echo $(BEGAN) > .venv/.times; $(call ended,environment)
-	@for sweep in $(call quoted,$(SWEEP)) $(if $(FRONTS),$(call quoted,$(FRONTS))); do $(CHECK) "$$sweep" > /dev/null; done
+	@$(CHECK) $(call quoted,$(SWEEP)) > /dev/null
+	@$(if $(FRONTS),$(CHECK) $(call quoted,$(FRONTS)) > /dev/null)
 	$(SNAKE) --config sweep=$(call quoted,$(SWEEP))
 	@$(call ended,sweep)
 	$(if $(FRONTS),$(SNAKE) --config sweep=$(call quoted,$(FRONTS)))

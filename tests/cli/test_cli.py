@@ -231,6 +231,7 @@ def test_a_plan_tells_what_is_left_to_run_and_what_it_costs(tmp_path, copy_store
 
 def test_a_plan_tells_what_stored_simulations_are_of_no_use_and_why(tmp_path, copy_store):
     copy_store("flat", tmp_path)
+    (tmp_path / "configuration.path").unlink()  # as if that configuration were gone
     finer = tmp_path / "finer.yaml"
     finer.write_text(TEST.read_text().replace("tolerance: 1e-6", "tolerance: 1e-7"))
     for command in (("plan", finer), ("simulate", finer, "--spectrum", "flat")):

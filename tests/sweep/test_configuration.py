@@ -19,10 +19,11 @@ from crackfront.simulate.laws import Settings
 from crackfront.simulate.sphere.steady import SteadySchedule
 from crackfront.sweep.configuration import load_configuration
 from crackfront.sweep.rows import failed_row
-from crackfront.sweep.table import read_table, rows_dataset
+from crackfront.sweep.table import read_table
 from crackfront.topography.options import ReadingOptions
 from crackfront.topography.scan.reading import read_measurements
 from crackfront.topography.spectrum.measures import measured_surface
+from tests.commands import dataset_of_rows
 from tests.yaml_texts import from_yaml, to_yaml
 
 ROOT = Path(__file__).parents[2]
@@ -561,7 +562,7 @@ def test_words_of_a_surface_that_cannot_be_used_are_refused(tmp_path, words, sen
 
 def test_the_table_of_a_sweep_keeps_measured_spectra(film, tmp_path):
     rows = [failed_row(one, "refused", "a test") for one in film.simulations()]
-    dataset = rows_dataset(film, rows, range(film.n_realisation))
+    dataset = dataset_of_rows(film, rows)
     write_dataset(tmp_path / "hysteresis.nc", dataset, provenance("text"))
     table = read_table(tmp_path / "hysteresis.nc")
     measured, flat = (item.spectrum for item in film.spectra)
@@ -580,7 +581,7 @@ def test_the_table_of_a_sweep_in_metres_is_converted_for_the_sphere_that_it_stat
     content["load"] = {"max_penetration": 3e-6, "step": 1e-6}
     sweep = load_configuration(written(tmp_path, to_yaml(content)))
     rows = [failed_row(one, "refused", "a test") for one in sweep.simulations()]
-    table = rows_dataset(sweep, rows, range(sweep.n_realisation))
+    table = dataset_of_rows(sweep, rows)
     found = cf.in_si_units(table)
     assert found.short_cutoff.values == pytest.approx(6e-6, rel=1e-12)
     assert found.short_cutoff.attrs["units"] == "m"
@@ -616,7 +617,7 @@ def test_a_table_without_a_sphere_is_not_converted_without_one(tmp_path):
     sweep = load_configuration(written(tmp_path, GOOD))
     rows = [failed_row(one, "refused", "a test") for one in sweep.simulations()]
     with pytest.raises(ValueError, match="the data do not state a sphere"):
-        cf.in_si_units(rows_dataset(sweep, rows, range(sweep.n_realisation)))
+        cf.in_si_units(dataset_of_rows(sweep, rows))
 
 
 def test_a_flat_spectrum_needs_no_hurst_exponent_and_a_longer_roll_off_does(tmp_path):
