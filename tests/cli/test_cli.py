@@ -347,12 +347,6 @@ def test_a_bad_configuration_is_refused_by_every_command(tmp_path, command):
     assert not (tmp_path / "out").exists()
 
 
-@pytest.mark.parametrize("ranks", [0, -1, "two"])
-def test_bad_numbers_of_ranks_are_refused(tmp_path, ranks):
-    result = run("simulate", TEST, "--ranks", ranks, "--output", tmp_path / "out")
-    assert result.exit_code == 2
-
-
 def test_a_surface_in_si_units_is_refused_as_a_field(tmp_path):
     words = "the data are in SI units; in_reduced_units(data, sphere) converts them"
     surface = cf.random_surface(0.4, 0.05, side=4, error=0.05)
