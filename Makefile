@@ -161,6 +161,7 @@ timings: env  ## For a release: what depends on the machine (an hour)
 	$(IN_ENV) .venv/bin/python -m studies speed solvers --keep
 	$(IN_ENV) .venv/bin/python -m studies speed profile --keep
 	$(IN_ENV) .venv/bin/python -m studies speed needs --keep
+	$(IN_ENV) .venv/bin/python -m studies speed costs --keep
 	$(IN_ENV) .venv/bin/python -m studies speed scaling --keep
 	$(IN_ENV) .venv/bin/python -m studies pages
 

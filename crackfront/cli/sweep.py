@@ -28,9 +28,8 @@ from crackfront.data.bounds import COUNT, Range, counted, in_bytes, refuse_beyon
 # The rest is imported where it is used, so that --help does not wait for it.
 if TYPE_CHECKING:
     from crackfront.data.provenance import Provenance
-    from crackfront.simulate.costs import Cost
     from crackfront.simulate.simulation import Simulation
-    from crackfront.sweep.expectation import Expectation
+    from crackfront.sweep.advice import Expectation
     from crackfront.sweep.parallel import Ranks
     from crackfront.sweep.store import Inventory, MissingSimulations, Store
     from crackfront.sweep.sweep import Shard, Sweep
@@ -52,14 +51,12 @@ output_option = click.option(
 @as_json
 def plan(configuration: Path, output: Path | None, block: int | None, as_json: bool) -> None:
     """Print what a sweep would run for each spectrum, what is stored and what the rest costs."""
-    from crackfront.sweep.expectation import expectations, steady_part_warnings
+    from crackfront.sweep.advice import expectations, steady_part_warnings
     from crackfront.sweep.library import opened
-    from crackfront.sweep.postprocessing import postprocessing_costs
 
     sweep, store, _ = opened(configuration, output, warn)
     store.set_aside_damaged()
-    shards, postprocessing = sweep.shards(block), postprocessing_costs(sweep)
-    expected = expectations(sweep)
+    shards, expected = sweep.shards(block), expectations(sweep)
     progress = {item.name: store.progress(sweep, item) for item in sweep.spectra}
     missing = [one for found in progress.values() for one in found.missing]
     n_missing = sum(found.n_missing for found in progress.values())
@@ -76,9 +73,8 @@ def plan(configuration: Path, output: Path | None, block: int | None, as_json: b
         "expected": expected,
         "doubts": (warnings := [*steady_part_warnings(sweep)]),
         **_costs(missing),
-        "late": postprocessing,
     }
-    lines = _plan_lines(sweep, store, shards, progress, expected, postprocessing)
+    lines = _plan_lines(sweep, store, shards, progress, expected)
     echo_answer(content, [*lines, *warnings], as_json=as_json)
 
 
@@ -88,7 +84,6 @@ def _plan_lines(
     shards: Sequence[Shard],
     progress: Mapping[str, Inventory],
     expected: Mapping[str, Sequence[Expectation]],
-    postprocessing: Mapping[str, Cost],
 ) -> Iterator[str]:
     """Tables of the spectra of a sweep and of what is left to run, and its sizes."""
     from crackfront.sweep.store import Inventory, mixture_sentence
@@ -124,12 +119,8 @@ def _plan_lines(
     yield from filter(None, (*everything.sentences(), mixture_sentence(everything.arithmetic)))
     yield ""
     left.append(_left("all", len(shards), everything.missing))
-    for name, cost in postprocessing.items():
-        hours, seconds = f"{cost.seconds / 3600:.3g}", f"{cost.seconds:.3g}"
-        left.append((name, "-", "-", hours, seconds, f"{cost.memory / 1e6:.0f}", "-"))
-    yield from table(
-        ("to run", "shards", "simulations", "core hours", "longest s", "MB a rank", "MB disk"), left
-    )
+    header = "to run", "shards", "simulations", "core hours", "longest s", "MB a rank"
+    yield from table(header, left)
     energies = ", ".join(f"{energy:g}" for energy in sweep.elastic_energies)
     yield f"\n{len(sweep.elastic_energies)} amplitudes e_el/w_int: {energies}"
     lowest, highest = sweep.fit.lowest_elastic_energy, sweep.fit.highest_elastic_energy
@@ -147,18 +138,15 @@ def _costs(missing: Sequence[MissingSimulations]) -> dict[str, float]:
         "core_seconds": sum(count * cost.seconds for cost, count in costs),
         "longest_seconds": max((cost.seconds for cost, _ in costs), default=0.0),
         "bytes_a_rank": max((cost.memory for cost, _ in costs), default=0.0),
-        "bytes_on_disk": sum(count * cost.disk for cost, count in costs),
     }
 
 
 def _left(name: str, n_shard: int, missing: Sequence[MissingSimulations]) -> tuple[str, ...]:
     """Row of what the missing simulations of a spectrum, or of all, are expected to cost."""
-    core, longest, memory, disk = _costs(missing).values()
+    core, longest, memory = _costs(missing).values()
     n_missing = sum(item.realisations.size for item in missing)
-    return (
-        *(name, str(n_shard), str(n_missing), f"{core / 3600:.3g}", f"{longest:.3g}"),
-        *(f"{memory / 1e6:.0f}", f"{disk / 1e6:.3g}"),
-    )
+    cells = f"{core / 3600:.3g}", f"{longest:.3g}", f"{memory / 1e6:.0f}"
+    return name, str(n_shard), str(n_missing), *cells
 
 
 def _span(values: Sequence[float | None], form: str = "{:.0f}") -> str:
@@ -229,7 +217,7 @@ def _simulate(
     workers: Ranks,
 ) -> None:
     """Run what some shards lack, and derive their rows."""
-    from crackfront.sweep.expectation import steady_part_warnings
+    from crackfront.sweep.advice import steady_part_warnings
     from crackfront.sweep.library import opened, write_source
     from crackfront.sweep.store import Inventory
 

@@ -20,8 +20,6 @@ from crackfront.sweep.configuration import (
     refuse_other_configuration,
     results_folder,
 )
-from crackfront.sweep.jobs import cores_of_job
-from crackfront.sweep.postprocessing import postprocessing_costs
 from crackfront.sweep.requests import (
     Request,
     fit_request,
@@ -103,32 +101,24 @@ FIT_REQUEST = requested(RESULTS, fit_request(SWEEP))
 SWEEP_FIGURES = ["hysteresis", "loop", "factor"]
 PAPER = f"results/figures/{SCALE}"
 ACCURACY = "results/accuracy"
-POSTPROCESSING = postprocessing_costs(SWEEP)
 FIRSTS = {item.name: SWEEP.one_per_amplitude(item) for item in SWEEP.spectra}
 RANK_BYTES = max(
     expected_cost(one).memory for firsts in FIRSTS.values() for one in firsts
 )
-TIMES = {
-    name: [expected_cost(one).seconds for one in FIRSTS[shard.item.name]]
+SECONDS = {
+    name: len(shard.realisations)
+    * sum(expected_cost(one).seconds for one in FIRSTS[shard.item.name])
     for name, shard in SHARDS.items()
 }
-SECONDS = {
-    name: len(shard.realisations) * sum(TIMES[name]) for name, shard in SHARDS.items()
-}
 
 
-def chosen_ranks():
-    """Cores of a job of those shards that are left."""
-    left = [name for name in SHARDS if not Path(RESULTS, f"shards/{name}.nc").exists()]
-    return cores_of_job(
-        [SECONDS[name] for name in left or SHARDS],
-        [max(TIMES[name]) for name in left or SHARDS],
-        workflow.resource_settings.cores or 1,
-        memory_at_hand() / RANK_BYTES,
-    )
+def shard_cores(cores):
+    """One core where twice as many shards are left and memory holds them, else all in turn."""
+    n_left = sum(not Path(RESULTS, f"shards/{name}.nc").exists() for name in SHARDS)
+    return 1 if n_left >= 2 * cores and cores * RANK_BYTES < memory_at_hand() else cores
 
 
-RANKS = config.get("ranks", chosen_ranks())
+RANKS = config.get("ranks", shard_cores(workflow.resource_settings.cores or 1))
 # Names, as reading this must not import what computes the figures.
 ANIMATED = ["beyond-animation"]
 
