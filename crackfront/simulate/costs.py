@@ -19,7 +19,7 @@ from crackfront.simulate.laws import Settings
 from crackfront.simulate.numerics import Numerics
 from crackfront.simulate.simulation import Simulation
 
-_RUN_SECONDS = 2e-3
+_RUN_SECONDS = 3e-3
 """Time to set up and evaluate a simulation. (Units: s)"""
 
 _POINT_SECONDS = 4.6e-9
