@@ -10,7 +10,7 @@ import pytest
 from click.testing import CliRunner
 
 from crackfront.analysis.law import law_value, shipped_law
-from crackfront.data.files import write_dataset
+from crackfront.data.files import write_derived
 from crackfront.data.provenance import provenance
 from crackfront.sweep.configuration import load_configuration
 from crackfront.sweep.rows import failed_row
@@ -76,7 +76,7 @@ def test_the_table_of_another_configuration_is_refused(tmp_path, monkeypatch, ve
     sweep = load_configuration(path)
     rows = [failed_row(one, "refused", "a test") for one in sweep.simulations()]
     table = dataset_of_rows(sweep, rows)
-    write_dataset(Path("results/sweep/hysteresis.nc"), table, provenance(text))
+    write_derived(Path("results/sweep/hysteresis.nc"), table, provenance(text))
     path.write_text(re.sub(r"^seed: \d+", "seed: 77", text, flags=re.M))
     done = CliRunner().invoke(main, ["law", verb, str(path), "--output", "out"])
     assert done.exit_code == 2
