@@ -248,7 +248,7 @@ BAD = {
     ),
     "load without end": (("step: 0.1", "step: 1e-14"), "of memory; here are"),
     "years": (
-        ("angles_per_cutoff: 2", "angles: 1900000000"),
+        ("angles_per_cutoff: 2", "angles: 60000000000"),
         "years of processor time; use fewer, coarser or larger load steps",
     ),
     "unknown key": (
