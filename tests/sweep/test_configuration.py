@@ -247,10 +247,6 @@ BAD = {
         "fronts of 1e+12 sites would need 512 TB of memory; here are",
     ),
     "load without end": (("step: 0.1", "step: 1e-14"), "of memory; here are"),
-    "years": (
-        ("angles_per_cutoff: 2", "angles: 60000000000"),
-        "years of processor time; use fewer, coarser or larger load steps",
-    ),
     "unknown key": (
         ("realisations: 2", "realisation: 2\nrealisations: 2"),
         "unknown key realisation; did you mean realisations?",
