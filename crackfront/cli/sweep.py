@@ -30,8 +30,9 @@ if TYPE_CHECKING:
     from crackfront.data.provenance import Provenance
     from crackfront.simulate.simulation import Simulation
     from crackfront.sweep.advice import Expectation
+    from crackfront.sweep.inventory import Inventory, MissingSimulations
     from crackfront.sweep.parallel import Ranks
-    from crackfront.sweep.store import Inventory, MissingSimulations, Store
+    from crackfront.sweep.store import Store
     from crackfront.sweep.sweep import Shard, Sweep
 
 configuration_argument = click.argument("configuration", type=FILE)
@@ -86,7 +87,7 @@ def _plan_lines(
     expected: Mapping[str, Sequence[Expectation]],
 ) -> Iterator[str]:
     """Tables of the spectra of a sweep and of what is left to run, and its sizes."""
-    from crackfront.sweep.store import Inventory, mixture_sentence
+    from crackfront.sweep.inventory import Inventory, mixture_sentence
 
     everything = sum(progress.values(), Inventory())
     lateral, unit = (1.0, "") if sweep.scales is None else (sweep.scales.lateral, " (m)")
@@ -218,8 +219,8 @@ def _simulate(
 ) -> None:
     """Run what some shards lack, and derive their rows."""
     from crackfront.sweep.advice import steady_part_warnings
+    from crackfront.sweep.inventory import Inventory
     from crackfront.sweep.library import opened, write_source
-    from crackfront.sweep.store import Inventory
 
     sweep, store, origin = opened(configuration, output, warn)
     items = sweep.spectra if spectrum is None else (sweep.named(spectrum),)
@@ -299,7 +300,8 @@ def status(folder: Path, as_json: bool) -> None:
     system knows them all.
     """
     from crackfront.sweep.configuration import load_configuration, refuse_older_layout
-    from crackfront.sweep.store import Inventory, Store
+    from crackfront.sweep.inventory import Inventory
+    from crackfront.sweep.store import Store
 
     store = Store(folder, warn)
     refuse_older_layout(folder)

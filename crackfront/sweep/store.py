@@ -10,11 +10,9 @@ from __future__ import annotations
 import contextlib
 import fcntl
 import itertools
-import json
 import time
-from collections import Counter
-from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import IO, Any
 
@@ -48,9 +46,16 @@ from crackfront.sweep.curves import (
     stored_rows,
     write_curves,
 )
+from crackfront.sweep.inventory import (
+    Inventory,
+    LocatedRows,
+    inventory_of_rows,
+    is_older,
+    located_rows,
+)
 from crackfront.sweep.parallel import stop_is_requested
 from crackfront.sweep.requests import FOLDER, Request, shard_request, table_request
-from crackfront.sweep.rows import AT_LIMIT, COMPLETE, STATUSES, row_columns, sweep_row
+from crackfront.sweep.rows import row_columns, sweep_row
 from crackfront.sweep.shards import (
     ShardSummary,
     covering,
@@ -64,155 +69,12 @@ from crackfront.sweep.table import TABLE_REQUEST, read_table, write_hysteresis
 Announce = Callable[[str], None]
 """Called with a sentence on a damaged file, or on another process that is waited for."""
 
-_NOWHERE = -1
-"""Place of a simulation that no file has."""
-
 _WAIT_SECONDS = 0.5
 """Time between two attempts to lock a shard that another process holds. (Units: s)"""
 
 _MOST_MERGED_BYTES = 5e8
 """Size of the files of a shard beyond which batches stay as they are. Merging holds all of them in
 memory, and files of this size are few enough. (Units: byte)"""
-
-
-@dataclass(frozen=True, slots=True)
-class MissingSimulations:
-    """Realisations of a series that are to be simulated."""
-
-    first: Simulation
-    """The first realisation, which states the parameters of all."""
-    realisations: NDArray[np.int64]
-
-    def simulations(self) -> Iterator[Simulation]:
-        """All of them."""
-        for number in self.realisations.tolist():
-            yield replace(self.first, realisation=number)
-
-    @property
-    def seconds(self) -> float:
-        """Processor time that they are expected to take (Units: s)."""
-        return expected_cost(self.first).seconds * self.realisations.size
-
-
-@dataclass(frozen=True, slots=True)
-class Inventory:
-    """What a store has of some simulations, and what it lacks and why."""
-
-    done: int = 0
-    failed: int = 0
-    """Simulations with values, and those that ended without."""
-    missing: tuple[MissingSimulations, ...] = ()
-    """What is to be simulated."""
-    older: int = 0
-    """Missing simulations that are stored of an older version of the physics."""
-    remade: int = 0
-    """Stored simulations whose rows are of an older version, and made anew from their states."""
-    changed: Counter[str] = field(default_factory=Counter)
-    """Stored simulations of other parameters, by the names of what differs."""
-    arithmetic: frozenset[str] = frozenset()
-    """Processors and packages that computed what is stored."""
-    cpu_seconds: float = 0.0
-    expected_seconds: float = 0.0
-    """Processor time of what is stored, and what was expected for it. (Units: s)"""
-
-    def __add__(self, other: Inventory) -> Inventory:
-        """Inventory of the simulations of both."""
-        return Inventory(
-            self.done + other.done,
-            self.failed + other.failed,
-            self.missing + other.missing,
-            self.older + other.older,
-            self.remade + other.remade,
-            self.changed + other.changed,
-            self.arithmetic | other.arithmetic,
-            self.cpu_seconds + other.cpu_seconds,
-            self.expected_seconds + other.expected_seconds,
-        )
-
-    @property
-    def stored(self) -> int:
-        """Number of simulations that have ended."""
-        return self.done + self.failed
-
-    @property
-    def n_missing(self) -> int:
-        """Number of simulations that are to be run."""
-        return sum(item.realisations.size for item in self.missing)
-
-    def simulations(self) -> list[Simulation]:
-        """Simulations that are to be run."""
-        return [one for item in self.missing for one in item.simulations()]
-
-    def sentences(self) -> list[str]:
-        """Why simulations run again although the folder has some of their names."""
-        found = []
-        if self.older:
-            found.append(
-                f"{self.older} stored simulations belong to an older version of the physics (now "
-                f"{PHYSICS_VERSION}) and run again"
-            )
-        if self.remade:
-            found.append(
-                f"{self.remade} stored simulations have rows of an older version (now "
-                f"{ROWS_VERSION}), which are made again from their states"
-            )
-        if self.changed:
-            listed = ", ".join(f"{n} with another {name}" for name, n in self.changed.most_common())
-            found.append(f"stored simulations of other parameters stay unused: {listed}")
-        return found
-
-
-@dataclass(frozen=True, slots=True)
-class LocatedRows:
-    """Where files have the simulations of some series and consecutive realisations."""
-
-    files: tuple[StoredRows, ...]
-    series: tuple[str, ...]
-    realisations: range
-    file: NDArray[np.int64]
-    place: NDArray[np.int64]
-    """Number of the file, -1 where none has the simulation, and the place of its row in it, each
-    (n_series, n_realisation)."""
-
-    @property
-    def missing(self) -> NDArray[np.bool_]:
-        """Which simulations no file has, (n_series, n_realisation)."""
-        return self.file == _NOWHERE
-
-    @property
-    def n_older_rows(self) -> int:
-        """Number of simulations whose rows are of an older version."""
-        older = [number for number, rows in enumerate(self.files) if _is_older(rows)]
-        return int(np.count_nonzero(np.isin(self.file, older)))
-
-    def column(self, name: str) -> NDArray[Any]:
-        """Values of a column of the simulations that are there, series by series."""
-        parts = [rows.columns[name] for rows in self.files]
-        starts = np.cumsum([0, *map(len, parts)])
-        there = ~self.missing
-        return np.asarray(np.concatenate(parts)[starts[self.file[there]] + self.place[there]])
-
-
-def located_rows(
-    files: Iterable[StoredRows], series: Sequence[str], realisations: range, max_sweeps: int
-) -> LocatedRows:
-    """Where files have simulations at such a limit of sweeps, of this version of the physics."""
-    # Rows that need not be remade come first.
-    usable = [rows for rows in files if rows.physics_version == PHYSICS_VERSION]
-    usable.sort(key=lambda rows: rows.rows_version != ROWS_VERSION)
-    shape = len(series), len(realisations)
-    file, place = np.full(shape, _NOWHERE), np.full(shape, _NOWHERE)
-    for number, rows in enumerate(usable):
-        stopped = rows.columns["status"] == STATUSES.index(AT_LIMIT)
-        counts = ~(stopped & (rows.columns["max_sweeps"] < max_sweeps))
-        counts &= (rows.realisation >= realisations.start) & (rows.realisation < realisations.stop)
-        for row, one in enumerate(series):
-            places = np.flatnonzero(counts & (rows.series == one))
-            columns = rows.realisation[places] - realisations.start
-            free = file[row, columns] == _NOWHERE
-            file[row, columns[free]] = number
-            place[row, columns[free]] = places[free]
-    return LocatedRows(tuple(usable), tuple(series), realisations, file, place)
 
 
 @dataclass(frozen=True, slots=True)
@@ -290,30 +152,10 @@ class Store:
 
     def inventory(self, sweep: Sweep, item: NamedSpectrum, realisations: range) -> Inventory:
         """What the files of curves have and lack of a spectrum and block."""
-        firsts = sweep.one_per_amplitude(item)
         rows = self._stored_rows(item, realisations)
-        limit = sweep.numerics.max_sweeps
-        located = located_rows(rows, sweep.series(item), realisations, limit)
-        missing, numbers = located.missing, np.array(realisations)
-        older, changed = _unused(rows, firsts, missing, realisations)
-        lacking = [
-            MissingSimulations(first, numbers[row])
-            for first, row in zip(firsts, missing, strict=True)
-            if row.any()
-        ]
-        found = Inventory(missing=tuple(lacking), older=older, changed=changed)
-        if missing.all():
-            return found
-        n_done = int(np.isin(located.column("status"), _COMPLETE_PLACES).sum())
-        costs = [expected_cost(first).seconds for first in firsts]
-        return found + Inventory(
-            n_done,
-            int(np.count_nonzero(~missing)) - n_done,
-            remade=located.n_older_rows,
-            arithmetic=frozenset(located.column("arithmetic").tolist()),
-            cpu_seconds=float(np.nansum(located.column("cpu_seconds"))),
-            expected_seconds=float(np.sum((~missing).sum(axis=1) * costs)),
-        )
+        series, limit = sweep.series(item), sweep.numerics.max_sweeps
+        located = located_rows(rows, series, realisations, limit)
+        return inventory_of_rows(rows, located, sweep.one_per_amplitude(item))
 
     def shard_summaries(self, item: NamedSpectrum) -> list[ShardSummary]:
         """Attributes of the files of shards of a spectrum that are whole."""
@@ -436,7 +278,7 @@ class Store:
                 f"{self.curve_folder(shard)}; run the same command again"
             )
         columns = {item.name: located.column(item.name) for item in variables(SweepRow)}
-        remade = [number for number, rows in enumerate(located.files) if _is_older(rows)]
+        remade = [number for number, rows in enumerate(located.files) if is_older(rows)]
         for number in remade:
             self._remake(sweep, shard, located, number, columns)
         arithmetic = {*located.column("arithmetic").tolist()}
@@ -485,7 +327,7 @@ class Store:
         paths = [located.files[number].path for number in used]
         if len(paths) == 1 and paths[0].parent == folder and paths[0].name.startswith(MERGED):
             rows = located.files[used[0]]
-            if not _is_older(rows) and len(rows.series) == located.file.size:
+            if not is_older(rows) and len(rows.series) == located.file.size:
                 return
         if sum(path.stat().st_size for path in paths) > _MOST_MERGED_BYTES:
             return
@@ -581,46 +423,6 @@ class Store:
         return self.hysteresis
 
 
-_COMPLETE_PLACES = [STATUSES.index(word) for word in COMPLETE]
-
-
-def _is_older(rows: StoredRows) -> bool:
-    """Whether rows are of an older version, and made anew from states."""
-    return rows.rows_version != ROWS_VERSION
-
-
-def _unused(
-    rows: Iterable[StoredRows],
-    firsts: Sequence[Simulation],
-    missing: NDArray[np.bool_],
-    realisations: range,
-) -> tuple[int, Counter[str]]:
-    """How many missing simulations are stored of older physics, and what others differ in."""
-    older, changed = 0, Counter[str]()
-    wanted = {first.series for first in firsts}
-    for stored in rows:
-        within = np.isin(stored.realisation, realisations)
-        if stored.physics_version != PHYSICS_VERSION:
-            for first, lacking in zip(firsts, missing, strict=True):
-                again = np.isin(stored.realisation, np.array(realisations)[lacking])
-                older += int(np.count_nonzero(again & (stored.series == first.series)))
-            continue
-        for series, parameters in stored.parameters.items():
-            if series not in wanted and missing.any():
-                names = min((_differences(first, parameters) for first in firsts), key=len)
-                count = int(np.count_nonzero(within & (stored.series == series)))
-                changed[" and ".join(names)] += count
-    return older, +changed
-
-
-def _differences(simulation: Simulation, parameters: dict[str, Any]) -> list[str]:
-    """Names of the parameters in which a simulation differs from stored ones."""
-    # As JSON reads it back.
-    now = json.loads(json.dumps(simulation.parameters))
-    names = sorted(now.keys() | parameters.keys())
-    return [name for name in names if now.get(name) != parameters.get(name)]
-
-
 def write_request(results: Path, request: Request) -> None:
     """Write the file of a request among results unless it is there; remove earlier ones."""
     folder = results / FOLDER
@@ -629,11 +431,3 @@ def write_request(results: Path, request: Request) -> None:
             path.unlink()
     if not (folder / request.name).is_file():
         write_text(folder / request.name, request.text)
-
-
-def mixture_sentence(arithmetic: Collection[str]) -> str:
-    """Sentence on results of several processors or packages; empty if all are of one."""
-    if len(arithmetic) < 2:
-        return ""
-    listed = "; ".join(sorted(arithmetic))
-    return f"stored simulations differ in their origin, and may in their last digits: {listed}"

@@ -33,7 +33,7 @@ from crackfront.sweep.configuration import load_configuration
 from crackfront.sweep.curves import curve_files
 from crackfront.sweep.library import run_sweep
 from crackfront.sweep.store import Store
-from tests.commands import done, refused, run, simulated, stored, table
+from tests.commands import done, refused, run, simulated, slow, stored, table
 
 TEST = Path(__file__).parents[2] / "config/test.yaml"
 LINE = TEST.with_name("line-test.yaml")
@@ -110,8 +110,8 @@ NEW = "spectra:\n  - {name: new, short_cutoff: 0.2, hurst: 1.0}\n"
     ("old", "new", "mark", "n_new"),
     [
         ("realisations: 2", "realisations: 3", "r=2", 4),
-        ("[0.02, 0.1]", "[0.02, 0.05, 0.1]", "e_el=0.05", 4),
-        ("spectra:\n", NEW, "new", 4),
+        slow("[0.02, 0.1]", "[0.02, 0.05, 0.1]", "e_el=0.05", 4),
+        slow("spectra:\n", NEW, "new", 4),
     ],
 )
 def test_what_is_added_is_all_that_runs_and_the_rest_stays(
@@ -130,8 +130,8 @@ def test_what_is_added_is_all_that_runs_and_the_rest_stays(
     ("old", "new", "n_new", "said"),
     [
         ("seed: 1", "seed: 2", 8, "8 with another seed"),
-        ("tolerance: 1e-6", "tolerance: 1e-7", 8, "8 with another tolerance"),
-        ("realisations: 2", "realisations: 1", 0, ""),
+        slow("tolerance: 1e-6", "tolerance: 1e-7", 8, "8 with another tolerance"),
+        slow("realisations: 2", "realisations: 1", 0, ""),
     ],
 )
 def test_what_is_changed_and_changed_back_is_not_mixed_and_runs_once(
@@ -285,7 +285,7 @@ def test_what_the_machine_could_not_compute_is_no_row_and_runs_again(
     assert simulated(done(*told).stdout) == FLAT
 
 
-@pytest.mark.parametrize("lacking", ["disk", "device", "netCDF"])
+@pytest.mark.parametrize("lacking", ["disk", slow("device"), slow("netCDF")])
 def test_what_the_machine_could_not_store_runs_again(
     configuration, made, tmp_path, monkeypatch, lacking
 ):
@@ -389,6 +389,7 @@ def test_damaged_curves_are_set_aside_and_computed_again_and_no_others(
     assert aggregated(configuration, folder).identical(table(made.hysteresis))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("how", HARM)
 def test_a_damaged_batch_costs_its_own_simulations(configuration, made, tmp_path, how):
     folder = tmp_path / "sweep"
@@ -574,7 +575,7 @@ def test_results_in_the_layout_of_an_older_version_are_refused_and_left_alone(fo
 RECORDED = "realisations: 2", "realisations: 2\nrecord: [fronts, energy]"
 
 
-@pytest.mark.parametrize("original", [TEST, LINE])
+@pytest.mark.parametrize("original", [slow(TEST), LINE])
 def test_recorded_fronts_and_energies_survive_batches_and_merging_to_the_last_bit(
     tmp_path, monkeypatch, original
 ):
@@ -611,7 +612,7 @@ def same(record, other):
     return record == other
 
 
-@pytest.mark.parametrize("original", [TEST, LINE])
+@pytest.mark.parametrize("original", [TEST, slow(LINE)])
 def test_every_file_opens_without_arguments_and_says_what_its_variables_are(tmp_path, original):
     configuration, folder = shutil.copy(original, tmp_path / "sweep.yaml"), tmp_path / "sweep"
     change(configuration, *RECORDED)
