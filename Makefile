@@ -74,7 +74,8 @@ ended    = echo "$$(date +%s) $(1)" >> .venv/.times
 
 all: env  ## Run the sweep SWEEP to its figure and fit; by default with quick straight fronts
 	@echo $(BEGAN) > .venv/.times; $(call ended,environment)
-	@for sweep in $(call quoted,$(SWEEP)) $(if $(FRONTS),$(call quoted,$(FRONTS))); do $(CHECK) "$$sweep" > /dev/null; done
+	@$(CHECK) $(call quoted,$(SWEEP)) > /dev/null
+	@$(if $(FRONTS),$(CHECK) $(call quoted,$(FRONTS)) > /dev/null)
 	$(SNAKE) --config sweep=$(call quoted,$(SWEEP))
 	@$(call ended,sweep)
 	$(if $(FRONTS),$(SNAKE) --config sweep=$(call quoted,$(FRONTS)))
@@ -160,6 +161,7 @@ timings: env  ## For a release: what depends on the machine (an hour)
 	$(IN_ENV) .venv/bin/python -m studies speed solvers --keep
 	$(IN_ENV) .venv/bin/python -m studies speed profile --keep
 	$(IN_ENV) .venv/bin/python -m studies speed needs --keep
+	$(IN_ENV) .venv/bin/python -m studies speed costs --keep
 	$(IN_ENV) .venv/bin/python -m studies speed scaling --keep
 	$(IN_ENV) .venv/bin/python -m studies pages
 

@@ -11,6 +11,8 @@ from click.testing import CliRunner
 
 from crackfront.cli import main
 from crackfront.sweep.curves import SIMULATION, curve_files, selected
+from crackfront.sweep.rows import row_columns
+from crackfront.sweep.table import columns_dataset
 
 slow = functools.partial(pytest.param, marks=pytest.mark.slow)
 """Parameters whose test is left to the night."""
@@ -69,3 +71,9 @@ def stored(folder):
 def table(path):
     """A table or shard without its costs, and what it says of its origin."""
     return xr.load_dataset(path).drop_vars(COSTS).drop_attrs()
+
+
+def dataset_of_rows(sweep, rows):
+    """Dataset of the rows of all simulations of a sweep, in their order."""
+    shape = len(sweep.spectra), len(sweep.elastic_energies), sweep.n_realisation
+    return columns_dataset(sweep, row_columns(rows, shape), range(sweep.n_realisation))

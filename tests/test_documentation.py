@@ -237,7 +237,7 @@ def test_the_page_of_the_command_line_names_every_environment_variable():
         if re.search("os.environ|envvar=", text)
         for name in re.findall(r'"([A-Z]+_[A-Z_]+)"', text)
     }
-    assert {"XDG_CACHE_HOME", "CRACKFRONT_LAUNCHER"} <= named
+    assert {"XDG_CACHE_HOME", "PMI_SIZE"} <= named
     assert {name for name in named if f"`{name}`" not in page} == set()
 
 

@@ -1,6 +1,5 @@
 """No table that the package ships is clamped, without a word, beyond what was measured."""
 
-from dataclasses import replace
 from importlib.resources import files
 
 import pytest
@@ -8,9 +7,7 @@ import pytest
 from crackfront.analysis.law import pinning_factor, shipped_law
 from crackfront.analysis.validity import front_excess, shipped_validity
 from crackfront.core.spectrum import SelfAffineSpectrum
-from crackfront.simulate.costs import featured_cost
 from crackfront.simulate.laws import chosen_settings, measured_energies
-from studies.speed.costs import measured_runs
 
 FLAT = SelfAffineSpectrum(0.02, 0.02, 1.0)
 
@@ -34,16 +31,6 @@ def law_of_k():
         assert pinning_factor(s, g, breadth=breadth).warning
 
 
-def costs_of_simulations():
-    """A cost rises on."""
-    largest = max((run.features for run in measured_runs()), key=lambda item: item.n_angle)
-    costs = [
-        featured_cost(replace(largest, n_angle=factor * largest.n_angle), fronts=False).seconds
-        for factor in (1, 2, 4)
-    ]
-    assert costs[0] < costs[1] < costs[2]
-
-
 def range_of_validity():
     """Nothing is divided by what was not compared, and the interval says so."""
     rows = shipped_validity()
@@ -56,7 +43,6 @@ def range_of_validity():
 TABLES = {
     "laws.csv": errors_of_the_numerics,
     "law.json": law_of_k,
-    "costs.json": costs_of_simulations,
     "validity.csv": range_of_validity,
 }
 

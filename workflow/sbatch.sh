@@ -5,7 +5,7 @@
 #
 # Run it from the checkout; the results stand in results/.
 #SBATCH --job-name=crackfront
-#SBATCH --ntasks=32               # ranks that simulate; one more hands out the work, and sleeps
+#SBATCH --ntasks=33               # ranks: one hands out the work, the others simulate
 #SBATCH --cpus-per-task=1
 #SBATCH --mem-per-cpu=1000M       # the largest "MB a rank" of `crackfront plan`, half as much again
 #SBATCH --time=04:00:00
@@ -17,7 +17,7 @@ sweep=${1:?"name a configuration: sbatch workflow/sbatch.sh config/default.yaml"
 export PATH="$PWD/.venv/bin:$PATH" OMP_NUM_THREADS=1
 
 # pmi2 for MPICH's wheel (`make env`), often pmix for the site's MPI (`make env MPI=system`).
-crackfront simulate "$sweep" --ranks "$SLURM_NTASKS" --launcher "srun -K1 --overcommit --mpi=pmi2"
+srun -K1 --mpi=pmi2 crackfront simulate "$sweep"
 for step in aggregate fit figures summary; do
   crackfront "$step" "$sweep"
 done

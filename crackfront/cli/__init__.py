@@ -122,7 +122,7 @@ Exit codes:
 Examples:
   crackfront cycle --field field.nc --max-penetration 1 --output cycle.nc --watch
   crackfront plan config/default.yaml
-  crackfront simulate config/default.yaml --ranks 2
+  mpiexec -n 5 crackfront simulate config/default.yaml   # one hands out, four simulate
   crackfront status results/default --json
 """
 

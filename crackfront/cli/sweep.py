@@ -15,7 +15,6 @@ import click
 from crackfront.cli.report import (
     FILE,
     Number,
-    StoppedError,
     announce_compilation,
     announce_cost,
     as_json,
@@ -29,9 +28,9 @@ from crackfront.data.bounds import COUNT, Range, counted, in_bytes, refuse_beyon
 # The rest is imported where it is used, so that --help does not wait for it.
 if TYPE_CHECKING:
     from crackfront.data.provenance import Provenance
-    from crackfront.simulate.costs import Cost
     from crackfront.simulate.simulation import Simulation
-    from crackfront.sweep.expectation import Expectation
+    from crackfront.sweep.advice import Expectation
+    from crackfront.sweep.parallel import Ranks
     from crackfront.sweep.store import Inventory, MissingSimulations, Store
     from crackfront.sweep.sweep import Shard, Sweep
 
@@ -52,14 +51,12 @@ output_option = click.option(
 @as_json
 def plan(configuration: Path, output: Path | None, block: int | None, as_json: bool) -> None:
     """Print what a sweep would run for each spectrum, what is stored and what the rest costs."""
-    from crackfront.sweep.expectation import expectations, steady_part_warnings
+    from crackfront.sweep.advice import expectations, steady_part_warnings
     from crackfront.sweep.library import opened
-    from crackfront.sweep.postprocessing import postprocessing_costs
 
     sweep, store, _ = opened(configuration, output, warn)
     store.set_aside_damaged()
-    shards, postprocessing = sweep.shards(block), postprocessing_costs(sweep)
-    expected = expectations(sweep)
+    shards, expected = sweep.shards(block), expectations(sweep)
     progress = {item.name: store.progress(sweep, item) for item in sweep.spectra}
     missing = [one for found in progress.values() for one in found.missing]
     n_missing = sum(found.n_missing for found in progress.values())
@@ -76,9 +73,8 @@ def plan(configuration: Path, output: Path | None, block: int | None, as_json: b
         "expected": expected,
         "doubts": (warnings := [*steady_part_warnings(sweep)]),
         **_costs(missing),
-        "late": postprocessing,
     }
-    lines = _plan_lines(sweep, store, shards, progress, expected, postprocessing)
+    lines = _plan_lines(sweep, store, shards, progress, expected)
     echo_answer(content, [*lines, *warnings], as_json=as_json)
 
 
@@ -88,7 +84,6 @@ def _plan_lines(
     shards: Sequence[Shard],
     progress: Mapping[str, Inventory],
     expected: Mapping[str, Sequence[Expectation]],
-    postprocessing: Mapping[str, Cost],
 ) -> Iterator[str]:
     """Tables of the spectra of a sweep and of what is left to run, and its sizes."""
     from crackfront.sweep.store import Inventory, mixture_sentence
@@ -124,12 +119,8 @@ def _plan_lines(
     yield from filter(None, (*everything.sentences(), mixture_sentence(everything.arithmetic)))
     yield ""
     left.append(_left("all", len(shards), everything.missing))
-    for name, cost in postprocessing.items():
-        hours, seconds = f"{cost.seconds / 3600:.3g}", f"{cost.seconds:.3g}"
-        left.append((name, "-", "-", hours, seconds, f"{cost.memory / 1e6:.0f}", "-"))
-    yield from table(
-        ("to run", "shards", "simulations", "core hours", "longest s", "MB a rank", "MB disk"), left
-    )
+    header = "to run", "shards", "simulations", "core hours", "longest s", "MB a rank"
+    yield from table(header, left)
     energies = ", ".join(f"{energy:g}" for energy in sweep.elastic_energies)
     yield f"\n{len(sweep.elastic_energies)} amplitudes e_el/w_int: {energies}"
     lowest, highest = sweep.fit.lowest_elastic_energy, sweep.fit.highest_elastic_energy
@@ -147,18 +138,15 @@ def _costs(missing: Sequence[MissingSimulations]) -> dict[str, float]:
         "core_seconds": sum(count * cost.seconds for cost, count in costs),
         "longest_seconds": max((cost.seconds for cost, _ in costs), default=0.0),
         "bytes_a_rank": max((cost.memory for cost, _ in costs), default=0.0),
-        "bytes_on_disk": sum(count * cost.disk for cost, count in costs),
     }
 
 
 def _left(name: str, n_shard: int, missing: Sequence[MissingSimulations]) -> tuple[str, ...]:
     """Row of what the missing simulations of a spectrum, or of all, are expected to cost."""
-    core, longest, memory, disk = _costs(missing).values()
+    core, longest, memory = _costs(missing).values()
     n_missing = sum(item.realisations.size for item in missing)
-    return (
-        *(name, str(n_shard), str(n_missing), f"{core / 3600:.3g}", f"{longest:.3g}"),
-        *(f"{memory / 1e6:.0f}", f"{disk / 1e6:.3g}"),
-    )
+    cells = f"{core / 3600:.3g}", f"{longest:.3g}", f"{memory / 1e6:.0f}"
+    return name, str(n_shard), str(n_missing), *cells
 
 
 def _span(values: Sequence[float | None], form: str = "{:.0f}") -> str:
@@ -184,7 +172,7 @@ def _block(context: click.Context, parameter: click.Parameter, value: str | None
 
 @click.command(
     epilog=examples(
-        "crackfront simulate config/default.yaml --ranks 4",
+        "mpiexec -n 5 crackfront simulate config/default.yaml",
         "crackfront simulate config/default.yaml --spectrum flat --realisations 0-1",
     )
 )
@@ -193,18 +181,6 @@ def _block(context: click.Context, parameter: click.Parameter, value: str | None
 @click.option("--spectrum", help="Only this spectrum.  [default: all]")
 @click.option(
     "--realisations", callback=_block, help="Only these realisations, as in 0-49.  [default: all]"
-)
-@click.option(
-    "--ranks",
-    type=whole(Range(1, 1e6)),
-    default=1,
-    help="MPI ranks that simulate, besides one that distributes work; 1 runs without MPI.",
-)
-@click.option(
-    "--launcher",
-    envvar="CRACKFRONT_LAUNCHER",
-    help="Launcher of the ranks, as in 'srun -K1 --overcommit --mpi=pmi2'; also from "
-    "CRACKFRONT_LAUNCHER.  [default: mpiexec beside this Python]",
 )
 @click.option(
     "--checkpoint",
@@ -217,8 +193,6 @@ def simulate(
     output: Path | None,
     spectrum: str | None,
     realisations: range | None,
-    ranks: int,
-    launcher: str | None,
     checkpoint: float,
 ) -> None:
     """Run the simulations of a sweep that are not stored yet.
@@ -226,98 +200,68 @@ def simulate(
     After Ctrl-C or SIGTERM the states of running simulations are stored, and the exit code is 75.
     Run the same command to continue.
     """
-    from crackfront.sweep import parallel
+    from crackfront.sweep.parallel import deferring_stops, ranks
 
-    if not parallel.is_manager(ranks):
-        with parallel.deferring_stops():
-            parallel.serve_tasks("crackfront.sweep.tasks")
-        return
-    # MPI has to begin before what reads a sweep is imported.
-    from crackfront.sweep.expectation import steady_part_warnings
+    # Ranks wait for the manager within `ranks`.
+    with deferring_stops(), ranks() as workers:
+        if workers is not None:
+            _simulate(configuration, output, spectrum, realisations, checkpoint, workers)
+
+
+def _simulate(
+    configuration: Path,
+    output: Path | None,
+    spectrum: str | None,
+    realisations: range | None,
+    checkpoint: float,
+    workers: Ranks,
+) -> None:
+    """Run what some shards lack, and derive their rows."""
+    from crackfront.sweep.advice import steady_part_warnings
     from crackfront.sweep.library import opened, write_source
+    from crackfront.sweep.store import Inventory
 
     sweep, store, origin = opened(configuration, output, warn)
     items = sweep.spectra if spectrum is None else (sweep.named(spectrum),)
     chosen = range(sweep.n_realisation) if realisations is None else realisations
     shards = [sweep.named_shard(item, chosen) for item in items]
-    if not parallel.under_mpi():
-        inventory = store.unfinished(sweep, shards)
-        missing, n_missing = inventory.missing, inventory.n_missing
-        total = inventory.stored + n_missing
+    write_source(configuration, store.folder)
+    with store.locked(shards):
+        inventories = [store.unfinished(sweep, [shard]) for shard in shards]
+        inventory = sum(inventories, Inventory())
+        total = inventory.stored + inventory.n_missing
         click.echo(f"{configuration}: {inventory.stored} of {total} simulations are stored")
         for sentence in inventory.sentences():
             click.echo(sentence)
-        busy, costs = min(ranks, n_missing), _costs(missing)
-        refuse_beyond_memory(
-            f"{counted(busy, 'rank')} of {in_bytes(costs['bytes_a_rank'])}",
-            costs["bytes_a_rank"] * (busy if launcher is None else 1),
-            "use fewer ranks, coarser numerics or a smaller tile",
-        )
-        announce_cost(costs["core_seconds"])
-        for sentence in steady_part_warnings(sweep) if missing else ():
-            warn(sentence)
-        if busy > 1:
-            arguments = ["simulate", str(configuration), "--ranks", str(busy)]
-            arguments += ["--output", str(store.folder), "--checkpoint", str(checkpoint)]
-            arguments += [] if spectrum is None else ["--spectrum", spectrum]
-            arguments += ["--realisations", f"{chosen.start}-{chosen.stop - 1}"]
-            store.folder.mkdir(parents=True, exist_ok=True)
-            code = parallel.launch_ranks(arguments, busy, launcher, store.folder)
-            _refuse_unfinished(code, sweep, store, shards, launcher)
-            return
-    write_source(configuration, store.folder)
-    with store.locked(shards):
-        # Another process may have stored some while this one waited for the lock.
-        lacking = [(shard, store.unfinished(sweep, [shard]).simulations()) for shard in shards]
-        try:
-            run_missing(store, lacking, origin, checkpoint)
-        except KeyboardInterrupt as stop:
-            # A second Ctrl-C, which ends the process at once, has no sentence.
-            if not (str(stop) and parallel.report_stop_to_launcher()):
-                raise
-            StoppedError(str(stop)).show()
-            return
+        if inventory.missing:
+            costs = _costs(inventory.missing)
+            busy = min(workers.n_here, inventory.n_missing)
+            refuse_beyond_memory(
+                f"{counted(busy, 'rank')} of {in_bytes(costs['bytes_a_rank'])}",
+                costs["bytes_a_rank"] * busy,
+                "use fewer ranks, coarser numerics or a smaller tile",
+            )
+            announce_cost(costs["core_seconds"])
+            for sentence in steady_part_warnings(sweep):
+                warn(sentence)
+        lacking = [
+            (shard, found.simulations()) for shard, found in zip(shards, inventories, strict=True)
+        ]
+        run_missing(store, lacking, origin, workers, checkpoint)
         for shard in shards:
             click.echo(f"rows: {store.finish_shard(sweep, shard, origin)}")
-
-
-def _refuse_unfinished(
-    code: int | None, sweep: Sweep, store: Store, shards: Sequence[Shard], launcher: str | None
-) -> None:
-    """End where ranks did not finish the shards, whatever the exit code of their launcher."""
-    unfinished = [shard for shard in shards if not store.is_finished(sweep, shard)]
-    if not unfinished:
-        if code not in (0, None):
-            warn(f"the ranks ended with exit code {code}, after all was stored")
-        return
-    if code is None or code == StoppedError.exit_code:
-        sys.exit(StoppedError.exit_code)  # the manager has printed its sentence
-    if code != 0:
-        click.echo(
-            f"Error: the ranks ended with exit code {code}; finished simulations are stored, and "
-            "the same command continues with the others",
-            err=True,
-        )
-        sys.exit(2 if code == 2 else 1)  # a launcher has codes of its own
-    left = store.unfinished(sweep, unfinished)
-    total = left.stored + left.n_missing
-    raise click.ClickException(
-        f"the launcher {launcher or 'mpiexec'!r} ended without an error, but {left.n_missing} "
-        f"of {total} simulations are not stored, and {len(unfinished)} of {len(shards)} shards "
-        "have no rows; name one that starts the command that follows its -n and a number"
-    )
 
 
 def run_missing(
     store: Store,
     lacking: Sequence[tuple[Shard, Sequence[Simulation]]],
     origin: Provenance,
+    workers: Ranks,
     checkpoint_seconds: float = 60.0,
 ) -> None:
     """Run what shards lack with a bar on a terminal, elsewhere with a line for each simulation."""
     from tqdm import tqdm
 
-    from crackfront.sweep.parallel import deferring_stops
     from crackfront.sweep.rows import COMPLETE
     from crackfront.sweep.tasks import NotStoredError, run_and_store
 
@@ -326,8 +270,7 @@ def run_missing(
         announce_compilation()
     try:
         with (
-            deferring_stops(),
-            closing(run_and_store(store, lacking, origin, checkpoint_seconds)) as outcomes,
+            closing(run_and_store(store, lacking, origin, checkpoint_seconds, workers)) as outcomes,
             tqdm(total=total, unit="simulation", disable=not terminal, file=sys.stderr) as bar,
         ):
             for count, (simulation, finished) in enumerate(outcomes, start=1):

@@ -1,30 +1,12 @@
-r"""Expected time, memory and disk of simulations, from a law of measured runs.
-
-`python -m studies speed costs` measures runs and fits the law, whose coefficients are in
-`costs.json`. The processor time is that of any simulation, of making the tile, and of the load
-steps,
-
-.. math:: t = t_0 + c_t n_p^2 \log_2 n_p + n_b (t_b + N\, e^{c_0 + c \cdot x}),
-
-with :math:`n_p^2` points of the tile, :math:`n_b` states and :math:`N` sites. :math:`x` are
-logarithms of what the sweeps of a load step depend on, and whether the load is a full cycle: steps
-into and out of contact take longer than those of the steady branches.
-"""
+"""Expected processor time and memory of simulations, and refusals of what no machine holds."""
 
 from __future__ import annotations
 
 import functools
-import json
 import math
-from collections.abc import Sequence
-from dataclasses import astuple, dataclass, replace
-from importlib.resources import files
-
-import numpy as np
+from dataclasses import dataclass, replace
 
 from crackfront.core import jkr
-from crackfront.core.arrays import Array
-from crackfront.core.solver import DEFAULT_TOLERANCE
 from crackfront.core.spectrum import Spectrum
 from crackfront.data.bounds import (
     LENGTH,
@@ -37,70 +19,87 @@ from crackfront.simulate.laws import Settings
 from crackfront.simulate.numerics import Numerics
 from crackfront.simulate.simulation import Simulation
 
-_PROCESS_BYTES, _STORE_SECONDS = 300e6, 0.015
-"""Memory of a rank after imports and compilation; processor time to store a simulation."""
+_RUN_SECONDS = 3e-3
+"""Time to set up and evaluate a simulation. (Units: s)"""
 
-_TILES, _SITE_BYTES = 4, 512
-"""Tiles in memory while one is made, and bytes a site while the front moves (docs/needs.md)."""
+_POINT_SECONDS = 4.6e-9
+"""Time to make a tile, by Fourier transforms, per n_point log2(n_point). (Units: s)"""
 
-_FILE_BYTES, _STATE_BYTES, _FRONT_PART = 30e3, 112.0, 0.72
-"""Bytes of a file and its row without states, of a state, and what compression leaves of fronts."""
+_STATE_SECONDS = 1.4e-4
+"""Time of a load step on a front of few sites. (Units: s)"""
 
-_RECORD_BYTES = 1e3
-"""Memory of a state that is recorded."""
+_STEP_SECONDS = 4.3e-3
+"""Time of a load step of 1000 sites over one correlation length at e_el = 0.02 w_int. (Units: s)"""
 
+_SITE_POWER, _TRAVEL_POWER, _ENERGY_POWER = 1.4, 0.5, 0.1
+"""Powers of that time, of 263 runs: a longer front, a longer step and disorder need more sweeps."""
 
-@dataclass(frozen=True, slots=True)
-class Features:
-    """Sizes and settings that the time of a simulation depends on."""
+_PROCESS_BYTES = 300e6
+"""Memory of a rank after imports and compilation. (Units: bytes)"""
 
-    n_angle: float
-    n_point: float
-    """Root of the number of points of the tile."""
-    elastic_energy: float
-    tolerance: float
-    breadth: float
-    """Roll-off over short cutoff."""
-    travel: float
-    """Way of a smooth front from state to state, in correlation lengths."""
-    full_cycle: float
-    """1 where the load goes from first contact to pull-off, else 0."""
-    n_state: float
-    """States that it is expected to find."""
+_POINT_BYTES = 32
+"""Four tiles while one is made, 8 bytes a point each. (Units: bytes)"""
+
+_SITE_BYTES = 512
+"""32 samples around each site, and its splines, while the front moves. (Units: bytes)"""
+
+_STATE_BYTES = 1e3
+"""Memory of a recorded state without its front. (Units: bytes)"""
+
+_SAMPLE_SECONDS = 1e-7
+"""Time of a sample that a site passes, where the disorder of a field is not known. (Units: s)"""
 
 
 @dataclass(frozen=True, slots=True)
 class Cost:
-    """Expected processor time (s), memory of the rank and disk (bytes) of a simulation."""
+    """Expected processor time (s) and memory of the process (bytes)."""
 
     seconds: float
     memory: float
-    disk: float
 
 
 def expected_cost(simulation: Simulation) -> Cost:
-    """Expected cost of a simulation on the processor of the measured runs."""
-    return _cost(replace(simulation, realisation=0))
+    """Expected cost of a simulation, the same for all its realisations.
+
+    The time is right within a factor of two; `python -m studies speed costs` measures it.
+    """
+    return _realisation_cost(replace(simulation, realisation=0))
 
 
 @functools.lru_cache(maxsize=4096)
-def _cost(simulation: Simulation) -> Cost:
-    """Expected cost of every realisation of a simulation."""
-    return featured_cost(features(simulation), fronts=simulation.record_fronts)
-
-
-def featured_cost(item: Features, *, fronts: bool) -> Cost:
-    """Expected cost of a run of some features, with its fronts recorded or not."""
-    recorded = 8 * item.n_state * item.n_angle if fronts else 0.0
-    return Cost(
-        seconds=_STORE_SECONDS + float(law_seconds(law_coefficients(), [item])[0]),
-        memory=_PROCESS_BYTES
-        + 8 * _TILES * item.n_point**2
-        + _SITE_BYTES * item.n_angle
-        + _RECORD_BYTES * item.n_state
-        + recorded,
-        disk=_FILE_BYTES + _STATE_BYTES * item.n_state + _FRONT_PART * recorded,
+def _realisation_cost(simulation: Simulation) -> Cost:
+    """Cost of every realisation, by the first one."""
+    n_state, travel = simulation.schedule.expected_motion(simulation.surface)
+    n_site = simulation.resolution.n_angle
+    cost = run_cost(
+        n_site=n_site,
+        n_point=math.prod(simulation.tile[0]),
+        n_state=n_state,
+        travel=travel,
+        elastic_energy=simulation.elastic_energy,
     )
+    fronts = 8 * n_site * n_state if simulation.record_fronts else 0.0
+    return replace(cost, memory=cost.memory + fronts)
+
+
+def run_cost(
+    *,
+    n_site: float,
+    n_point: float,
+    n_state: float,
+    travel: float = 1.0,
+    elastic_energy: float = 0.02,
+) -> Cost:
+    """Cost of making a tile of points and moving a front of sites through its states.
+
+    The front moves so many correlation lengths of w_loc from state to state; e_el in units of
+    w_int.
+    """
+    tile = _POINT_SECONDS * n_point * math.log2(n_point)
+    step = _STEP_SECONDS * (n_site / 1000) ** _SITE_POWER * travel**_TRAVEL_POWER
+    step *= (elastic_energy / 0.02) ** _ENERGY_POWER
+    memory = _PROCESS_BYTES + _POINT_BYTES * n_point + _SITE_BYTES * n_site + _STATE_BYTES * n_state
+    return Cost(_RUN_SECONDS + tile + n_state * (_STATE_SECONDS + step), memory)
 
 
 def affordable_seconds(*, n_angle: float, n_point: float, n_state: float, n_sample: float) -> float:
@@ -109,20 +108,13 @@ def affordable_seconds(*, n_angle: float, n_point: float, n_state: float, n_samp
     The numbers are those of the sites of the front, the points of the field, the load steps, and
     the samples that each site passes. TooLargeError if time or memory are more than there is.
     """
-    usual = Features(
-        n_angle, math.sqrt(n_point), _USUAL_ENERGY, DEFAULT_TOLERANCE, 1.0, 1.0, 1.0, n_state
-    )
-    cost = featured_cost(usual, fronts=False)
+    cost = run_cost(n_site=n_angle, n_point=n_point, n_state=n_state)
     seconds = cost.seconds + _SAMPLE_SECONDS * n_angle * n_sample
     cycle = f"a cycle of {n_state:.3g} load steps with {n_angle:.3g} sites and"
     what, remedy = f"{cycle} {n_sample:.3g} samples a ray", "take fewer of them"
     refuse_beyond_memory(what, cost.memory, remedy)
     refuse_beyond_time(what, seconds, remedy)
     return seconds
-
-
-_USUAL_ENERGY, _SAMPLE_SECONDS = 0.05, 1e-7
-"""e_el where it is not known (Units: w_int); time of one sample. (Units: s)"""
 
 
 def refuse_oversized(
@@ -141,56 +133,8 @@ def refuse_oversized(
     points = numerics.tile_side(spectrum) / cutoff * settings.pixels_per_cutoff
     tiles = f"tiles of {points:.2g} x {points:.2g} points"
     remedy = "lower roll_offs, cutoffs or pixels_per_cutoff, or raise short_cutoff"
-    refuse_beyond_memory(tiles, 8 * _TILES * points**2, remedy, anywhere=True)
+    refuse_beyond_memory(tiles, _POINT_BYTES * points**2, remedy, anywhere=True)
     circle = 2 * math.pi * jkr.equilibrium_radius(deepest)
     sites = settings.angles or circle / cutoff * settings.angles_per_cutoff
     remedy = "lower angles or angles_per_cutoff, or raise short_cutoff"
     refuse_beyond_memory(f"fronts of {sites:.2g} sites", _SITE_BYTES * sites, remedy, anywhere=True)
-
-
-def features(simulation: Simulation) -> Features:
-    """Features of a simulation."""
-    sizes, spectrum, schedule = simulation.resolution, simulation.spectrum, simulation.schedule
-    travel, n_state, full_cycle = schedule.expected_motion(simulation.surface)
-    return Features(
-        n_angle=sizes.n_angle,
-        n_point=math.sqrt(math.prod(simulation.tile[0])),
-        elastic_energy=simulation.elastic_energy,
-        tolerance=simulation.solver.tolerance,
-        breadth=spectrum.longest_feature / spectrum.short_cutoff,
-        travel=travel,
-        full_cycle=full_cycle,
-        n_state=n_state,
-    )
-
-
-@functools.cache
-def law_coefficients() -> tuple[float, ...]:
-    """Coefficients of the law, from `costs.json`: logarithms of t_0, t_b and c_t, c_0, and c."""
-    text = files("crackfront.simulate").joinpath("costs.json").read_text(encoding="utf-8")
-    return tuple(json.loads(text))
-
-
-def law_seconds(coefficients: Sequence[float] | Array, items: Sequence[Features]) -> Array:
-    """Processor times of runs of some features by the law, in seconds."""
-    columns = np.array([astuple(item) for item in items], dtype=float).T
-    n_angle, n_point, energy, tolerance, breadth, travel, full_cycle, n_state = columns
-    sites, disorder, steady = np.log(n_angle / 1e3), np.log(energy / 0.02), 1 - full_cycle
-    terms = np.array(
-        [
-            sites,
-            sites**2,
-            disorder,
-            disorder**2,
-            steady * disorder,
-            steady * disorder * sites,
-            np.log(tolerance / 1e-4),
-            np.log(breadth),
-            np.log(travel),
-            full_cycle,
-        ]
-    )
-    least, each, point, constant, *exponents = coefficients
-    state = n_angle * np.exp(constant + np.array(exponents) @ terms)
-    tile = np.exp(point) * n_point**2 * np.log2(n_point)
-    return np.asarray(np.exp(least) + tile + n_state * (np.exp(each) + state))

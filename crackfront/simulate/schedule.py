@@ -22,11 +22,9 @@ if TYPE_CHECKING:
 class ExpectedMotion(NamedTuple):
     """States that a simulation is expected to find."""
 
+    n_state: float
     travel: float
     """Way of a smooth front from state to state, in correlation lengths of w_loc."""
-    n_state: float
-    full_cycle: bool
-    """Whether the load goes from first contact to pull-off."""
 
 
 class SweepLoad(Protocol):

@@ -94,7 +94,10 @@ def run_sweep(
         lacking = [(shard, store.unfinished(sweep, [shard]).simulations()) for shard in shards]
         n_missing = sum(len(simulations) for _, simulations in lacking)
         bar = tqdm(total=n_missing, unit="simulation", disable=not (progress and n_missing))
-        with bar, contextlib.closing(run_and_store(store, lacking, origin)) as outcomes:
+        with (
+            bar,
+            contextlib.closing(run_and_store(store, lacking, origin)) as outcomes,
+        ):
             for _ in outcomes:
                 bar.update()
         for shard in shards:

@@ -104,6 +104,7 @@ def run_and_store(
     shards: Sequence[tuple[Shard, Sequence[Simulation]]],
     origin: Provenance,
     seconds: float = 60.0,
+    ranks: parallel.Ranks = parallel.ALONE,
 ) -> Generator[tuple[Simulation, SimulationOutcome], None, None]:
     """Run simulations of shards, the longest first, and store them in batches.
 
@@ -138,15 +139,10 @@ def run_and_store(
             return _not_stored(error)
         return result.outcome
 
-    runs = parallel.run_tasks(_run_task, tasks, keep, write_in_time)
+    runs, done = ranks.run(_run_task, tasks, keep, write_in_time), 0
     try:
         with closing(runs) as outcomes:
-            for count, (task, outcome) in enumerate(outcomes):
-                if outcome.status == _STOPPED:
-                    raise KeyboardInterrupt(
-                        f"{count} of {len(tasks)} simulations are finished; they and the states of "
-                        "running ones are stored; run the same command to continue"
-                    )
+            for task, outcome in outcomes:
                 if outcome.status == _NOT_STORED:
                     _flush_all(writers.values())
                     count = sum(writer.n_written for writer in writers.values())
@@ -154,7 +150,14 @@ def run_and_store(
                         f"{task.simulation.label}: {outcome.sentence}; {count} of {len(tasks)} "
                         "simulations were stored, and the same command continues with the others"
                     )
-                yield task.simulation, outcome
+                if outcome.status != _STOPPED:
+                    done += 1
+                    yield task.simulation, outcome
+        if parallel.stop_is_requested() and done < len(tasks):
+            raise KeyboardInterrupt(
+                f"{done} of {len(tasks)} simulations are finished; they and the states of running "
+                "ones are stored; run the same command to continue"
+            )
     finally:
         unwritten = _flush_all(writers.values())
         if unwritten and not isinstance(sys.exception(), NotStoredError):

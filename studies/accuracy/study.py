@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from dataclasses import asdict, dataclass, replace
 from typing import get_args
@@ -16,7 +17,7 @@ from crackfront.core.cycle.follow import Load
 from crackfront.core.cycle.record import Recorder
 from crackfront.core.outcome import Direction
 from crackfront.core.variables import ADHESION, FORCE, variable
-from crackfront.simulate.costs import featured_cost, features
+from crackfront.simulate.costs import run_cost
 from crackfront.simulate.laws import Settings
 from crackfront.simulate.simulation import simulation_field
 from crackfront.simulate.sphere.steady import forward_circle
@@ -91,9 +92,9 @@ class SceneErrors:
 
 def branches_seconds(scene: Scene, settings: Settings) -> float:
     """Processor time that both branches of a surface are expected to take (Units: s)."""
-    cycle = features(scene.simulation(settings, 0))
-    both = replace(cycle, full_cycle=False, n_state=2.0 * scene.penetrations.size)
-    return featured_cost(both, fronts=False).seconds
+    simulation = scene.simulation(settings, 0)
+    n_point, n_state = math.prod(simulation.tile[0]), 2.0 * scene.penetrations.size
+    return run_cost(n_site=simulation.resolution.n_angle, n_point=n_point, n_state=n_state).seconds
 
 
 def trial_seconds(scene: Scene, trials: list[Trial]) -> float:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, get_args
@@ -13,7 +12,6 @@ from crackfront.cli.report import examples, refuse_unwritable
 from crackfront.data.files import write_text
 from crackfront.data.provenance import provenance
 from crackfront.data.records import write_records
-from crackfront.simulate.run import compile_solver
 from studies.numbers import Number
 from studies.pages import keep_option, output_option, tell
 from studies.speed import costs as cost_model
@@ -111,27 +109,14 @@ def needs(output: Path, keep: bool) -> None:
 
 @commands.command(epilog=examples("python -m studies speed costs"))
 @_output
-def costs(output: Path) -> None:
-    """Measure runs, and fit the cost model to those that are not held out.
-
-    Writes costs.csv, the runs, and costs.json, the coefficients. `crackfront plan` uses those of
-    crackfront/simulate/costs.json, which are of the runs of studies/speed/costs.csv.
-    """
+@keep_option
+def costs(output: Path, keep: bool) -> None:
+    """Compare the expected processor time of simulations with the measured one."""
     refuse_unwritable(output)
-    compile_solver("newton")
-    runs = cost_model.least_of_passes(cost_model.fitted_to(), held=False, progress=click.echo)
-    runs += cost_model.least_of_passes(cost_model.held_out(), held=True, progress=click.echo)
-    text = cost_model.table(runs)
-    # The fit is that of the rows as they are written.
-    found = cost_model.fitted_coefficients(cost_model.table_runs(text))
-    write_text(output / "costs.csv", text)
-    write_text(output / "costs.json", json.dumps(found, indent=1) + "\n")
-    click.echo(f"results: {output / 'costs.csv'}, {output / 'costs.json'}")
-    fitted, held_out = (cost_model.worst_factor(held_out) for held_out in (False, True))
-    click.echo(
-        f"The law in use meets its fitted runs within a factor {fitted:.2f}, its held-out ones "
-        f"within {held_out:.2f}"
-    )
+    folder = Path(__file__).parents[2] / "config"
+    measured = cost_model.measured_costs(cost_model.CONFIGURATIONS, folder, click.echo)
+    parts = {"costs": cost_model.ratio_table(measured)}
+    _write(output / "costs", "Expected over measured processor time", parts, keep=keep)
 
 
 @commands.command(epilog=examples("python -m studies speed scaling"))

@@ -1,8 +1,8 @@
 """How a sweep scales: dispatch, the start of a job, what follows, a million simulations on paper.
 
 Dispatch is measured with curves that are stored, on real ranks of MPI. The million simulations are
-played through event by event, for 1 to 4096 ranks, with the times of the cost model, the recorded
-deviations from it and the speed of this machine, on which dispatch and starts are measured too.
+played through event by event, for 1 to 4096 ranks, with the expected times, their usual scatter and
+the speed of this machine, on which dispatch and starts are measured too.
 What follows is run on copies of stored rows and curves.
 """
 
@@ -26,12 +26,10 @@ from crackfront.core.arrays import Array
 from crackfront.core.memory import peak_memory
 from crackfront.data.files import write_text
 from crackfront.data.provenance import Provenance, provenance
-from crackfront.simulate.costs import Cost, expected_cost
+from crackfront.simulate.costs import expected_cost
 from crackfront.simulate.run import run_simulation
 from crackfront.sweep.configuration import load_configuration
 from crackfront.sweep.curves import FinishedSimulation
-from crackfront.sweep.parallel import default_launcher
-from crackfront.sweep.postprocessing import postprocessing_costs
 from crackfront.sweep.requests import shard_request
 from crackfront.sweep.rows import row_columns, sweep_row
 from crackfront.sweep.shards import write_shard
@@ -39,7 +37,6 @@ from crackfront.sweep.store import Store, write_request
 from crackfront.sweep.sweep import NamedSpectrum, Shard, Sweep
 from crackfront.sweep.tasks import BatchWriter
 from studies.pages import markdown_table
-from studies.speed.costs import measured_runs, predicted_seconds
 from studies.speed.machine import in_fresh_process
 
 ROOT = Path(__file__).parents[2]
@@ -53,6 +50,12 @@ JOBS = ((1000, 16), (250, 32), (160, 32))
 
 REALISATIONS_OF_A_SHARD = 2000
 """Of a synthetic sweep: its two amplitudes make shards of 4000 simulations, 250 of a million."""
+
+LATE_COMMANDS = ("plan", "status", "aggregate", "fit", "figures", "summary")
+"""Commands on a stored sweep, in the order of their use."""
+
+_SCATTER = 0.25
+"""Rms logarithm of measured over expected time of a simulation."""
 
 _MOST_WITH_CURVES = 10**5
 """Simulations up to which the curves of a synthetic sweep are stored: a million take 60 GB."""
@@ -125,13 +128,10 @@ def million(
 ) -> list[Array]:
     """Times of the tasks of a sweep like that of `config/default.yaml`, shard by shard.
 
-    A time is what the cost model expects, times how much slower the machine is, times measured over
-    expected time of one of the runs that were recorded for the model, drawn anew for every task.
+    A time is the expected one, times how much slower the machine is, times a random factor.
     """
     sweep = load_configuration(ROOT / "config/default.yaml")
     rng = np.random.default_rng(seed)
-    runs = measured_runs()
-    recorded = [run.cpu_seconds for run in runs] / predicted_seconds(runs)
     n_block, n_amplitude = n_shard // len(sweep.spectra), len(sweep.elastic_energies)
     shape = n_simulation // (n_block * len(sweep.spectra) * n_amplitude), n_amplitude
     shards = []
@@ -140,52 +140,43 @@ def million(
             slower * expected_cost(sweep.simulation(item, energy, 0)).seconds
             for energy in sweep.elastic_energies
         ]
-        shards += [(rng.choice(recorded, shape) * expected).ravel() for _ in range(n_block)]
+        shards += [(rng.lognormal(0.0, _SCATTER, shape) * expected).ravel() for _ in range(n_block)]
     return shards
 
 
-def disk_of_simulation() -> float:
-    """Expected mean size of the states and the row of `config/default.yaml`, in bytes."""
-    sweep = load_configuration(ROOT / "config/default.yaml")
-    firsts = [one for item in sweep.spectra for one in sweep.one_per_amplitude(item)]
-    return float(np.mean([expected_cost(one).disk for one in firsts]))
-
-
-def hand_out_seconds(n_worker: int = 4, n_task: int = 5000) -> float:
-    """Time of the rank that hands out, for a simulation of the default sweep that it stores.
-
-    Each worker runs one, and answers with its curve and row from then on.
-    """
-    script = f"""
+_HAND_OUT = """
 import sys, time
 from pathlib import Path
-from crackfront.sweep import parallel
-manager = parallel.is_manager({n_worker})
-from crackfront.sweep import tasks
+from crackfront.cli.sweep import run_missing
+from crackfront.sweep import parallel, tasks
+from crackfront.sweep.library import opened
 run, first = tasks._run, []
 def answer(task, between):
     first[:] = first or [run(task, between)]
     return first[0]
 tasks._run = answer
-if not manager:
-    for _ in range(2):
-        parallel.serve_tasks("time")
-    sys.exit()
-from crackfront.cli.sweep import run_missing
-from crackfront.sweep.library import opened
-sweep, store, origin = opened(Path(sys.argv[2]), Path(sys.argv[1]))
-[shard, *_] = sweep.shards()
-simulations = list(sweep.simulations(shard.item))
-run_missing(store, [(shard, simulations[:{n_worker}])], origin)
-started = time.perf_counter()
-run_missing(store, [(shard, (simulations * {n_task})[:{n_task}])], origin)
-print((time.perf_counter() - started) / {n_task})
+folder, configuration, n_task = sys.argv[1:]
+with parallel.ranks() as workers:
+    if workers is not None:
+        sweep, store, origin = opened(Path(configuration), Path(folder))
+        shard = sweep.shards()[0]
+        simulations = [*sweep.simulations(shard.item)] * int(n_task)
+        run_missing(store, [(shard, simulations[:50])], origin, workers)
+        started = time.perf_counter()
+        run_missing(store, [(shard, simulations[: int(n_task)])], origin, workers)
+        print((time.perf_counter() - started) / int(n_task))
 """
+"""Ranks that run one simulation each, and answer with its curve and row from then on."""
+
+
+def hand_out_seconds(n_worker: int = 4, n_task: int = 5000) -> float:
+    """Time of the rank that hands out, for a simulation of the default sweep that it stores."""
+    mpiexec = [str(Path(sys.executable).with_name("mpiexec")), "-n", str(n_worker + 1)]
     with tempfile.TemporaryDirectory() as folder:
-        mpi = [*default_launcher().split(), "-n", str(n_worker + 1), sys.executable, "-m", "mpi4py"]
-        (path := Path(folder) / "dispatch.py").write_text(script)
+        (script := Path(folder) / "dispatch.py").write_text(_HAND_OUT)
+        arguments = [folder, str(ROOT / "config/default.yaml"), str(n_task)]
         done = subprocess.run(
-            [*mpi, str(path), folder, str(ROOT / "config/default.yaml")],
+            [*mpiexec, sys.executable, str(script), *arguments],
             capture_output=True,
             text=True,
             timeout=250,
@@ -288,7 +279,7 @@ def planned(configuration: Path) -> tuple[float, float]:
 
 
 def late_table(sizes: Sequence[int]) -> str:
-    """What the commands that follow the simulations take, and what the law in use says.
+    """Time and memory of the commands that follow the simulations.
 
     `sha256sum --check` reads what `verify` reads. The last `plan` is that of a sweep one of whose
     shards has all its rows, but no file.
@@ -299,22 +290,17 @@ def late_table(sizes: Sequence[int]) -> str:
             (folder := Path(above, "results", "test")).mkdir(parents=True)
             path = synthetic(folder, n_row, curves=(curves := n_row <= _MOST_WITH_CURVES))
             rows.append(["snakemake -n", f"{n_row}", *_late_cells(in_fresh_process(planned, path))])
-            costs = postprocessing_costs(load_configuration(path))
-            commands = ("plan", "status", *costs, *(("checksums", "verify") if curves else ()))
+            commands = LATE_COMMANDS + (("checksums", "verify") if curves else ())
             rows += [
-                [
-                    name,
-                    f"{n_row}",
-                    *_late_cells(in_fresh_process(late, path, name), costs.get(name)),
-                ]
+                [name, f"{n_row}", *_late_cells(in_fresh_process(late, path, name))]
                 for name in commands
             ]
             if curves:
-                rows.append(["sha256sum", f"{n_row}", f"{_sum_seconds(folder):.0f}", "-", "", "-"])
+                rows.append(["sha256sum", f"{n_row}", f"{_sum_seconds(folder):.0f}", ""])
                 next((folder / "shards").glob("*.nc")).unlink()
                 cells = _late_cells(in_fresh_process(late, path, "plan"))
                 rows.append(["plan, a shard left", f"{n_row}", *cells])
-    return markdown_table("command | simulations | CPU s | by the law | MB | by the law", rows)
+    return markdown_table("command | simulations | CPU s | MB", rows)
 
 
 def _sum_seconds(folder: Path) -> float:
@@ -326,11 +312,10 @@ def _sum_seconds(folder: Path) -> float:
     return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
 
 
-def _late_cells(measured: tuple[float, float], cost: Cost | None = None) -> list[str]:
-    """Measured and expected seconds and megabytes of a command; some have no expectation."""
+def _late_cells(measured: tuple[float, float]) -> list[str]:
+    """Measured seconds and megabytes of a command."""
     seconds, peak = measured
-    expected = ("-", "-") if cost is None else (f"{cost.seconds:.0f}", f"{cost.memory / 1e6:.0f}")
-    return [f"{seconds:.0f}", expected[0], f"{peak / 1e6:.0f}", expected[1]]
+    return [f"{seconds:.0f}", f"{peak / 1e6:.0f}"]
 
 
 def parts() -> dict[str, str]:
@@ -349,7 +334,6 @@ def parts() -> dict[str, str]:
         "late": late_table((10**4, 10**5, 10**6)),
         "efficiency": f"{sum(map(len, sweeps[0][0]))} simulations of {useful:.0f} core hours; "
         f"{1e3 * losses.hand_out:.2f} ms to hand out and store one, {losses.start:.1f} s to start "
-        f"a job. A simulation takes {slower:.2f} times what the cost model expects, and "
-        f"{disk_of_simulation() / 1e3:.0f} kB of a file."
+        f"a job. A simulation takes {slower:.2f} times what is expected."
         f"\n\n{markdown_table(header, cells)}",
     }

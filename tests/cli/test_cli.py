@@ -231,6 +231,7 @@ def test_a_plan_tells_what_is_left_to_run_and_what_it_costs(tmp_path, copy_store
 
 def test_a_plan_tells_what_stored_simulations_are_of_no_use_and_why(tmp_path, copy_store):
     copy_store("flat", tmp_path)
+    (tmp_path / "configuration.path").unlink()  # as if that configuration were gone
     finer = tmp_path / "finer.yaml"
     finer.write_text(TEST.read_text().replace("tolerance: 1e-6", "tolerance: 1e-7"))
     for command in (("plan", finer), ("simulate", finer, "--spectrum", "flat")):
@@ -346,12 +347,6 @@ def test_a_bad_configuration_is_refused_by_every_command(tmp_path, command):
     assert not (tmp_path / "out").exists()
 
 
-@pytest.mark.parametrize("ranks", [0, -1, "two"])
-def test_bad_numbers_of_ranks_are_refused(tmp_path, ranks):
-    result = run("simulate", TEST, "--ranks", ranks, "--output", tmp_path / "out")
-    assert result.exit_code == 2
-
-
 def test_a_surface_in_si_units_is_refused_as_a_field(tmp_path):
     words = "the data are in SI units; in_reduced_units(data, sphere) converts them"
     surface = cf.random_surface(0.4, 0.05, side=4, error=0.05)
@@ -403,7 +398,7 @@ def test_machines_read_the_plan_the_progress_and_the_fit(tmp_path, copy_store):
     for command in ("simulate", "aggregate"):
         assert run(command, TEST, *output[:2]).exit_code == 0
     after = json.loads(run("plan", TEST, *output).stdout)
-    assert (after["missing"], after["core_seconds"], len(after["late"])) == (0, 0, 4)
+    assert (after["missing"], after["core_seconds"]) == (0, 0)
     spectra = json.loads(run("status", tmp_path, "--json").stdout)["spectra"]
     assert [(one["name"], one["done"], one["left"]) for one in spectra] == [
         ("flat", 4, 0),

@@ -15,13 +15,12 @@ import pytest
 import xarray as xr
 
 from crackfront.cli import main
-from crackfront.sweep.parallel import default_launcher
-from tests.commands import curves
+from tests.commands import COSTS, stored
 from tests.yaml_texts import from_yaml, to_yaml
 
 ROOT = Path(__file__).parents[2]
-COSTS = {"seconds", "cpu_seconds", "peak_memory"}
-SRUN = "srun -K1 --overcommit --mpi=pmi2"
+MPIEXEC = Path(sys.executable).with_name("mpiexec")
+SRUN = "srun -K1 --mpi=pmi2"
 
 
 def slurm_answers():
@@ -60,7 +59,7 @@ def configuration(folder, *changes):
 def profile(folder, **simulate):
     """The profile of the repository as a site would adapt it; resources of a shard may change."""
     content = from_yaml((ROOT / "workflow/profiles/slurm/config.yaml").read_text())
-    resources = content["set-resources"]["simulate"] | {"tasks": 2} | simulate
+    resources = content["set-resources"]["simulate"] | {"tasks": 3} | simulate
     used = {name: value for name, value in resources.items() if value is not None}
     content["set-resources"]["simulate"] = used
     # Every wait between two looks at a job is 10 s longer than the last: looks at 12 and 34 s.
@@ -122,7 +121,7 @@ def until(condition, seconds=600):
 WAYS = {
     "serial": ("hysteresis.nc", {"tasks": 1, "mpi": None}),
     "srun": ("shards/flat.nc", {"mpi": SRUN}),
-    "mpiexec": ("shards/flat.nc", {"mpi": default_launcher()}),
+    "mpiexec": ("shards/flat.nc", {"mpi": str(MPIEXEC)}),
 }
 """Up to where a sweep runs, and the resources of its shard; None takes one of the profile away."""
 
@@ -153,7 +152,7 @@ def test_the_profile_runs_a_shard_and_the_sweep_is_the_undisturbed_one(started, 
     told = process.communicate(timeout=850)[1]
     assert process.returncode == 0, told
     assert "has been submitted with SLURM jobid" in told
-    assert len(list((results / "curves/flat").glob("curves-*.nc"))) == 1
+    assert [path.name for path in (results / "shards").glob("*.nc")] == ["flat.nc"]
     if target != "hysteresis.nc":
         main(["aggregate", str(sweep), "--output", str(results)], standalone_mode=False)
     assert dataset(results).equals(undisturbed(sweep, folder / "alone"))
@@ -164,8 +163,8 @@ def test_ranks_on_two_nodes_find_what_one_process_finds(tmp_path):
     if len(set(nodes)) < 2:
         pytest.skip("this Slurm has one node")
     sweep, results = configuration(tmp_path), tmp_path / "results"
-    ranks = [*SRUN.split(), "-N2", "-n3", sys.executable, "-m", "mpi4py", "-m", "crackfront"]
-    done = run([*ranks, "simulate", str(sweep), "--ranks", "2", "--output", str(results)])
+    ranks = [*SRUN.split(), "-N2", "-n3", sys.executable, "-m", "crackfront"]
+    done = run([*ranks, "simulate", str(sweep), "--output", str(results)])
     assert done.returncode == 0, done.stderr
     main(["aggregate", str(sweep), "--output", str(results)], standalone_mode=False)
     assert dataset(results).equals(undisturbed(sweep, tmp_path / "alone"))
@@ -184,40 +183,42 @@ def test_a_rank_that_is_killed_ends_its_job_and_the_retry_goes_on(tmp_path):
     changes = (("angles: 128", "angles: 512"), ("step: 0.1", "step: 0.02"))
     sweep = configuration(tmp_path, *changes, ("realisations: 2", "realisations: 4"))
     results = tmp_path / "results/sweep"
+    log = results / "logs/simulate-flat.log"
+    first = ["simulate", str(sweep), "--output", str(results), "--realisations", "0-0"]
+    main(first, standalone_mode=False)
+    before = stored(results)
     command = snakemake(tmp_path, sweep, "shards/flat.nc")
     with subprocess.Popen(
         command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, env=environment()
     ) as process:
-        until(lambda: len(curves(results)) >= 2)
-        os.kill(max(processes(f"-m mpi4py -m crackfront simulate {sweep}")), signal.SIGKILL)
-        before = curves(results)
+        until(lambda: log.is_file() and "[2/6]" in log.read_text())
+        os.kill(max(processes(f"-m crackfront simulate {sweep}")), signal.SIGKILL)
         told = process.stderr.read()
     assert process.returncode == 0, told
     assert told.count("has been submitted with SLURM jobid") == 2
-    assert 2 <= len(before) < 8
-    assert before.items() <= curves(results).items()
+    assert len(before) == 2
+    assert before.items() <= stored(results).items()
     main(["aggregate", str(sweep), "--output", str(results)], standalone_mode=False)
     assert dataset(results).equals(undisturbed(sweep, tmp_path / "alone"))
 
 
 def checkpoint_at_the_limit(folder, results, command):
     """What a job has stored of its one simulation when its time is over, and what it printed."""
+
+    def dates():
+        return [path.stat().st_mtime_ns for path in results.glob("curves/flat/checkpoint-*.nc")]
+
     job = ["sbatch", "--parsable", "--ntasks=2", "--time=60", "--signal=TERM@58", "--wrap", command]
+    before = dates()
     number = run(job, cwd=folder).stdout.strip()
-    before = [path.stat().st_mtime for path in (results / "curves/flat").glob("checkpoint-*.nc")]
-    until(
-        lambda: (
-            [path.stat().st_mtime for path in (results / "curves/flat").glob("checkpoint-*.nc")]
-            != before
-        )
-    )
+    until(lambda: dates() not in ([], before))
     time.sleep(3)  # for more than the first states
     # Limits are in minutes: with notice 58 s before its end, the minute that runs is the last.
     used = run(["squeue", "--noheader", "--jobs", number, "--format=%M"]).stdout.split(":")[0]
     run(["scontrol", "update", f"JobId={number}", f"TimeLimit={int(used) + 1}"])
     until(lambda: not run(["squeue", "--noheader", "--jobs", number]).stdout.strip())
     assert "Interrupted. 0 of 1" in (folder / f"slurm-{number}.out").read_text()
-    [path] = (results / "curves/flat").glob("checkpoint-*.nc")
+    [path] = results.glob("curves/flat/checkpoint-*.nc")
     return xr.load_dataset(path)
 
 
@@ -226,8 +227,8 @@ def test_a_time_limit_keeps_what_runs_and_the_next_job_goes_on_from_there(tmp_pa
     changes = (("angles: 128", "angles: 2000"), ("step: 0.1", "step: 0.00002"))
     one = (("realisations: 2", "realisations: 1"), ("[0.02, 0.1]", "[0.1]"))
     sweep, results = configuration(tmp_path, *changes, *one), tmp_path / "results"
-    command = f"exec {SRUN} -n 3 {sys.executable} -m mpi4py -m crackfront simulate {sweep} "
-    command += f"--ranks 2 --output {results} --checkpoint 1"
+    command = f"exec {SRUN} -n 2 {sys.executable} -m crackfront simulate {sweep} "
+    command += f"--output {results} --checkpoint 1"
     first, then = (checkpoint_at_the_limit(tmp_path, results, command) for _ in range(2))
     known, more = first["mean_radius"], then["mean_radius"]
     assert 0 < known.size < more.size
@@ -238,7 +239,7 @@ def test_a_time_limit_keeps_what_runs_and_the_next_job_goes_on_from_there(tmp_pa
 def test_the_plain_job_script_runs_a_sweep_to_its_page(tmp_path):
     sweep = configuration(tmp_path)
     script = ROOT / "workflow/sbatch.sh"
-    resources = ("--partition=main", "--ntasks=2", "--mem-per-cpu=700M", "--time=4")
+    resources = ("--partition=main", "--ntasks=3", "--mem-per-cpu=700M", "--time=4")
     done = run(["sbatch", "--wait", *resources, str(script), str(sweep)], cwd=tmp_path)
     told = "".join(path.read_text() for path in tmp_path.glob("slurm-*.out"))
     assert done.returncode == 0, told

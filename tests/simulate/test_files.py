@@ -43,8 +43,8 @@ def test_a_run_goes_on_from_any_state_to_the_same_bits(tmp_path, simulation):
     directions = undisturbed.record.states.direction
     assert {1, -1} == set(directions.tolist())
     for partial in found[:: 1 + len(found) // 20]:
-        write_checkpoint(tmp_path / "checkpoint.nc", partial, provenance())
-        resumed = read_checkpoint(tmp_path / "checkpoint.nc", simulation)
+        path = write_checkpoint(tmp_path, "checkpoint", partial, provenance())
+        resumed = read_checkpoint(path, simulation)
         computed = []
         result = run_simulation(simulation, resume=resumed, keep=computed.append)
         np.testing.assert_equal(asdict(result.record), asdict(undisturbed.record))
@@ -56,8 +56,8 @@ def test_a_run_goes_on_from_any_state_to_the_same_bits(tmp_path, simulation):
 @pytest.mark.parametrize(("simulation", "sites"), [(CYCLE, "angle"), (LINE, "y")])
 def test_fronts_of_a_checkpoint_have_the_sites_of_their_geometry(tmp_path, simulation, sites):
     _, found = checkpoints(simulation)
-    write_checkpoint(tmp_path / "checkpoint.nc", found[0], provenance())
-    with xr.open_dataset(tmp_path / "checkpoint.nc") as dataset:
+    path = write_checkpoint(tmp_path, "checkpoint", found[0], provenance())
+    with xr.open_dataset(path) as dataset:
         assert dataset["last_front"].dims == dataset["turning_front"].dims == (sites,)
         assert dataset["last_front"].attrs["long_name"] == "front of the last state"
 
@@ -65,8 +65,8 @@ def test_fronts_of_a_checkpoint_have_the_sites_of_their_geometry(tmp_path, simul
 def test_a_record_without_fronts_and_energies_goes_on_too(tmp_path):
     simulation = replace(CYCLE, record_fronts=False, record_energy=False)
     undisturbed, found = checkpoints(simulation)
-    write_checkpoint(tmp_path / "checkpoint.nc", found[5], provenance())
-    resumed = read_checkpoint(tmp_path / "checkpoint.nc", simulation)
+    path = write_checkpoint(tmp_path, "checkpoint", found[5], provenance())
+    resumed = read_checkpoint(path, simulation)
     record = run_simulation(simulation, resume=resumed).record
     assert record.fronts is None
     assert record.dissipated_energy is None
@@ -82,8 +82,7 @@ def test_a_checkpoint_of_another_load_is_refused():
 
 def test_a_truncated_checkpoint_and_that_of_another_simulation_are_refused(tmp_path):
     _, found = checkpoints(CYCLE)
-    path = tmp_path / "checkpoint.nc"
-    write_checkpoint(path, found[2], provenance())
+    path = write_checkpoint(tmp_path, "checkpoint", found[2], provenance())
     with pytest.raises(UnreadableFileError, match="is no checkpoint of"):
         read_checkpoint(path, STEADY)
     path.write_bytes(path.read_bytes()[:3000])

@@ -181,7 +181,7 @@ def test_a_sweep_of_lines_is_run_aggregated_and_fitted_as_one_of_spheres(tmp_pat
     # A longer spring holds less.
     assert np.all(factor[1].mean(axis=-1) > factor[0].mean(axis=-1))
     simulation = SWEEP.simulation(SWEEP.spectra[0], SWEEP.elastic_energies[0], 0)
-    result = Store(tmp_path).result(simulation)
+    result = Store(tmp_path).result(SWEEP, simulation)
     assert result.record.status is Status.STEADY
     assert np.isfinite(result.record.end_load)
 

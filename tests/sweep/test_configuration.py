@@ -12,17 +12,18 @@ import crackfront as cf
 from crackfront.analysis.law import spectral_breadth
 from crackfront.core.spectrum import TabulatedSpectrum
 from crackfront.core.units import Scales
-from crackfront.data.files import write_dataset
+from crackfront.data.files import write_derived
 from crackfront.data.provenance import provenance
 from crackfront.data.section import ConfigurationError, movable_text, yaml_mapping
 from crackfront.simulate.laws import Settings
 from crackfront.simulate.sphere.steady import SteadySchedule
 from crackfront.sweep.configuration import load_configuration
 from crackfront.sweep.rows import failed_row
-from crackfront.sweep.table import read_table, rows_dataset
+from crackfront.sweep.table import read_table
 from crackfront.topography.options import ReadingOptions
 from crackfront.topography.scan.reading import read_measurements
 from crackfront.topography.spectrum.measures import measured_surface
+from tests.commands import dataset_of_rows
 from tests.yaml_texts import from_yaml, to_yaml
 
 ROOT = Path(__file__).parents[2]
@@ -246,10 +247,6 @@ BAD = {
         "fronts of 1e+12 sites would need 512 TB of memory; here are",
     ),
     "load without end": (("step: 0.1", "step: 1e-14"), "of memory; here are"),
-    "years": (
-        ("angles_per_cutoff: 2", "angles: 1000000000"),
-        "years of processor time; use fewer, coarser or larger load steps",
-    ),
     "unknown key": (
         ("realisations: 2", "realisation: 2\nrealisations: 2"),
         "unknown key realisation; did you mean realisations?",
@@ -343,7 +340,7 @@ BAD = {
     ),
     "step zero": (("step: 0.1", "step: 0"), "load.step is 0; it must be greater than 0"),
     "name twice": (("name: rough", "name: flat"), "spectrum name 'flat' stands twice"),
-    "name too long": (("name: rough", f"name: {44 * 'a'}"), "it must have at most 43 characters"),
+    "name too long": (("name: rough", f"name: {101 * 'a'}"), "it must have at most 100 characters"),
     "name of a path": (
         ("name: rough", "name: a/b"),
         "spectra[1].name is 'a/b'; it must consist of letters, digits, _ and -",
@@ -561,8 +558,8 @@ def test_words_of_a_surface_that_cannot_be_used_are_refused(tmp_path, words, sen
 
 def test_the_table_of_a_sweep_keeps_measured_spectra(film, tmp_path):
     rows = [failed_row(one, "refused", "a test") for one in film.simulations()]
-    dataset = rows_dataset(film, rows, range(film.n_realisation))
-    write_dataset(tmp_path / "hysteresis.nc", dataset, provenance("text"))
+    dataset = dataset_of_rows(film, rows)
+    write_derived(tmp_path / "hysteresis.nc", dataset, provenance("text"))
     table = read_table(tmp_path / "hysteresis.nc")
     measured, flat = (item.spectrum for item in film.spectra)
     assert table.shape_of(0).wavelengths == measured.wavelengths
@@ -580,7 +577,7 @@ def test_the_table_of_a_sweep_in_metres_is_converted_for_the_sphere_that_it_stat
     content["load"] = {"max_penetration": 3e-6, "step": 1e-6}
     sweep = load_configuration(written(tmp_path, to_yaml(content)))
     rows = [failed_row(one, "refused", "a test") for one in sweep.simulations()]
-    table = rows_dataset(sweep, rows, range(sweep.n_realisation))
+    table = dataset_of_rows(sweep, rows)
     found = cf.in_si_units(table)
     assert found.short_cutoff.values == pytest.approx(6e-6, rel=1e-12)
     assert found.short_cutoff.attrs["units"] == "m"
@@ -616,7 +613,7 @@ def test_a_table_without_a_sphere_is_not_converted_without_one(tmp_path):
     sweep = load_configuration(written(tmp_path, GOOD))
     rows = [failed_row(one, "refused", "a test") for one in sweep.simulations()]
     with pytest.raises(ValueError, match="the data do not state a sphere"):
-        cf.in_si_units(rows_dataset(sweep, rows, range(sweep.n_realisation)))
+        cf.in_si_units(dataset_of_rows(sweep, rows))
 
 
 def test_a_flat_spectrum_needs_no_hurst_exponent_and_a_longer_roll_off_does(tmp_path):

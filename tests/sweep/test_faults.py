@@ -68,27 +68,6 @@ def running(configuration, folder, *more, until=3):
         yield process
 
 
-def children(process):
-    """Identifiers and command lines of the descendants of a process."""
-    listing = ["ps", "-ww", "-eo", "pid=,ppid=,args="]
-    listed = subprocess.run(listing, capture_output=True, text=True, check=True).stdout
-    rows = [line.split(maxsplit=2) for line in listed.splitlines()]
-    found = {process}
-    for _ in rows:
-        found |= {int(child) for child, parent, _ in rows if int(parent) in found}
-    names = {int(child): name for child, _, name in rows}
-    return {child: names[child] for child in found - {process}}
-
-
-def gone(processes, seconds=20):
-    """Whether processes end in time."""
-    for _ in range(10 * seconds):
-        if not any(Path(f"/proc/{one}").exists() for one in processes):
-            return True
-        time.sleep(0.1)
-    return False
-
-
 @pytest.fixture(scope="module")
 def undisturbed(tmp_path_factory):
     """A configuration whose simulations last until they are killed, and its undisturbed folder."""
@@ -119,40 +98,34 @@ def same(undisturbed):
     return compare
 
 
-@pytest.mark.parametrize("ranks", ["1", pytest.param("2", marks=pytest.mark.mpi)])
 def test_a_kill_at_any_moment_costs_what_is_in_no_batch_and_corrupts_nothing(
-    configuration, same, tmp_path, rng, ranks
+    configuration, same, tmp_path, rng
 ):
     n_finished = int(rng.integers(1, 5))
-    with running(configuration, tmp_path, "--ranks", ranks, until=n_finished) as process:
-        found = children(process.pid)
+    with running(configuration, tmp_path, until=n_finished) as process:
         time.sleep(rng.uniform(0.5, 1))  # some batches
         process.kill()
-    assert gone(found, 5)
     assert_whole(tmp_path)
     kept = stored(tmp_path)
     assert len(kept) >= n_finished
-    assert continued(configuration, tmp_path, "--ranks", ranks) == N_SIMULATION - len(kept)
+    assert continued(configuration, tmp_path) == N_SIMULATION - len(kept)
     assert kept.items() <= stored(tmp_path).items()
     assert_tidy(tmp_path)
     assert same(tmp_path)
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("ranks", ["1", pytest.param("2", marks=pytest.mark.mpi)])
 def test_ten_kills_at_random_moments_lose_nothing_that_was_stored(
-    configuration, same, tmp_path, rng, ranks
+    configuration, same, tmp_path, rng
 ):
     kept, folder = {}, tmp_path / "sweep"
-    told = command(configuration, folder, "--checkpoint", BATCH_SECONDS, "--ranks", ranks)
+    told = command(configuration, folder, "--checkpoint", BATCH_SECONDS)
     for _ in range(10):
         with subprocess.Popen(told, stdout=subprocess.DEVNULL, process_group=0) as process:
             try:
                 process.wait(rng.uniform(1, 8))
             except subprocess.TimeoutExpired:
-                found = children(process.pid)
                 process.kill()
-                assert gone(found, 5)
         assert_whole(folder)
         assert kept.items() <= (kept := stored(folder)).items()
     assert continued(configuration, folder) == N_SIMULATION - len(kept)
@@ -171,27 +144,6 @@ def assert_tidy(folder):
     for shard in (folder / "curves").iterdir():
         [path] = curve_files(shard)
         assert {*shard.iterdir()} == {path, shard / ".lock"}
-
-
-@pytest.mark.mpi
-@pytest.mark.parametrize(("victim", "again"), [("rank", "1"), slow("launcher", "2")])
-def test_a_killed_rank_or_launcher_ends_the_job_and_costs_what_was_running(
-    configuration, same, tmp_path, victim, again
-):
-    with running(configuration, tmp_path, "--ranks", "2") as process:
-        found = children(process.pid)
-        ranks = {one for one, name in found.items() if name.startswith(sys.executable)}
-        launchers = {one for one, name in found.items() if "mpiexec" in name.split()[0]}
-        assert len(ranks) == 3
-        os.kill(max(ranks) if victim == "rank" else min(launchers), signal.SIGKILL)
-        output = process.stdout.read()
-    assert process.returncode == 1
-    assert "the same command continues with the others" in output
-    assert gone(found)
-    kept = len(stored(tmp_path))
-    assert 0 < kept < N_SIMULATION
-    assert continued(configuration, tmp_path, "--ranks", again) == N_SIMULATION - kept
-    assert same(tmp_path)
 
 
 @pytest.mark.parametrize("first", ["ends", slow("is killed")])
@@ -219,29 +171,18 @@ def test_a_second_writer_of_a_shard_waits_and_computes_nothing_twice(
 
 
 @pytest.mark.usefixtures("_heeded_signals")
-@pytest.mark.parametrize(
-    ("ranks", "told"),
-    [(1, signal.SIGINT), slow(1, signal.SIGTERM)]
-    + [
-        pytest.param(2, told, marks=[pytest.mark.mpi, pytest.mark.slow])
-        for told in (signal.SIGTERM, signal.SIGINT, signal.SIGHUP)
-    ],
-)
-def test_a_signal_stores_what_runs_and_ends_cleanly(configuration, same, tmp_path, ranks, told):
-    with running(configuration, tmp_path, "--ranks", str(ranks)) as process:
-        found = children(process.pid)
-        # As a terminal does it, which knows the group alone and not the ranks.
-        os.killpg(process.pid, told)
+@pytest.mark.parametrize("told", [signal.SIGINT, slow(signal.SIGTERM), slow(signal.SIGHUP)])
+def test_a_signal_stores_what_runs_and_ends_cleanly(configuration, same, tmp_path, told):
+    with running(configuration, tmp_path) as process:
+        process.send_signal(told)
         output = process.stdout.read()
     assert process.returncode == 75
     assert output.count("Stopping at the next load step") == output.count("Interrupted. ") == 1
     assert not any(word in output for word in ("Error", "Traceback", "Abort"))
-    assert gone(found)
     kept = len(stored(tmp_path))
     assert 3 <= kept < N_SIMULATION
     # A simulation that has not come to its first state, or just ends, leaves none.
-    assert len([*tmp_path.glob("curves/*/checkpoint-*.nc")]) <= ranks
-    assert not list(tmp_path.rglob(".stop-*"))
+    assert len([*tmp_path.glob("curves/*/checkpoint-*.nc")]) <= 1
     assert continued(configuration, tmp_path) == N_SIMULATION - kept
     assert_tidy(tmp_path)
     assert same(tmp_path)

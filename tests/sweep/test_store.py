@@ -647,12 +647,6 @@ def test_the_longest_simulations_start_first(tmp_path):
     assert costs == sorted(costs, reverse=True)
 
 
-def test_files_take_the_disk_that_a_plan_expects(made):
-    expected = sum(expected_cost(one).disk for one in SWEEP.simulations())
-    size = sum(path.stat().st_size for path in made.folder.glob("curves/*/*.nc"))
-    assert 0.5 < size / expected < 2
-
-
 def test_spectra_of_one_shape_and_two_names_have_results_of_their_own(configuration, tmp_path):
     change(configuration, "name: rough", "name: twin", "roll_off: 0.2, hurst: 0.8", "hurst: 1.0")
     folder = tmp_path / "sweep"

@@ -10,8 +10,8 @@ rule aggregate:
         f"{RESULTS}/benchmarks/aggregate.tsv"
     resources:
         cpus_per_task=1,
-        mem_mb=megabytes(POSTPROCESSING["aggregate"].memory),
-        runtime=minutes(POSTPROCESSING["aggregate"].seconds),
+        mem_mb=2000,
+        runtime=60,
     params:
         configuration=configuration,
         results=folder,

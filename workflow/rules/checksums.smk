@@ -19,7 +19,7 @@ rule checksums:
         f"{RESULTS}/benchmarks/checksums.tsv"
     resources:
         cpus_per_task=1,
-        mem_mb=megabytes(POSTPROCESSING["aggregate"].memory),
+        mem_mb=2000,
         runtime=30,
     params:
         results=folder,

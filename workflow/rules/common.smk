@@ -20,8 +20,6 @@ from crackfront.sweep.configuration import (
     refuse_other_configuration,
     results_folder,
 )
-from crackfront.sweep.jobs import cores_of_job
-from crackfront.sweep.postprocessing import postprocessing_costs
 from crackfront.sweep.requests import (
     Request,
     fit_request,
@@ -103,32 +101,24 @@ FIT_REQUEST = requested(RESULTS, fit_request(SWEEP))
 SWEEP_FIGURES = ["hysteresis", "loop", "factor"]
 PAPER = f"results/figures/{SCALE}"
 ACCURACY = "results/accuracy"
-POSTPROCESSING = postprocessing_costs(SWEEP)
 FIRSTS = {item.name: SWEEP.one_per_amplitude(item) for item in SWEEP.spectra}
 RANK_BYTES = max(
     expected_cost(one).memory for firsts in FIRSTS.values() for one in firsts
 )
-TIMES = {
-    name: [expected_cost(one).seconds for one in FIRSTS[shard.item.name]]
+SECONDS = {
+    name: len(shard.realisations)
+    * sum(expected_cost(one).seconds for one in FIRSTS[shard.item.name])
     for name, shard in SHARDS.items()
 }
-SECONDS = {
-    name: len(shard.realisations) * sum(TIMES[name]) for name, shard in SHARDS.items()
-}
 
 
-def chosen_ranks():
-    """Cores of a job of those shards that are left."""
-    left = [name for name in SHARDS if not Path(RESULTS, f"shards/{name}.nc").exists()]
-    return cores_of_job(
-        [SECONDS[name] for name in left or SHARDS],
-        [max(TIMES[name]) for name in left or SHARDS],
-        workflow.resource_settings.cores or 1,
-        memory_at_hand() / RANK_BYTES,
-    )
+def shard_cores(cores):
+    """One core where twice as many shards are left and memory holds them, else all in turn."""
+    n_left = sum(not Path(RESULTS, f"shards/{name}.nc").exists() for name in SHARDS)
+    return 1 if n_left >= 2 * cores and cores * RANK_BYTES < memory_at_hand() else cores
 
 
-RANKS = config.get("ranks", chosen_ranks())
+RANKS = config.get("ranks", shard_cores(workflow.resource_settings.cores or 1))
 # Names, as reading this must not import what computes the figures.
 ANIMATED = ["beyond-animation"]
 
@@ -188,6 +178,12 @@ def command(name):
     return path.replace("{", "{{").replace("}", "}}")
 
 
+def launcher():
+    """The mpiexec of the environment, or that of the system (`make env MPI=system`)."""
+    path = Path(sys.executable).parent / "mpiexec"
+    return shlex.quote(str(path)) if path.exists() else "mpiexec"
+
+
 def importable(path):
     """Setting of a shell by which Python finds modules in a folder."""
     quoted = shlex.quote(str(path)).replace("{", "{{").replace("}", "}}")
@@ -195,7 +191,8 @@ def importable(path):
 
 
 CRACKFRONT = command("crackfront")
-STUDIES = importable(BASE) + command("python") + " -m studies"
+PYTHON = command("python")
+STUDIES = importable(BASE) + PYTHON + " -m studies"
 LOGGED = " > >(trap '' INT TERM HUP; exec tee {log:q}) 2>&1"
 # Of simulations a terminal shows one bar of the whole sweep, and what goes wrong; a log all lines.
 SIZES = {
@@ -237,16 +234,6 @@ def megabytes(number):
 def minutes(seconds):
     """Time to ask for where some seconds are expected, which on slower machines are more."""
     return 10 + int(seconds * 3 / 60)
-
-
-def rank_options(resources, threads):
-    """How many ranks simulate and what starts them, where a profile says so."""
-    # The rank that hands out the work mostly sleeps: it is no task of a profile, and no thread.
-    ranks = resources.get("tasks", threads)
-    launcher = resources.get("mpi")
-    return f"--ranks {ranks}" + (
-        f" --launcher {shlex.quote(launcher)}" if launcher else ""
-    )
 
 
 def block_option(shard):

@@ -19,8 +19,8 @@ rule sweep_figures:
         f"{RESULTS}/benchmarks/figures.tsv"
     resources:
         cpus_per_task=1,
-        mem_mb=megabytes(POSTPROCESSING["figures"].memory),
-        runtime=minutes(POSTPROCESSING["figures"].seconds),
+        mem_mb=2000,
+        runtime=60,
     params:
         configuration=configuration,
         results=folder_above,

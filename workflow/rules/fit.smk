@@ -10,8 +10,8 @@ rule fit:
         f"{RESULTS}/benchmarks/fit.tsv"
     resources:
         cpus_per_task=1,
-        mem_mb=megabytes(POSTPROCESSING["fit"].memory),
-        runtime=minutes(POSTPROCESSING["fit"].seconds),
+        mem_mb=2000,
+        runtime=60,
     params:
         configuration=configuration,
         results=folder,
@@ -38,8 +38,8 @@ rule summary:
         f"{RESULTS}/benchmarks/summary.tsv"
     resources:
         cpus_per_task=1,
-        mem_mb=megabytes(POSTPROCESSING["summary"].memory),
-        runtime=minutes(POSTPROCESSING["summary"].seconds),
+        mem_mb=2000,
+        runtime=60,
     params:
         configuration=configuration,
         results=folder,

@@ -63,8 +63,8 @@ rule figure_of_sweep:
         f"{PAPER}/benchmarks/si-5-data.tsv"
     resources:
         cpus_per_task=1,
-        mem_mb=megabytes(POSTPROCESSING["fit"].memory),
-        runtime=minutes(POSTPROCESSING["fit"].seconds),
+        mem_mb=2000,
+        runtime=60,
     params:
         file=figure_file,
         results=folder_above,

@@ -16,9 +16,9 @@ rule request:
         " && printf %s {params.text:q} > {output:q}"
 
 
-# One job a shard, spread over MPI ranks inside; its output is the rows of the shard. Each finished
-# simulation stands in `curves/`, which no rule declares: Snakemake deletes what a failed job
-# declares, and they must survive.
+# One job a shard, spread over MPI ranks inside; its output is the rows of the shard. Finished
+# simulations are in `curves/`, which no rule declares: Snakemake deletes what a failed job declares,
+# and they must survive. One rank hands out the work and hardly needs a core.
 rule simulate:
     input:
         lambda wildcards: SHARD_REQUESTS[wildcards.shard],
@@ -33,19 +33,26 @@ rule simulate:
     priority: lambda wildcards: 100 + SECONDS[wildcards.shard]
     threads: RANKS
     resources:
-        # Tasks and a launcher are a profile's. What is not done in time goes on in the next job.
+        # A profile may set both: Slurm lets a launcher start two tasks or more, and no launcher one.
+        tasks=lambda wildcards, threads: threads + 1 if threads > 1 else 1,
+        mpi=lambda wildcards, threads: launcher() if threads > 1 else "",
         cpus_per_task=1,
         mem_mb_per_cpu=megabytes(RANK_BYTES),
-        runtime=240,
+        runtime=240,  # minutes; what is not done by then goes on in the next job
     params:
         spectrum=lambda wildcards: SHARDS[wildcards.shard].item.name,
         block=lambda wildcards: block_option(SHARDS[wildcards.shard]),
-        # No reason to run a job again, as a function of resources is none to Snakemake.
-        ranks=lambda wildcards, resources, threads: rank_options(resources, threads),
+        # One task needs no launcher. As a function of resources this is no reason to run again.
+        launch=lambda wildcards, resources: (
+            f"{resources.mpi or launcher()} -n {resources.tasks}"
+            if resources.tasks > 1
+            else ""
+        ),
         configuration=configuration,
         results=folder_above,
     shell:
         # The command takes the shell's place, so that it gets the notice before a time limit.
-        f": > {{log:q}}; exec {CRACKFRONT} simulate {{params.configuration:q}}"
+        f": > {{log:q}}; export OMP_NUM_THREADS=1; exec {{params.launch}}"
+        f" {PYTHON} -m crackfront simulate {{params.configuration:q}}"
         f" --output {{params.results:q}} --spectrum {{params.spectrum}}"
-        f" --realisations {{params.block}} {{params.ranks}}{SIMULATED}"
+        f" --realisations {{params.block}}{SIMULATED}"

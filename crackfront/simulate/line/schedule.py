@@ -179,9 +179,7 @@ class LineSchedule(Schedule):
 
     def expected_motion(self, surface: RandomSurface) -> ExpectedMotion:
         """States of the lead-in and of the period, in both directions."""
-        steps = math.ceil(self.lead_in / self.period * self.n_period)
-        travel, n_state = self.step / surface.correlation_length, steps + self.n_period + 1
-        return ExpectedMotion(travel, 2.0 * n_state, full_cycle=False)
+        return ExpectedMotion(2.0 * self.loads.size, self.step / surface.correlation_length)
 
     def spring_at(self, work_of_adhesion: float) -> float:
         """Length of the springs, whatever the work of adhesion."""

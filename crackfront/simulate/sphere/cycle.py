@@ -96,7 +96,7 @@ class FullCycle(SphereSchedule, LoadSchedule):
         # The hysteresis lifts w_retr by about twice e_el, and contact is lost that much later.
         lost_at = jkr.pull_off_penetration(1 + 2 * surface.elastic_energy)
         n_state = (2 * self.max_penetration - lost_at) / self.step
-        return ExpectedMotion(travel / surface.correlation_length, n_state, full_cycle=True)
+        return ExpectedMotion(n_state, travel / surface.correlation_length)
 
     def steady_load(
         self, surface: RandomSurface, works: tuple[float, float], travel: float, n_state: int

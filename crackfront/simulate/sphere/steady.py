@@ -47,13 +47,11 @@ _LARGEST_FACTOR, _FAR_BEHIND = 2.6, 20.0
 """A circle may also be a start this many correlation lengths behind where the largest k holds one:
 on fine spectra the drive above needs hundreds; fronts deviate by 7 at most."""
 
-_LEAD_IN, _FEWEST_STEADY = 1.0, 9.0
-"""States of a branch before it is steady; the fewest of an approach."""
+_FEWEST_STATES = 9.0
+"""States of an approach that turns as early as it may: one before it is steady."""
 
-_NOISE, _SHARED = 0.6, 0.17
-"""Constants of the variance of k from state to state, _NOISE / ((e_el + _SHARED l) n), on a front
-of n lengths l; l is the correlation length times :func:`integral_breadth`. Below e_el = _SHARED l
-both branches share most of the variance: a contact of few such lengths is pinned as a whole."""
+_VARIANCE = 0.6
+"""Variance of k from state to state, times e_el and the independent pieces of the front."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -152,9 +150,9 @@ class SteadySchedule(SphereSchedule):
         n_most = 1 + math.floor((self.max_penetration - self.start) / step)
         alike = length * integral_breadth(surface.kind, surface.spectrum)
         n_independent = 2 * math.pi * jkr.equilibrium_radius(self.start) / alike
-        variance = _NOISE / ((surface.elastic_energy + _SHARED * alike) * n_independent)
-        n_least = max(_FEWEST_STEADY, _LEAD_IN + variance / self.standard_error**2)
-        return ExpectedMotion(self.travel, 2 * min(n_most, n_least), full_cycle=False)
+        variance = _VARIANCE / (surface.elastic_energy * n_independent)
+        n_state = max(_FEWEST_STATES, 1 + variance / self.standard_error**2)
+        return ExpectedMotion(2 * min(n_most, n_state), self.travel)
 
     def steady_load(
         self, surface: RandomSurface, works: tuple[float, float], travel: float, n_state: int

@@ -10,14 +10,14 @@ import pytest
 from click.testing import CliRunner
 
 from crackfront.analysis.law import law_value, shipped_law
-from crackfront.data.files import write_dataset
+from crackfront.data.files import write_derived
 from crackfront.data.provenance import provenance
 from crackfront.sweep.configuration import load_configuration
 from crackfront.sweep.rows import failed_row
-from crackfront.sweep.table import rows_dataset
 from studies.__main__ import main
 from studies.law.cells import MEASURED, LawCell, _without_spacing, csv_rows, measured_cells
 from studies.law.fitting import fitted_law
+from tests.commands import dataset_of_rows
 
 ROOT = Path(__file__).parents[3]
 
@@ -75,8 +75,8 @@ def test_the_table_of_another_configuration_is_refused(tmp_path, monkeypatch, ve
     path.write_text(text)
     sweep = load_configuration(path)
     rows = [failed_row(one, "refused", "a test") for one in sweep.simulations()]
-    table = rows_dataset(sweep, rows, range(sweep.n_realisation))
-    write_dataset(Path("results/sweep/hysteresis.nc"), table, provenance(text))
+    table = dataset_of_rows(sweep, rows)
+    write_derived(Path("results/sweep/hysteresis.nc"), table, provenance(text))
     path.write_text(re.sub(r"^seed: \d+", "seed: 77", text, flags=re.M))
     done = CliRunner().invoke(main, ["law", verb, str(path), "--output", "out"])
     assert done.exit_code == 2

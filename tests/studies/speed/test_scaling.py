@@ -3,8 +3,6 @@
 import numpy as np
 import pytest
 
-from crackfront.sweep.configuration import load_configuration
-from crackfront.sweep.postprocessing import postprocessing_costs
 from studies.speed import scaling
 
 LOSSES = scaling.Losses(hand_out=1e-3, start=10.0)
@@ -42,6 +40,6 @@ def test_a_rank_hands_out_tasks_and_stores_their_curves():
 @pytest.mark.parametrize("n_simulation", [2_000, 100_000])
 def test_what_follows_the_simulations_has_the_memory_that_is_asked_for(tmp_path, n_simulation):
     path = scaling.synthetic(tmp_path, n_simulation)
-    for name, cost in postprocessing_costs(load_configuration(path)).items():
+    for name in scaling.LATE_COMMANDS:
         _, peak = scaling.in_fresh_process(scaling.late, path, name)
-        assert peak < 1.5 * cost.memory, name
+        assert peak < 2e9, name  # what the rules ask for

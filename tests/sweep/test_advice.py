@@ -16,7 +16,7 @@ from crackfront.simulate.run import run_simulation
 from crackfront.simulate.simulation import simulation_of
 from crackfront.simulate.sphere.cycle import FullCycle
 from crackfront.simulate.sphere.steady import SteadySchedule
-from crackfront.sweep.expectation import expectation
+from crackfront.sweep.advice import expectation
 from tests.commands import run
 from tests.yaml_texts import from_yaml, to_yaml
 
