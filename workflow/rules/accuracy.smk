@@ -1,4 +1,5 @@
 # `make accuracy`: the numerical errors of every scene, their laws, tables and figures.
+ACCURACY = "results/accuracy"
 MEASURED = [
     f"{shape}-{energy}"
     for shape in ("chemical", "flat", "h08", "h03")

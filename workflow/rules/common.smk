@@ -99,75 +99,6 @@ SHARD_REQUESTS = {
 TABLE_REQUEST = requested(RESULTS, table_request(SWEEP))
 FIT_REQUEST = requested(RESULTS, fit_request(SWEEP))
 SWEEP_FIGURES = ["hysteresis", "loop", "factor"]
-PAPER = f"results/figures/{SCALE}"
-ACCURACY = "results/accuracy"
-FIRSTS = {item.name: SWEEP.one_per_amplitude(item) for item in SWEEP.spectra}
-RANK_BYTES = max(
-    expected_cost(one).memory for firsts in FIRSTS.values() for one in firsts
-)
-SECONDS = {
-    name: len(shard.realisations)
-    * sum(expected_cost(one).seconds for one in FIRSTS[shard.item.name])
-    for name, shard in SHARDS.items()
-}
-
-
-def shard_cores(cores):
-    """One core where twice as many shards are left and memory holds them, else all in turn."""
-    n_left = sum(not Path(RESULTS, f"shards/{name}.nc").exists() for name in SHARDS)
-    return 1 if n_left >= 2 * cores and cores * RANK_BYTES < memory_at_hand() else cores
-
-
-RANKS = config.get("ranks", shard_cores(workflow.resource_settings.cores or 1))
-# Names, as reading this must not import what computes the figures.
-ANIMATED = ["beyond-animation"]
-
-
-def expected_seconds(name):
-    """Processor time of the data of a figure of the paper."""
-    parameters = load_figure(Path(FIGURE_SETTINGS, f"{name}.yaml"), SCALE)
-    return figure(name).seconds(parameters)
-
-
-# Those that take longest go first: one that began last would leave the other cores waiting.
-LONGEST = [
-    "main-3ab",
-    "main-3cd",
-    "main-5bc",
-    "beyond-avalanches",
-    "beyond-roughness",
-]
-
-
-def figure_request(name):
-    """What a figure of the paper is asked for."""
-    parameters = load_figure(Path(FIGURE_SETTINGS, f"{name}.yaml"), SCALE)
-    text = f"{parameters!r}\nversions {PHYSICS_VERSION} and {ROWS_VERSION}\n"
-    return requested(PAPER, Request(name, text))
-
-
-def figure_inputs(wildcards):
-    """What data of a figure are computed from: its request, module, and files of its parameters."""
-    name = getattr(wildcards, "figure", "si-5")
-    parameters = load_figure(Path(FIGURE_SETTINGS, f"{name}.yaml"), SCALE)
-    files = files_of_figure(parameters)
-    return [figure_request(name), str(figure_sources(name)[0]), *files]
-
-
-def figure_drawing_module(wildcards):
-    """Module that draws and checks a figure of the paper."""
-    return str(figure_sources(wildcards.figure)[1])
-
-
-def validation_request(wildcards):
-    """What a validation is asked for."""
-    text = f"{load_validation(Path(VALIDATION))!r}\nversions {PHYSICS_VERSION} and {ROWS_VERSION}\n"
-    return requested(VALIDATED, Request("validation", text))
-
-
-def figure_file(wildcards, output):
-    """Configuration of a figure of the paper, whose name is that of its data."""
-    return f"{FIGURE_SETTINGS}/{Path(output[0]).stem}.yaml"
 
 
 # Commands stand beside the Python that runs Snakemake, in a folder of any name. What they print is
@@ -194,17 +125,6 @@ CRACKFRONT = command("crackfront")
 PYTHON = command("python")
 STUDIES = importable(BASE) + PYTHON + " -m studies"
 LOGGED = " > >(trap '' INT TERM HUP; exec tee {log:q}) 2>&1"
-# Of simulations a terminal shows one bar of the whole sweep, and what goes wrong; a log all lines.
-SIZES = {
-    name: len(SWEEP.elastic_energies) * len(shard.realisations)
-    for name, shard in SHARDS.items()
-}
-BAR = SweepBar(SIZES, Path(RESULTS))
-SIMULATED = (
-    " >> {log:q} 2> >(trap '' INT TERM HUP; exec tee --append {log:q} >&2)"
-    if BAR.terminal
-    else LOGGED
-)
 
 
 # Functions of an output are no reason to run a job again, and know a module's prefix of paths.
@@ -234,8 +154,3 @@ def megabytes(number):
 def minutes(seconds):
     """Time to ask for where some seconds are expected, which on slower machines are more."""
     return 10 + int(seconds * 3 / 60)
-
-
-def block_option(shard):
-    """First and last realisation of a job."""
-    return f"{shard.realisations.start}-{shard.realisations.stop - 1}"

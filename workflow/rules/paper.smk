@@ -1,5 +1,49 @@
 # `make figures`: every computed figure of the paper, with its data and its checks. One job computes
 # the data of a figure, another draws them, so that a change of the drawing computes nothing again.
+PAPER = f"results/figures/{SCALE}"
+# Names, as reading this must not import what computes the figures.
+ANIMATED = ["beyond-animation"]
+# Those that take longest go first: one that began last would leave the other cores waiting.
+LONGEST = [
+    "main-3ab",
+    "main-3cd",
+    "main-5bc",
+    "beyond-avalanches",
+    "beyond-roughness",
+]
+
+
+def expected_seconds(name):
+    """Processor time of the data of a figure of the paper."""
+    parameters = load_figure(Path(FIGURE_SETTINGS, f"{name}.yaml"), SCALE)
+    return figure(name).seconds(parameters)
+
+
+def figure_request(name):
+    """What a figure of the paper is asked for."""
+    parameters = load_figure(Path(FIGURE_SETTINGS, f"{name}.yaml"), SCALE)
+    text = f"{parameters!r}\nversions {PHYSICS_VERSION} and {ROWS_VERSION}\n"
+    return requested(PAPER, Request(name, text))
+
+
+def figure_inputs(wildcards):
+    """What data of a figure are computed from: its request, module, and files of its parameters."""
+    name = getattr(wildcards, "figure", "si-5")
+    parameters = load_figure(Path(FIGURE_SETTINGS, f"{name}.yaml"), SCALE)
+    files = files_of_figure(parameters)
+    return [figure_request(name), str(figure_sources(name)[0]), *files]
+
+
+def figure_drawing_module(wildcards):
+    """Module that draws and checks a figure of the paper."""
+    return str(figure_sources(wildcards.figure)[1])
+
+
+def figure_file(wildcards, output):
+    """Configuration of a figure of the paper, whose name is that of its data."""
+    return f"{FIGURE_SETTINGS}/{Path(output[0]).stem}.yaml"
+
+
 wildcard_constraints:
     figure="(main|si|beyond)-[a-z0-9-]+",
 

@@ -1,6 +1,8 @@
 # What a stage is asked for, in a small file whose name ends with the digest of its text. Another
 # configuration asks for another file, which is newer than what the stage made before; so dates alone
 # say what belongs to it, whatever Snakemake remembers. The file of the earlier request goes.
+
+
 localrules:
     request,
 
@@ -14,6 +16,44 @@ rule request:
     shell:
         'find "$(dirname {output:q})" -maxdepth 1 -name {params.siblings:q} -delete'
         " && printf %s {params.text:q} > {output:q}"
+
+
+FIRSTS = {item.name: SWEEP.one_per_amplitude(item) for item in SWEEP.spectra}
+RANK_BYTES = max(
+    expected_cost(one).memory for firsts in FIRSTS.values() for one in firsts
+)
+SECONDS = {
+    name: len(shard.realisations)
+    * sum(expected_cost(one).seconds for one in FIRSTS[shard.item.name])
+    for name, shard in SHARDS.items()
+}
+
+
+def shard_cores(cores):
+    """One core where twice as many shards are left and memory holds them, else all in turn."""
+    n_left = sum(not Path(RESULTS, f"shards/{name}.nc").exists() for name in SHARDS)
+    return 1 if n_left >= 2 * cores and cores * RANK_BYTES < memory_at_hand() else cores
+
+
+RANKS = config.get("ranks", shard_cores(workflow.resource_settings.cores or 1))
+
+
+# Of simulations a terminal shows one bar of the whole sweep, and what goes wrong; a log all lines.
+SIZES = {
+    name: len(SWEEP.elastic_energies) * len(shard.realisations)
+    for name, shard in SHARDS.items()
+}
+BAR = SweepBar(SIZES, Path(RESULTS))
+SIMULATED = (
+    " >> {log:q} 2> >(trap '' INT TERM HUP; exec tee --append {log:q} >&2)"
+    if BAR.terminal
+    else LOGGED
+)
+
+
+def block_option(shard):
+    """First and last realisation of a job."""
+    return f"{shard.realisations.start}-{shard.realisations.stop - 1}"
 
 
 # One job a shard, spread over MPI ranks inside; its output is the rows of the shard. Finished

@@ -1,5 +1,11 @@
 # `make validate`: the crack-front model against boundary elements. The cycles of the boundary
 # elements are resumed from their last load step; the rule owns what is made of them.
+def validation_request(wildcards):
+    """What a validation is asked for."""
+    text = f"{load_validation(Path(VALIDATION))!r}\nversions {PHYSICS_VERSION} and {ROWS_VERSION}\n"
+    return requested(VALIDATED, Request("validation", text))
+
+
 rule validation:
     input:
         f"{VALIDATED}/hysteresis.nc",
