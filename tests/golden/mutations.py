@@ -241,8 +241,8 @@ MUTATIONS = [
     ),
     Mutation(
         "analysis/sweep_law.py",
-        "measured * gain.value, measured",
-        "measured * 1.000001 * gain.value, measured",
+        "factor.value * gain.value, factor",
+        "factor.value * 1.000001 * gain.value, factor",
         "k of the infinite contact by 1e-6",
     ),
     Mutation("analysis/estimate.py", "_CONFIDENCE = 0.95", "_CONFIDENCE = 0.950001", "intervals"),
