@@ -84,11 +84,15 @@ def write_derived(path: Path, dataset: xr.Dataset, origin: Provenance) -> None:
     """Write a dataset as :func:`write_dataset`, and its checksum into `<path>.sha256` beside it.
 
     HDF5 does not check the metadata of a file: a flipped bit there may change what is read, and
-    from some damage it never returns. After a kill between both files the checksum is wrong, and
-    the file is derived again.
+    from some damage it never returns. The checksum comes first, so that a new file never appears
+    without it; after a kill in between, an earlier file counts as damaged and is derived again.
     """
-    write_dataset(path, dataset, origin)
-    write_text(digest_path(path), sums_text({path.name: file_digest(path)}))
+
+    def write(part: Path) -> None:
+        _write_netcdf(part, dataset, origin)
+        write_text(digest_path(path), sums_text({path.name: file_digest(part)}))
+
+    replace_atomically(path, write)
 
 
 def write_named_by_digest(folder: Path, name: str, dataset: xr.Dataset, origin: Provenance) -> Path:
@@ -246,7 +250,8 @@ def set_aside_if_damaged(path: Path) -> str:
 
     The checksum is in the name of the file, or in `<path>.sha256` beside it.
     """
-    if is_whole(path):
+    # A writer may have replaced the file and its checksum during the first look.
+    if is_whole(path) or is_whole(path):
         return ""
     aside = set_aside(path)
     digest_path(path).unlink(missing_ok=True)

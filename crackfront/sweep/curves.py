@@ -93,12 +93,11 @@ class FinishedSimulation:
     arithmetic: str
 
 
-def curve_files(folder: Path, kind: str = "*") -> list[Path]:
+def curve_files(folder: Path) -> list[Path]:
     """Files of finished simulations in the folder of a shard, in the order of their names."""
-    paths = sorted(folder.glob(f"{kind}-*.nc"))
     return [
         path
-        for path in paths
+        for path in sorted(folder.glob("*.nc"))
         if path.name.startswith((BATCH, MERGED)) and path.is_file() and stated_digest(path)
     ]
 
@@ -194,17 +193,16 @@ def _labelled(columns: dict[str, Any]) -> xr.Dataset:
         if item.name in _COUNTS:
             about["sample_dimension"] = _COUNTS[item.name]
         found[item.name] = (SIMULATION,), columns[item.name], about
-    for name in columns.keys() - found.keys():
+    for name in [name for name in columns if name not in found]:
         item = _FRONT if name == "front" else of_states[name]
         dimension = FRONT_SITE if name == "front" else STATE
         found[name] = (dimension,), columns[name], label(item)
-    # In the order of the columns, whatever that of a set is.
-    return xr.Dataset({name: found[name] for name in columns})
+    return xr.Dataset(found)
 
 
 @dataclass(frozen=True, slots=True)
 class StoredRows:
-    """Rows of a file of finished simulations, or of the file of a shard, without its states."""
+    """Rows of a file of finished simulations, without their states."""
 
     path: Path
     physics_version: int
