@@ -40,8 +40,9 @@ _CHECKPOINT = "checkpoint"
 _WRITING_ERRORS = (OSError, RuntimeError)
 """What writing a file raises where the machine cannot; netCDF has errors of its own."""
 
-_MOST_WAITING = 2000
-"""Finished simulations that are written at once, however short the time since the last batch."""
+_MOST_WAITING, _MOST_WAITING_BYTES = 2000, 2e8
+"""Finished simulations, and bytes of their fronts, that are written at once, however short the time
+since the last batch: fronts of a minute of many ranks would fill the memory of the manager."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,13 +65,15 @@ class BatchWriter:
         self._folder, self._origin, self._seconds = folder, origin, seconds
         self._finished: list[FinishedSimulation] = []
         self._written = time.monotonic()
-        self._count = 0
+        self._count = self._n_byte = 0
         self.n_written = 0
 
     def add(self, finished: FinishedSimulation) -> None:
         """Take a finished simulation; it is written with others in time."""
         self._finished.append(finished)
-        if len(self._finished) >= _MOST_WAITING:
+        if finished.record is not None and finished.record.fronts is not None:
+            self._n_byte += finished.record.fronts.nbytes
+        if len(self._finished) >= _MOST_WAITING or self._n_byte >= _MOST_WAITING_BYTES:
             self.flush()
 
     def flush_in_time(self) -> None:
@@ -90,7 +93,7 @@ class BatchWriter:
             for path in checkpoint_files(self._folder, finished.simulation):
                 path.unlink(missing_ok=True)
         self.n_written += len(self._finished)
-        self._finished = []
+        self._finished, self._n_byte = [], 0
 
 
 def checkpoint_files(folder: Path, simulation: Simulation) -> list[Path]:
