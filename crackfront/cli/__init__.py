@@ -109,8 +109,8 @@ _EPILOG = """\b
 Exit codes:
   0   done
   1   computed, but not as requested: too many simulations without a value, a cycle
-      that ended early, ranks that failed, memory that ran out, results that are
-      damaged or missing
+      that ended early, ranks that failed, a disk or memory that was full, results
+      that verify finds damaged or missing
   2   the input cannot be used; one sentence says why, and nothing was computed
   3   predict, samples with --strict: the theory applies with reservations, or it
       cannot be decided whether it applies

@@ -20,7 +20,8 @@ def verify(place: Path, as_json: bool) -> None:
     """Check a folder of results, or its archive (ZIP), against its checksums, SHA256SUMS.
 
     `sha256sum --check SHA256SUMS` in the folder does the same, but for files that the list does not
-    name. The exit code is 1 if a file is damaged, missing or not in the list.
+    name. The exit code is 1 if a file is damaged, missing or not in the list, and 2 if there is no
+    whole list. Nothing is changed.
     """
     from crackfront.sweep.integrity import verification
 
@@ -36,9 +37,14 @@ def verify(place: Path, as_json: bool) -> None:
     if not found.is_whole:
         raise click.ClickException(
             f"{place} is not as it was written: {len(found.damaged)} damaged, "
-            f"{len(found.missing)} missing, {len(found.unlisted)} not in the list; remove damaged "
-            "files and run make, or pack an archive again"
+            f"{len(found.missing)} missing, {len(found.unlisted)} not in the list; {_REMEDY}"
         )
+
+
+_REMEDY = (
+    "remove damaged files, of curves also their file in shards, and run make, which makes them "
+    "again; remove what does not belong to the list, or run crackfront checksums"
+)
 
 
 @click.command(epilog=examples("crackfront checksums results/default"))
@@ -46,7 +52,7 @@ def verify(place: Path, as_json: bool) -> None:
 def checksums(folders: tuple[Path, ...]) -> None:
     """Write SHA256SUMS, the checksums of a folder of results that is finished.
 
-    The workflow writes it at its end; commands that change the folder later remove it. A file that
+    The workflow writes it at its end; commands that write results later remove it. A file that
     does not agree with the checksum in its name or next to it is an error.
     """
     from crackfront.sweep.integrity import write_sums

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 @configuration_argument
 @output_option
 def aggregate(configuration: Path, output: Path | None) -> None:
-    """Collect the stored simulations of a sweep in hysteresis.nc."""
+    """Collect the rows of all shards of a sweep in hysteresis.nc."""
     from crackfront.sweep.library import opened, without_value
 
     sweep, store, origin = opened(configuration, output, warn)

@@ -51,7 +51,11 @@ output_option = click.option(
 @click.option("--block", type=whole(COUNT), help="Realisations of a shard (a job).  [default: all]")
 @as_json
 def plan(configuration: Path, output: Path | None, block: int | None, as_json: bool) -> None:
-    """Print what a sweep would run for each spectrum, what is stored and what the rest costs."""
+    """Print what a sweep would run for each spectrum, what is stored and what the rest costs.
+
+    Nothing is computed. Files that are found damaged are renamed to *.damaged, so that the workflow
+    makes them again.
+    """
     from crackfront.sweep.advice import expectations, steady_part_warnings
     from crackfront.sweep.library import opened
 
@@ -297,7 +301,7 @@ def status(folder: Path, as_json: bool) -> None:
     """Show the progress of the sweep in a folder, and which of its shards are running.
 
     Shards that run on other machines are shown where the file system passes their locks on; a batch
-    system knows them all.
+    system knows them all. Files that are found damaged are renamed to *.damaged.
     """
     from crackfront.sweep.configuration import load_configuration, refuse_older_layout
     from crackfront.sweep.inventory import Inventory

@@ -9,11 +9,11 @@ from __future__ import annotations
 PHYSICS_VERSION = 1
 """Version of the states of a front: another one makes simulations run again.
 
-- 1: results up to November 2026.
+- 1: the first release.
 """
 
 ROWS_VERSION = 1
 """Version of rows, fits and figures: another one remakes them from stored states.
 
-- 1: results up to November 2026.
+- 1: the first release.
 """

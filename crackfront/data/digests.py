@@ -31,12 +31,15 @@ _LINE = re.compile(r"([0-9a-f]{64})  (.+)\n")
 _NO_RESULTS = {"logs", "benchmarks"}
 """Folders whose files are not results and change while results are made."""
 
+_NO_RESULT = {SUMS, "report.html"}
+"""Files that are no results: the list itself, and the report of Snakemake, which is made later."""
+
 
 def result_files(folder: Path) -> list[str]:
     """Names of the files of a folder of results, relative to it, in their order.
 
     Links are followed. Hidden files, files that were set aside, checkpoints, the list of checksums,
-    and what is not a regular file are left out.
+    a report of Snakemake, and what is not a regular file are left out.
     """
     names, visited = [], set()
     for place, folders, files in os.walk(folder, followlinks=True):
@@ -52,7 +55,7 @@ def result_files(folder: Path) -> list[str]:
 
 def _is_result(name: str) -> bool:
     """Whether a file of this name is a result."""
-    left_out = name == SUMS or name.endswith(DAMAGED_SUFFIX) or name.startswith("checkpoint-")
+    left_out = name in _NO_RESULT or name.endswith(DAMAGED_SUFFIX) or name.startswith("checkpoint-")
     return not left_out and name[0] != "."
 
 

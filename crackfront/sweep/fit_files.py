@@ -30,7 +30,7 @@ def fitted_request(path: Path) -> str:
 def write_fit(
     folder: Path, fit: SweepFit, request: str, origin: Provenance
 ) -> tuple[Path, Path, Path]:
-    """Write `fit.nc`, `fit.json` and `fit.md`, which state the digest of their request."""
+    """Write `fit.nc`, `fit.json` and `fit.md`; the first two state the digest of their request."""
     paths = folder / "fit.nc", folder / "fit.json", folder / "fit.md"
     about = {
         "title": f"fit of adhesion hysteresis, {fit.kind}",

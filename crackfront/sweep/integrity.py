@@ -135,8 +135,8 @@ def write_sums(folder: Path) -> Path:
         needs_digest = derived and path.suffix == ".nc"
         if (needs_digest or stated_digest(path) is not None) and not is_whole(path):
             raise ValueError(
-                f"{path} does not agree with its checksum; remove it and run make, which makes it "
-                "again"
+                f"{path} does not agree with its checksum; remove it, of curves also their file in "
+                "shards, and run make, which makes it again"
             )
         digests[name] = file_digest(path)
     write_text(folder / SUMS, sums_text(digests))
@@ -154,8 +154,7 @@ def archive_results(folder: Path, path: Path, *, curves: bool) -> int:
     if not found.is_whole:
         raise ValueError(
             f"{folder} has {len(found.damaged)} damaged, {len(found.missing)} missing and "
-            f"{len(found.unlisted)} unlisted files, which crackfront verify names; run make before "
-            "it is archived"
+            f"{len(found.unlisted)} unlisted files; crackfront verify names them"
         )
     listed = read_sums(folder).items()
     packed = {name: digest for name, digest in listed if curves or not name.startswith("curves/")}

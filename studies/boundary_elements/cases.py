@@ -25,7 +25,7 @@ from studies.boundary_elements.contact import HalfSpaceContact, half_space_conta
 VERSION = 1
 """Version of the boundary elements: another one makes their cycles, which take hours, run again.
 
-- 1: results up to November 2026.
+- 1: the first release.
 """
 
 _STEADY = (0.25, 0.75)

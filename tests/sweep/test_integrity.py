@@ -12,6 +12,7 @@ from crackfront.data.digests import SUMS
 from tests.commands import refused, run
 
 DERIVED = ("shards/flat.nc", "hysteresis.nc", "fit.nc")
+NO_RESULTS = ("logs/fit.log", "fit.nc.damaged", "curves/flat/checkpoint-3.nc", "report.html")
 PLAIN = ("configuration.yaml", "requests/table-0123.txt", "fit.json", "figures/loop.pdf")
 
 
@@ -30,7 +31,7 @@ def write(path, content):
 def running(tmp_path):
     """Folder of a sweep without a list, as while it runs."""
     folder = tmp_path / "default"
-    for name in (*PLAIN, "logs/fit.log", "fit.nc.damaged", "curves/flat/checkpoint-3.nc"):
+    for name in (*PLAIN, *NO_RESULTS):
         write(folder / name, f"{name}\n".encode())
     for name in DERIVED:
         content = f"\x89HDF {name}".encode()

@@ -61,7 +61,7 @@ def shipped(path):
     return os.path.relpath(BASE / path)
 
 
-# What stages are asked for, by the paths of their files: the rule `request` writes them.
+# What stages are asked for, by the names of their files: the rule `request` writes them.
 REQUESTS = {}
 
 
