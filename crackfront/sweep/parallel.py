@@ -152,10 +152,12 @@ def _refuse_small_shared_memory() -> None:
     """Raise ValueError if MPI has too little memory for messages, as in small containers."""
     with contextlib.suppress(OSError):
         size = shutil.disk_usage(_SHARED_MEMORY).total
-        if size < 2 * _SHARED_BYTES:
+        n_here = max(2, _number_in("MPI_LOCALNRANKS"))
+        if size < n_here * _SHARED_BYTES:
             raise ValueError(
                 f"{_SHARED_MEMORY} has {size / 1e6:.2g} MB, and MPI needs {_SHARED_BYTES / 1e6:g} "
-                "MB for each rank; give the container more, as by --shm-size=1g, or run one process"
+                f"MB for each of {n_here} ranks; give the container more, as by --shm-size=1g, or "
+                "run one process"
             )
 
 
@@ -209,9 +211,13 @@ class Ranks:
         finally:
             for future in running:
                 future.cancel()
-            for future, task in running.items():
-                if not future.cancelled() and future.exception() is None:
-                    keep(task, future.result())
+            while running:
+                idle()
+                with contextlib.suppress(queue.Empty):
+                    future = ended.get(timeout=_SECONDS)
+                    task = running.pop(future)
+                    if not future.cancelled() and future.exception() is None:
+                        keep(task, future.result())
 
 
 ALONE = Ranks(None, 1)

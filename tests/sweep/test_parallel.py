@@ -12,12 +12,12 @@ import pytest
 import xarray as xr
 
 from crackfront.sweep import parallel
-from tests.commands import run, slow
+from tests.commands import run, slow, stored
 
 ROOT = Path(__file__).parents[2]
 MPIEXEC = Path(sys.executable).with_name("mpiexec")
 COSTS = ["seconds", "cpu_seconds", "peak_memory"]
-N_SIMULATION = 160
+N_SIMULATION = 400
 
 
 def launched(n_rank, *arguments):
@@ -27,7 +27,7 @@ def launched(n_rank, *arguments):
 
 @pytest.fixture(scope="session")
 def configuration(tmp_path_factory):
-    """Configuration of 160 simulations, which take some seconds."""
+    """Configuration of simulations that take some seconds together."""
     path = tmp_path_factory.mktemp("ranks") / "ranks.yaml"
     text = (ROOT / "config/test.yaml").read_text()
     path.write_text(text.replace("realisations: 2", f"realisations: {N_SIMULATION // 4}"))
@@ -64,6 +64,7 @@ def processes(folder):
 def started(configuration, folder, n_rank=3):
     """Ranks of a sweep, once ten of its simulations have finished."""
     command = ["-m", "crackfront", "simulate", configuration, "--output", folder]
+    command += ["--checkpoint", "0.1"]
     output = {"stdout": subprocess.PIPE, "stderr": subprocess.STDOUT, "text": True}
     with subprocess.Popen(launched(n_rank, "-u", *command), **output) as process:
         assert any(line.startswith("[10/") for line in process.stdout)
@@ -102,7 +103,10 @@ def test_a_kill_ends_all_ranks_and_the_same_command_continues(
         process.communicate(timeout=20)
         assert process.returncode != 0
     assert not left_running(tmp_path)
+    kept = stored(tmp_path)
+    assert 0 < len(kept) < N_SIMULATION
     assert table(configuration, tmp_path).equals(undisturbed)
+    assert kept.items() <= stored(tmp_path).items()
 
 
 @pytest.mark.mpi
