@@ -78,7 +78,8 @@ def pages() -> None:
 def canaries(studies: tuple[str, ...], keep: bool) -> None:
     """Measure some numbers of all STUDIES again, and compare them with the stored ones.
 
-    Ends with 1 if a number has moved by more than its error. With --keep the numbers are stored.
+    Ends with 1 if a number has moved by more than a tenth of its error. With --keep the numbers are
+    stored.
     """
     from studies.canaries import chosen_canaries, measured
     from studies.numbers import store
@@ -96,7 +97,7 @@ def canaries(studies: tuple[str, ...], keep: bool) -> None:
             click.echo(f"  {comparison}")
             if comparison.has_moved:
                 moved.append(comparison)
-    summary = f"{len(moved)} moved by more than their error"
+    summary = f"{len(moved)} moved by more than a tenth of their error"
     click.echo(f"{count} numbers in {seconds:.0f} s of one core: {summary}")
     for comparison in moved:
         click.echo(f"MOVED: {comparison}")

@@ -37,8 +37,9 @@ def validate(configuration: Path, output: Path | None) -> None:
 
     from crackfront.data.digests import forget_sums
     from crackfront.data.provenance import provenance
-    from crackfront.sweep.configuration import results_folder
+    from crackfront.sweep.configuration import refuse_other_configuration, results_folder
     from crackfront.sweep.integrity import write_sums
+    from crackfront.sweep.library import write_source
     from studies.boundary_elements import study
     from studies.boundary_elements.parameters import load_validation
 
@@ -50,6 +51,8 @@ def validate(configuration: Path, output: Path | None) -> None:
     folder = output or results_folder(configuration)
     study.refuse_missing_libraries()
     refuse_unwritable(folder)
+    refuse_other_configuration(configuration, folder)
+    write_source(configuration, folder)
     origin = provenance(configuration.read_text(encoding="utf-8"))
     announce_compilation()
     try:

@@ -1,4 +1,4 @@
-"""Canaries: a number that moved by more than its error is reported."""
+"""Canaries: a number that moved by more than a tenth of its error is reported."""
 
 import math
 from dataclasses import replace
@@ -24,11 +24,11 @@ def two_canaries(monkeypatch):
 
 
 @pytest.mark.usefixtures("two_canaries")
-def test_numbers_that_did_not_move_are_within_their_errors():
+def test_numbers_that_did_not_move_are_within_a_tenth_of_their_errors():
     done = CliRunner().invoke(main, ["canaries"])
     assert done.exit_code == 0, done.output
     assert "4 numbers" in done.output
-    assert "0 moved by more than their error" in done.output
+    assert "0 moved by more than a tenth of their error" in done.output
 
 
 @pytest.mark.usefixtures("two_canaries")
@@ -53,12 +53,18 @@ def test_a_stored_number_that_was_changed_is_reported_in_units_of_its_error(tmp_
 
 @pytest.mark.parametrize(
     ("before", "now", "in_errors"),
-    [(2.0, 2.1, 0.5), (2.0, 2.4, 2.0), (0.0, 0.0, 0.0), (2.0, math.nan, math.nan)],
+    [
+        (2.0, 2.01, 0.05),
+        (2.0, 2.1, 0.5),
+        (2.0, 2.4, 2.0),
+        (0.0, 0.0, 0.0),
+        (2.0, math.nan, math.nan),
+    ],
 )
 def test_a_number_moves_in_units_of_its_stored_error(before, now, in_errors):
     found = Comparison("k", Number(before, 0.2), Number(now, 0.9))
     assert found.in_errors == pytest.approx(in_errors, nan_ok=True)
-    assert found.has_moved == (not in_errors <= 1)
+    assert found.has_moved == (not in_errors <= 0.1)
 
 
 def test_without_an_error_any_change_is_one():
