@@ -208,7 +208,7 @@ def cycle(
         recorder.run(setup.field, setup.front, setup.loads, solution)
     found = loop_dataset(recorder.record(), setup)
     write_dataset(output, found, provenance())
-    keeper.path.unlink(missing_ok=True)
+    keeper.remove()
     drawn = () if figure is None else _draw(found, figure)
     end = f"{recorder.load_noun} {recorder.load:.6g}"
     lines = [
@@ -269,35 +269,40 @@ class _States:
 
     def found(self) -> Checkpoint | None:
         """Checkpoint of an earlier run of the same cycle, if there is one."""
-        from crackfront.data.files import UnreadableFileError, read_dataset, set_aside
+        from crackfront.data.files import read_dataset, set_aside_if_damaged
         from crackfront.simulate.files import known_checkpoint
 
         if not self.path.exists():
             return None
-        try:
-            found = known_checkpoint(read_dataset(self.path), self._key, self.path)
-        except UnreadableFileError:
-            aside = f"it is set aside as {set_aside(self.path).name}, and the cycle begins anew"
-            click.echo(f"{self.path} is damaged; {aside}", err=True)
+        if sentence := set_aside_if_damaged(self.path):
+            click.echo(f"{sentence}; the cycle begins anew", err=True)
             return None
+        found = known_checkpoint(read_dataset(self.path), self._key, self.path)
         if found is None:
             raise ValueError(
                 f"{self.path} holds the states of another cycle, of another field, other options "
-                "or other sources; remove it, or name another --output"
+                "or of another version; remove it, or name another --output"
             )
         count = found.record.states.direction.size
         click.echo(f"going on from {self.path}, after state {count}", err=True)
         return found
 
+    def remove(self) -> None:
+        """Remove the file and its checksum, when the cycle has ended."""
+        from crackfront.data.digests import digest_path
+
+        for path in (self.path, digest_path(self.path)):
+            path.unlink(missing_ok=True)
+
     def __call__(self, recorder: Recorder) -> None:
         """Store the states when it is time for that; end the cycle when a stop is requested."""
-        from crackfront.data.files import write_dataset
+        from crackfront.data.files import write_derived
         from crackfront.data.provenance import provenance
         from crackfront.simulate.files import checkpoint_dataset
 
         def write(path: Path) -> None:
             kept = checkpoint_dataset(recorder.checkpoint(), self._key, self._geometry)
-            write_dataset(path, kept, provenance())
+            write_derived(path, kept, provenance())
 
         if self._file.keep(write):
             count = len(recorder.states)

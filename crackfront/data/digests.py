@@ -41,12 +41,12 @@ def result_files(folder: Path) -> list[str]:
     Links are followed. Hidden files, files that were set aside, checkpoints, the list of checksums,
     a report of Snakemake, and what is not a regular file are left out.
     """
-    names, visited = [], set()
+    names = []
     for place, folders, files in os.walk(folder, followlinks=True):
-        if (real := os.path.realpath(place)) in visited:
-            folders.clear()  # a loop of links
+        above = (os.path.realpath(parent) for parent in Path(place).parents)
+        if os.path.realpath(place) in above:
+            folders.clear()  # a link that leads back
             continue
-        visited.add(real)
         folders[:] = [name for name in folders if name not in _NO_RESULTS and name[0] != "."]
         paths = (Path(place, name) for name in files if _is_result(name))
         names += [path.relative_to(folder).as_posix() for path in paths if path.is_file()]

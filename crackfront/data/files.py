@@ -8,6 +8,7 @@ import fcntl
 import os
 import secrets
 import tempfile
+import time
 from collections.abc import Callable, Collection, Iterator
 from dataclasses import asdict
 from pathlib import Path
@@ -29,6 +30,9 @@ from crackfront.data.provenance import Provenance, utc_now
 
 PACKED: dict[str, Any] = {"zlib": True, "shuffle": True, "complevel": 1}
 """How arrays are compressed."""
+
+_WRITER_SECONDS = 0.2
+"""Time in which a writer has replaced both a file and its checksum. (Units: s)"""
 
 NO_ROOM = (errno.ENOSPC, errno.EDQUOT)
 """Numbers of the errors of a full disk and of a used-up quota."""
@@ -88,11 +92,10 @@ def write_derived(path: Path, dataset: xr.Dataset, origin: Provenance) -> None:
     without it; after a kill in between, an earlier file counts as damaged and is derived again.
     """
 
-    def write(part: Path) -> None:
-        _write_netcdf(part, dataset, origin)
+    def state_digest(part: Path) -> None:
         write_text(digest_path(path), sums_text({path.name: file_digest(part)}))
 
-    replace_atomically(path, write)
+    replace_atomically(path, lambda part: _write_netcdf(part, dataset, origin), state_digest)
 
 
 def write_named_by_digest(folder: Path, name: str, dataset: xr.Dataset, origin: Provenance) -> Path:
@@ -158,10 +161,13 @@ def write_text(path: Path, text: str) -> None:
     replace_atomically(path, lambda part: part.write_bytes(content))
 
 
-def replace_atomically(path: Path, write: Callable[[Path], Any]) -> None:
+def replace_atomically(
+    path: Path, write: Callable[[Path], Any], before_renaming: Callable[[Path], Any] | None = None
+) -> None:
     """Let a function write a file beside the final one, and rename it once it is on disk.
 
-    The folder of the final file is created. OSError if the place is none for a file, or the disk is
+    The folder of the final file is created. Another function may be called with the written file
+    just before it is renamed. OSError if the place is none for a file, or the disk is
     full; what was there before stays.
     """
     refuse_no_file(path)
@@ -172,6 +178,8 @@ def replace_atomically(path: Path, write: Callable[[Path], Any]) -> None:
         write(part)
         with part.open("rb+") as file:
             os.fsync(file.fileno())
+        if before_renaming is not None:
+            before_renaming(part)
         part.replace(path)
     except Exception as error:
         # What netCDF says of a full disk or of locks names anything but these.
@@ -250,11 +258,12 @@ def set_aside_if_damaged(path: Path) -> str:
 
     The checksum is in the name of the file, or in `<path>.sha256` beside it.
     """
-    # A writer may have replaced the file and its checksum during the first look.
-    if is_whole(path) or is_whole(path):
+    if is_whole(path):
+        return ""
+    time.sleep(_WRITER_SECONDS)
+    if is_whole(path):
         return ""
     aside = set_aside(path)
-    digest_path(path).unlink(missing_ok=True)
     return f"{path} is damaged and was set aside as {aside.name}"
 
 

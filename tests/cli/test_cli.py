@@ -576,7 +576,7 @@ def test_damaged_states_of_a_cycle_are_told_and_set_aside(
     result = cycle(rough_surface, tmp_path)
     assert result.exit_code == 0
     assert result.stderr == (
-        f"{kept_states} is damaged; it is set aside as out.checkpoint.nc.damaged, and the cycle "
+        f"{kept_states} is damaged and was set aside as out.checkpoint.nc.damaged; the cycle "
         "begins anew\n"
     )
     assert not kept_states.exists()
