@@ -61,8 +61,9 @@ def fit(configuration: Path, output: Path | None, as_json: bool) -> None:
     sweep, store, origin = opened(configuration, output, warn)
     fitted = _fitted(sweep, store)
     forget_sums(store.folder)
-    write_request(store.folder, fit_request(sweep))
-    paths = write_fit(store.folder, fitted, fit_request(sweep).digest, origin)
+    request = fit_request(sweep)
+    write_request(store.folder, request)
+    paths = write_fit(store.folder, fitted, request.digest, origin)
     if as_json:
         click.echo(paths[1].read_text(encoding="utf-8"))
         return

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import hashlib
-import itertools
 import json
 import math
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Collection
 from dataclasses import dataclass, fields
-from operator import attrgetter
 from typing import Any, Literal
 
 import numpy as np
@@ -136,8 +134,8 @@ class Simulation:
 
     @property
     def stem(self) -> str:
-        """Name of its file, without a suffix; the series ends it."""
-        return next(stems([self]))
+        """Name of its checkpoints, without their digest and suffix; the series ends it."""
+        return f"{self.spectrum_name}-e{self.elastic_energy:g}-r{self.realisation}-{self.series}"
 
     @property
     def seed(self) -> int:
@@ -155,21 +153,6 @@ class Simulation:
             self.sweep_seed, spawn_key=(*(int(word) for word in words), self.realisation)
         )
         return int(sequence.generate_state(1, np.uint64)[0] >> np.uint64(1))
-
-
-def stems(simulations: Iterable[Simulation]) -> Iterator[str]:
-    """Names of files as :attr:`Simulation.stem`; the series of realisations is digested once."""
-    for _, alike in itertools.groupby(simulations, _WITHOUT_NUMBER):
-        first = next(alike)
-        series, name = first.series, f"{first.spectrum_name}-e{first.elastic_energy:g}"
-        for simulation in itertools.chain([first], alike):
-            yield f"{name}-r{simulation.realisation}-{series}"
-
-
-_WITHOUT_NUMBER = attrgetter(
-    *(item.name for item in fields(Simulation) if item.name != "realisation")
-)
-"""All fields of a simulation but the number of its realisation."""
 
 
 def simulation_adhesion(simulation: Simulation) -> AdhesionMap:

@@ -222,7 +222,11 @@ def stored_rows(path: Path) -> StoredRows:
     names += ["arithmetic", "series", "realisation"]
     with utf8_path(path) as named, netCDF4.Dataset(named) as file:
         file.set_auto_mask(False)
-        columns = {name: np.asarray(file[name][:]) for name in names}
+        # Rows of an older version may lack columns, until they are made again.
+        unknown = np.full(file.dimensions[SIMULATION].size, np.nan)
+        columns = {
+            name: np.asarray(file[name][:]) if name in file.variables else unknown for name in names
+        }
         versions = int(file.physics_version), int(file.rows_version)
         parameters = json.loads(file.getncattr(PARAMETERS))
     return StoredRows(

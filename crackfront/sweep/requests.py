@@ -59,7 +59,8 @@ def table_request(sweep: Sweep) -> Request:
     """Request of the table of a sweep."""
     lines = [
         f"table of {sweep.n_realisation} realisations of {len(sweep.spectra)} spectra",
-        f"version {PHYSICS_VERSION} of the physics, {ROWS_VERSION} of rows",
+        f"version {PHYSICS_VERSION} of the physics, {ROWS_VERSION} of rows, "
+        f"{sweep.numerics.max_sweeps} sweeps at most",
         f"at most {sweep.failed_fraction:g} of them without a value, scales {sweep.scales}",
     ]
     for item in sweep.spectra:

@@ -72,9 +72,9 @@ Announce = Callable[[str], None]
 _WAIT_SECONDS = 0.5
 """Time between two attempts to lock a shard that another process holds. (Units: s)"""
 
-_MOST_MERGED_BYTES = 5e8
-"""Size of the files of a shard beyond which batches stay as they are. Merging holds all of them in
-memory, and files of this size are few enough. (Units: byte)"""
+_MOST_MERGED_BYTES = 1e8
+"""Size of the files of a shard beyond which batches stay as they are: merging holds them in memory
+three times. (Units: byte)"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,6 +89,10 @@ class Store:
     def configuration(self) -> Path:
         """Configuration with which the folder was filled last."""
         return self.folder / "configuration.yaml"
+
+    def has_configuration(self, text: str) -> bool:
+        """Whether this is the text of the configuration that is there."""
+        return self.configuration.is_file() and self.configuration.read_bytes() == text.encode()
 
     @property
     def hysteresis(self) -> Path:
@@ -211,46 +215,43 @@ class Store:
         return found
 
     @contextlib.contextmanager
-    def locked(self, shards: Iterable[Shard]) -> Iterator[bool]:
-        """Hold the locks of shards; yields whether another process had one of them.
+    def locked(self, shards: Iterable[Shard]) -> Iterator[None]:
+        """Hold the locks of shards.
 
-        Waits until that has ended, in whatever way, and announces it: a killed Snakemake leaves its
-        jobs running, and starts the same ones again. Where the file system has no locks nothing is
-        held. KeyboardInterrupt if a stop is requested meanwhile.
+        Waits where another process has one of them, until that has ended in whatever way, and
+        announces it: a killed Snakemake leaves its jobs running, and starts the same ones again.
+        Where the file system has no locks nothing is held. KeyboardInterrupt if a stop is requested
+        meanwhile.
         """
-        waited = False
         with contextlib.ExitStack() as files:
-            # In the order of the sweep, so that no two processes wait for each other.
-            for shard in shards:
+            # In one order for all processes, so that no two wait for each other.
+            for shard in sorted(shards, key=lambda shard: shard.name):
                 folder = self.curve_folder(shard)
                 folder.mkdir(parents=True, exist_ok=True)
                 file = files.enter_context((folder / ".lock").open("ab"))
-                waited |= self._hold(file, shard)
+                self._hold(file, shard)
                 # Only this process writes here now: what is half-written has no writer any more.
                 for part in (*folder.glob(".*.part"), *folder.glob(".*.nc")):
                     part.unlink(missing_ok=True)
-            yield waited
+            yield
 
-    def _hold(self, file: IO[bytes], shard: Shard) -> bool:
-        """Lock a file; whether another process had locked it."""
-        waited = False
-        while True:
+    def _hold(self, file: IO[bytes], shard: Shard) -> None:
+        """Lock a file, when another process has left it."""
+        for attempt in itertools.count():
             try:
                 fcntl.lockf(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                return
             except (BlockingIOError, PermissionError):
-                if not waited:
+                if attempt == 1:  # `status` holds a lock for an instant
                     self.announce(
                         f"another process simulates {shard.name} in {self.folder} already; waiting "
                         "for its results"
                     )
-                waited = True
                 if stop_is_requested():
                     raise KeyboardInterrupt from None
                 time.sleep(_WAIT_SECONDS)
             except OSError:
-                return waited  # a file system without locks
-            else:
-                return waited
+                return  # a file system without locks
 
     def running_shards(self) -> list[str]:
         """Names of the shards whose lock another process holds, as far as this machine sees it."""
@@ -309,7 +310,9 @@ class Store:
         for position, result in zip(chosen.tolist(), results, strict=True):
             if result is None:
                 continue
-            for name, values in row_columns([sweep_row(result)], (1,)).items():
+            row = row_columns([sweep_row(result)], (1,))
+            del row["max_sweeps"]  # the limit that it had
+            for name, values in row.items():
                 if values.dtype.kind == "U":  # of any length
                     columns[name] = columns[name].astype(object)
                 columns[name][position] = values[0]
@@ -348,7 +351,7 @@ class Store:
     def _is_replaced(self, path: Path, kept: Path) -> bool:
         """Whether a file has only simulations that another one has too, or older ones."""
         rows, others = stored_rows(path), stored_rows(kept)
-        if rows.physics_version != PHYSICS_VERSION:
+        if rows.physics_version < PHYSICS_VERSION:
             return True
         known = {*zip(others.series.tolist(), others.realisation.tolist(), strict=True)}
         return known.issuperset(zip(rows.series.tolist(), rows.realisation.tolist(), strict=True))

@@ -18,7 +18,7 @@ from numba.core.errors import NumbaError
 from crackfront.core.outcome import DefectError
 from crackfront.data.bounds import TooLargeError
 from crackfront.data.digests import forget_sums
-from crackfront.data.files import set_aside_if_damaged, write_text
+from crackfront.data.files import set_aside, set_aside_if_damaged, write_text
 from crackfront.data.provenance import Provenance
 from crackfront.simulate.costs import expected_cost
 from crackfront.simulate.files import read_checkpoint, write_checkpoint
@@ -117,21 +117,25 @@ def run_and_store(
     written in the folder, before anything is run; NotStoredError if the machine could not compute a
     simulation or store it; KeyboardInterrupt if a stop was requested.
     """
-    forget_sums(store.folder)
-    write_text(store.configuration, origin.configuration)
     writers, tasks = {}, []
     for shard, simulations in shards:
         folder = store.curve_folder(shard)
         folder.mkdir(parents=True, exist_ok=True)
         writers[folder] = BatchWriter(folder, origin, seconds)
         tasks += [_Task(simulation, folder, origin, seconds) for simulation in simulations]
+    if tasks or not store.has_configuration(origin.configuration):
+        forget_sums(store.folder)
+        write_text(store.configuration, origin.configuration)
     tasks.sort(key=lambda task: -expected_cost(task.simulation).seconds)
     for solver, kind in {(t.simulation.solver.name, type(t.simulation.schedule)) for t in tasks}:
         compile_solver(solver, kind)
 
     def write_in_time() -> None:
-        for writer in writers.values():
-            writer.flush_in_time()
+        try:
+            for writer in writers.values():
+                writer.flush_in_time()
+        except _WRITING_ERRORS as error:
+            raise NotStoredError(_not_stored(error).sentence) from error
 
     def keep(task: _Task, result: _TaskResult) -> SimulationOutcome:
         try:
@@ -156,7 +160,7 @@ def run_and_store(
                 if outcome.status != _STOPPED:
                     done += 1
                     yield task.simulation, outcome
-        if parallel.stop_is_requested() and done < len(tasks):
+        if done < len(tasks):  # a stop was requested, of this process or of a rank
             raise KeyboardInterrupt(
                 f"{done} of {len(tasks)} simulations are finished; they and the states of running "
                 "ones are stored; run the same command to continue"
@@ -199,6 +203,8 @@ class _TaskResult:
 
 def _not_stored(error: Exception) -> SimulationOutcome:
     """Outcome of a simulation that the machine could not compute or store."""
+    if isinstance(error, NotStoredError):
+        return SimulationOutcome(_NOT_STORED, sentence=str(error))
     sentence = f"the machine could not compute or store it ({error}); free disk, memory or "
     return SimulationOutcome(
         _NOT_STORED, sentence=f"{sentence}threads and run the same command again"
@@ -221,9 +227,12 @@ def _result(task: _Task, between: Callable[[], None]) -> tuple[SimulationResult,
                 raise ValueError(sentence)
             resume = read_checkpoint(path, simulation)
             return run_simulation(simulation, resume=resume, keep=keep), ""
+        except TooLargeError:  # the checkpoint serves where there is more memory
+            raise
         except (*_REPRODUCIBLE_ERRORS, LookupError, TypeError) as error:
             wrong = f"begun anew without its checkpoint: {error}"
-            path.unlink(missing_ok=True)
+            if path.exists():
+                set_aside(path)
     return run_simulation(simulation, keep=keep), wrong
 
 

@@ -85,10 +85,11 @@ for key, name in (("sweep", CONFIGURATION), ("validation", VALIDATION)):
         raise WorkflowError(f"{key} is {name!r}; give the name of a file")
 try:
     RESULTS = str(results_folder(Path(CONFIGURATION)))
-    refuse_other_configuration(Path(CONFIGURATION), Path(RESULTS))
     SWEEP = load_configuration(Path(CONFIGURATION))
+    refuse_other_configuration(Path(CONFIGURATION), Path(RESULTS))
     SHARDS = {shard.name: shard for shard in SWEEP.shards(config.get("block"))}
     VALIDATED = str(results_folder(Path(VALIDATION)))
+    refuse_other_configuration(Path(VALIDATION), Path(VALIDATED))
 except ValueError as error:
     raise WorkflowError(str(error)) from None
 
