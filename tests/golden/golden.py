@@ -60,7 +60,7 @@ class Golden:
     version: int
     scenes: Scenes
     given: Scenes = field(default_factory=dict)
-    """What the scenes are computed from, where that is stored; never renewed."""
+    """What the scenes are computed from, where that is stored; once it is there, never renewed."""
 
 
 class NotRaisedError(ValueError):

@@ -21,7 +21,7 @@ from crackfront.core.outcome import Status
 from crackfront.core.solver.relax import Newton
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.simulate.line.schedule import LineSchedule
-from crackfront.simulate.run import SimulationResult
+from crackfront.simulate.run import SimulationResult, run_simulation
 from crackfront.simulate.simulation import Resolution, Simulation
 from crackfront.simulate.sphere.cycle import FullCycle
 from crackfront.simulate.sphere.steady import SteadySchedule
@@ -84,8 +84,16 @@ SIMULATIONS = {
 """Simulations whose states are stored, by their names in the file."""
 
 
-def stored_states(result: SimulationResult, digits: int = 7) -> Values:
-    """States of a simulation as the file has them."""
+def completed(given: Scenes) -> Scenes:
+    """Stored states, and those of simulations that have none yet, as the file is to have them."""
+    return {
+        name: given.get(name) or states_to_store(run_simulation(simulation))
+        for name, simulation in SIMULATIONS.items()
+    }
+
+
+def states_to_store(result: SimulationResult, digits: int = 7) -> Values:
+    """States of a simulation, rounded."""
     record, measures = result.record, result.measures
     values = {
         item.name: np.asarray(getattr(record.states, item.name), float)

@@ -22,7 +22,7 @@ from tests.golden.golden import (
     renewed,
     write_golden,
 )
-from tests.golden.rows import rows_and_fits
+from tests.golden.rows import completed, rows_and_fits
 
 AT_DEFAULT = 5e-7
 """Allowed difference between states at the default tolerance of forces, 1e-8, and the tight one.
@@ -62,6 +62,14 @@ def test_every_solver_finds_the_states_of_the_version(scene, solver):
 def test_the_default_tolerance_finds_the_same_states_to_its_precision(scene):
     values = FRONTS[scene](Newton(DEFAULT_TOLERANCE))
     refuse_movement(PHYSICS, "PHYSICS_VERSION", {scene: values}, AT_DEFAULT)
+
+
+def test_a_simulation_without_stored_states_is_simulated_and_others_are_not():
+    given = golden(ROWS).given
+    found = completed({name: states for name, states in given.items() if name != "line 0"})
+    assert [name for name in given if found[name] is not given[name]] == ["line 0"]
+    assert set(found["line 0"]) == set(given["line 0"])
+    assert found["line 0"]["status"] == given["line 0"]["status"]
 
 
 def test_rows_and_fits_of_stored_states_have_not_moved():
