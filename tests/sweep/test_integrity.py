@@ -82,7 +82,7 @@ def test_sha256sum_agrees_with_the_list_of_a_folder_and_of_its_archive(finished,
 
 
 @pytest.mark.parametrize("name", ["hysteresis.nc", "shards/flat.nc", "curves", "fit.json"])
-def test_a_changed_file_is_found_and_its_folder_is_neither_signed_again_nor_archived(
+def test_a_changed_file_is_found_and_not_archived_and_a_damaged_dataset_is_not_signed_again(
     finished, name
 ):
     path = curves_of(finished) if name == "curves" else finished / name

@@ -450,23 +450,6 @@ def test_a_damaged_fit_is_set_aside_and_not_shown(configuration, folder):
     assert xr.load_dataset(path).drop_attrs().identical(first)
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("name", ["shards/flat.nc", "hysteresis.nc", "curves/flat/curves-*.nc"])
-def test_no_lost_sector_and_no_flipped_bit_is_believed(folder, rng, name):
-    [path] = folder.glob(name)
-    content = path.read_bytes()
-    places = [*range(0, len(content), SECTOR)]
-    assert is_whole(path)
-    for place in places:
-        if any(content[place : place + SECTOR]):
-            path.write_bytes(content[:place] + bytes(SECTOR) + content[place + SECTOR :])
-            assert not is_whole(path), place
-    for place in rng.integers(len(content), size=300):
-        bit = 1 << int(rng.integers(8))
-        path.write_bytes(content[:place] + bytes([content[place] ^ bit]) + content[place + 1 :])
-        assert not is_whole(path), (place, bit)
-
-
 @pytest.mark.parametrize("how", ["missing", "of another file", "emptied"])
 def test_a_shard_without_its_checksum_is_derived_again(configuration, folder, how):
     beside = folder / "shards/flat.nc.sha256"
@@ -600,6 +583,23 @@ def test_recorded_fronts_and_energies_survive_batches_and_merging_to_the_last_bi
         with pytest.raises(UnreadableFileError, match="which failed"):
             store.result(sweep, failing)
         assert simulate(configuration, folder) == set()
+
+
+def test_batches_that_a_kill_left_beside_the_merged_file_are_removed(configuration, tmp_path):
+    folder = tmp_path / "sweep"
+    in_batches(configuration, folder)
+    batches = {path: path.read_bytes() for path in folder.glob("curves/*/batch-*.nc")}
+    assert simulate(configuration, folder) == set()
+    expected = aggregated(configuration, folder)
+    assert len(batches) == 8
+    assert len([*folder.glob("curves/*/*.nc")]) == 2
+    for path, content in batches.items():
+        path.write_bytes(content)
+    for path in folder.glob("shards/*.nc"):
+        path.unlink()
+    assert simulate(configuration, folder) == set()
+    assert aggregated(configuration, folder).equals(expected)
+    assert len([*folder.glob("curves/*/*.nc")]) == 2
 
 
 def same(record, other):

@@ -140,16 +140,25 @@ def contents(folder):
     return {path: (moment, path.read_bytes()) for path, moment in states(folder).items()}
 
 
+NOT_FOLLOWED = {
+    b"Mixed rules and functions in same snakefile.",
+    b"No log directive defined",
+    b"Specify a conda environment or container for each rule.",
+}
+"""Advice of `--lint` that docs/architecture.md declines."""
+
+
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    "verb", ["dry-run", "list-rules", "lint", "dag", "summary", "report=a.html"]
-)
+@pytest.mark.parametrize("verb", ["dry-run", "list-rules", "lint", "dag", "summary"])
 def test_reading_the_workflow_changes_nothing_even_where_files_are_damaged(tmp_path, whole, verb):
     shutil.copytree(whole, tmp_path, dirs_exist_ok=True)
     harm(tmp_path / "results/test")
     before = contents(tmp_path / "results")
     read = [*command(tmp_path, sweep=tmp_path / "test.yaml"), f"--{verb}"]
-    subprocess.run(read, capture_output=True, timeout=600, check=False)
+    shown = subprocess.run(read, capture_output=True, timeout=600, check=False)
+    assert shown.returncode == (verb == "lint"), shown.stderr
+    advice = set(re.findall(rb"^ +\* (.*):$", shown.stderr, re.MULTILINE))
+    assert advice == (NOT_FOLLOWED if verb == "lint" else set())
     assert contents(tmp_path / "results") == before
 
 
@@ -158,8 +167,10 @@ def test_a_million_simulations_are_planned(tmp_path):
     sweep = tmp_path / "sweep.yaml"
     text = (ROOT / "config/test.yaml").read_text(encoding="utf-8")
     sweep.write_text(text.replace("realisations: 2", "realisations: 250000"))
-    done = snakemake(tmp_path, "block=1000", "--dry-run", sweep=sweep)
-    assert done.returncode == 0, done.stderr
+    options = "--dry-run", "--quiet", "reason"  # and the number of jobs is shown
+    planned = snakemake(tmp_path, "block=1000", *options, sweep=sweep)
+    assert planned.returncode == 0, planned.stderr
+    assert re.search(r"^simulate +500$", planned.stdout, re.MULTILINE)
 
 
 def seen_in_browser(page, profile):
@@ -317,7 +328,6 @@ def test_of_a_copy_without_dates_nothing_is_simulated(tmp_path, sweep):
     shutil.move(tmp_path / "results", tmp_path / "original")
     # In an order in which requests are the newest.
     shutil.copytree(tmp_path / "original", tmp_path / "results", copy_function=shutil.copyfile)
-    date(2096, *(results / "requests").iterdir())
     date(2001, *(results / "shards").iterdir())
     for path in (results / "requests").iterdir():
         os.utime(path)
@@ -350,6 +360,22 @@ def test_what_a_plan_sets_aside_is_made_again_and_no_more(tmp_path, sweep, name)
     assert made(results, before) == FAULTS[name]
     assert xr.load_dataset(results / name).equals(expected)
     assert finished(tmp_path, sweep=sweep, ranks=1).count("Execute") == 0
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(1800)
+def test_what_is_removed_is_made_again_and_the_same(tmp_path, sweep):
+    results = tmp_path / "results/test"
+    names = "fit.json", "figures/factor.pdf", "summary.html", "SHA256SUMS", "shards/flat.nc"
+    expected = json.loads((results / "fit.json").read_text())["columns"]
+    table = xr.load_dataset(results / "hysteresis.nc")
+    for name in names:
+        (results / name).unlink()
+        assert simulated(finished(tmp_path, sweep=sweep, ranks=1)) == set()
+        assert (results / name).is_file()
+    assert json.loads((results / "fit.json").read_text())["columns"] == expected
+    assert xr.load_dataset(results / "hysteresis.nc").equals(table)
+    assert done("verify", results).exit_code == 0
 
 
 @pytest.mark.slow
