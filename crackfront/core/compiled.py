@@ -121,15 +121,13 @@ def _function_cache(function: Callable[..., Any]) -> _KernelCache | None:
     return cache if folder in Path(cache.cache_path).parents else None
 
 
-def jit(function: Callable[..., Any] | None = None, *, cache: bool = True, **options: Any) -> Any:
+def jit(function: Callable[..., Any] | None = None, **options: Any) -> Any:
     """Compile to machine code, keep it on disk; division by zero follows IEEE rules."""
     if function is None:
-        return functools.partial(jit, cache=cache, **options)
+        return functools.partial(jit, **options)
     compiled = numba.njit(function, error_model="numpy", **options)
-    if cache and not numba.config.DISABLE_JIT:
-        kept = _function_cache(function)
-        if kept is not None:
-            compiled._cache = kept
+    if not numba.config.DISABLE_JIT and (cache := _function_cache(function)) is not None:
+        compiled._cache = cache
     return compiled
 
 

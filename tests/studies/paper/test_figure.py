@@ -56,7 +56,7 @@ def test_figures_that_took_longer_than_a_minute_tell_about_how_long_they_take(mo
 
 
 def test_the_workflow_names_those_that_take_longest_and_those_that_move():
-    rules = (REFERENCES.parents[1] / "workflow/rules/common.smk").read_text()
+    rules = (REFERENCES.parents[1] / "workflow/rules/paper.smk").read_text()
     longest, moving = (
         set(ast.literal_eval(re.search(rf"^{name} = (\[.*?\])$", rules, re.M | re.S)[1]))
         for name in ("LONGEST", "ANIMATED")
