@@ -133,7 +133,7 @@ test: env  ## Run the tests that are not slow
 test-portable: private PORTABLE = 1
 test-portable: env  ## Run the tests of predictions and golden files as on another processor (three minutes)
 	@$(IN_ENV) .venv/bin/python -m pytest $(PARALLEL) -m "not slow" \
-	  tests/golden tests/topography/density tests/topography/spectrum tests/topography/prediction
+	  tests/golden tests/measured/density tests/measured/spectrum tests/measured/prediction
 
 ON_SLURM = $(IN_ENV) tests/cluster/with-slurm.sh .venv/bin/python -m pytest -m slurm --timeout 1800 tests/cluster
 

@@ -17,11 +17,11 @@ import crackfront
 from crackfront.core.geometry.line import LineState
 from crackfront.core.geometry.sphere import ContactState
 from crackfront.core.variables import variables
-from crackfront.experiment.loop import MeasuredLoop
+from crackfront.measured.loops.loop import MeasuredLoop
+from crackfront.measured.options import Options, ReadingOptions
+from crackfront.measured.prediction.prediction import Prediction
 from crackfront.sweep.configuration import Configuration
-from crackfront.sweep.table import SweepRow
-from crackfront.topography.options import Options, ReadingOptions
-from crackfront.topography.prediction.prediction import Prediction
+from crackfront.sweep.table_file import SweepRow
 
 project = "crackfront"
 author = "crackfront developers"
@@ -218,7 +218,9 @@ def _write_references(app: Sphinx) -> None:
         "`crackfront loop --json`": [item for item in variables(MeasuredLoop) if not item.dims],
     }
     tables = ["# Variables of files and of JSON", "", "For those who read one of them.", ""]
-    tables += ["What is said of a file's origin stands in {py:mod}`crackfront.data.provenance`."]
+    tables += [
+        "What is said of a file's origin stands in {py:mod}`crackfront.simulate.provenance`."
+    ]
     tables += ["In JSON a number with an interval has `value`, `standard_error`, `low` and `high`."]
     for name, listed in files.items():
         tables += [

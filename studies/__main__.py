@@ -8,9 +8,9 @@ from pathlib import Path
 import click
 
 from crackfront.cli import Commands
-from crackfront.cli.report import announce_compilation, examples
-from crackfront.data.files import write_text
-from crackfront.simulate.run import compile_solver
+from crackfront.cli.common import announce_compilation, examples
+from crackfront.simulate.run_simulation import compile_solver
+from crackfront.simulate.storage import write_text
 from studies.pages import keep_option
 
 STUDIES = {

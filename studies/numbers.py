@@ -12,8 +12,8 @@ from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-from crackfront.data.files import write_text
-from crackfront.data.provenance import provenance, utc_now
+from crackfront.simulate.provenance import provenance, utc_now
+from crackfront.simulate.storage import write_text
 
 STORED = Path("docs/reference/numbers")
 """Folder of the files, each named as its study."""

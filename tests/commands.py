@@ -12,7 +12,7 @@ from click.testing import CliRunner
 from crackfront.cli import main
 from crackfront.sweep.curves import SIMULATION, curve_files, selected
 from crackfront.sweep.rows import row_columns
-from crackfront.sweep.table import columns_dataset
+from crackfront.sweep.table_file import columns_dataset
 
 slow = functools.partial(pytest.param, marks=pytest.mark.slow)
 """Parameters whose test is left to the night."""

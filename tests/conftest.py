@@ -12,14 +12,14 @@ import hypothesis
 import numpy as np
 import pytest
 
+from crackfront.core.cycle.load_schedule import LoadSchedule
 from crackfront.core.cycle.record import Recorder
 from crackfront.core.cycle.run import run_cycle
-from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.geometry.sphere import polar_field
 from crackfront.core.solver.relax import Newton
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.plots.style import STYLE
-from crackfront.simulate.run import compile_solver
+from crackfront.simulate.run_simulation import compile_solver
 
 # As of the command: Python looks for garbage among what is imported, also as it ends.
 gc.set_threshold(1_000_000)

@@ -12,8 +12,8 @@ from matplotlib import pyplot
 import crackfront as cf
 from crackfront import __all__
 from crackfront.cli import main
+from crackfront.measured.options import ReadingOptions
 from crackfront.sweep.configuration import Configuration
-from crackfront.topography.options import ReadingOptions
 from studies.numbers import stored
 
 ROOT = Path(__file__).parents[1]

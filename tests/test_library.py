@@ -14,22 +14,22 @@ from matplotlib import pyplot
 from matplotlib.figure import Figure
 
 import crackfront as cf
-from crackfront.analysis.steady import steady_adhesion
+from crackfront.analysis.steady_adhesion import steady_adhesion
 from crackfront.core import jkr
 from crackfront.core.cycle.energy import dissipated_energy
 from crackfront.core.synthesis import gaussian_field
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.core.variables import ADHESION, FORCE, LATERAL, VERTICAL
-from crackfront.simulate.files import cycle_record
-from crackfront.simulate.run import run_simulation
+from crackfront.measured.page.texts import report_text
+from crackfront.measured.prediction.prediction import predicted
+from crackfront.measured.scan.reading import read_measurements
+from crackfront.measured.spectrum.measured_surface import measured_surface
+from crackfront.simulate.cycle_files import cycle_record
+from crackfront.simulate.run_simulation import run_simulation
 from crackfront.simulate.simulation import simulation_adhesion, simulation_field
-from crackfront.simulate.sphere.cycle import FullCycle
-from crackfront.simulate.surfaces import chosen_simulation, tile_modes
+from crackfront.simulate.sphere.full_cycle import FullCycle
+from crackfront.surfaces.random_surface import chosen_simulation, tile_modes
 from crackfront.sweep import parallel, tasks
-from crackfront.topography.page.report import report_text
-from crackfront.topography.prediction.prediction import predicted
-from crackfront.topography.scan.reading import read_measurements
-from crackfront.topography.spectrum.measures import measured_surface
 from tests.commands import curves, run
 
 ROOT = Path(__file__).parents[1]
@@ -81,7 +81,7 @@ def axes_of_a_figure():
 PARTS = (
     ("crackfront", {"xarray", "numba", "scipy"}),
     (
-        "crackfront.topography.prediction.prediction",
+        "crackfront.measured.prediction.prediction",
         {"xarray", "numba", "scipy.optimize", "scipy.stats"},
     ),
     ("studies.paper.figure", {"xarray", "numba", "scipy.optimize", "scipy.stats"}),
@@ -711,7 +711,7 @@ def test_what_is_in_si_units_already_is_said_so(surface):
 
 
 def test_fronts_that_do_not_fit_into_memory_are_refused_before_the_loop(surface, monkeypatch):
-    monkeypatch.setattr("crackfront.data.bounds.memory_at_hand", lambda: 4e9)
+    monkeypatch.setattr("crackfront.core.resources.memory_at_hand", lambda: 4e9)
     with pytest.raises(ValueError, match=r"fronts of .* sites would need .* set fronts=False"):
         cf.run_loop(surface, max_penetration=5e3)
 

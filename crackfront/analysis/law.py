@@ -28,8 +28,8 @@ from scipy.special import ndtr
 
 from crackfront.analysis.estimate import Estimate, normal_estimate
 from crackfront.core.adhesion import FieldKind, refuse_unknown_kind
+from crackfront.core.arguments import refuse_no_numbers
 from crackfront.core.arrays import Array
-from crackfront.data.arguments import refuse_no_numbers
 
 if TYPE_CHECKING:
     from crackfront.core.spectrum import Spectrum

@@ -24,7 +24,7 @@ from crackfront.analysis.law import (
 from crackfront.core import jkr
 from crackfront.core.adhesion import FieldKind, larkin_length
 from crackfront.core.arrays import Array
-from crackfront.data.bounds import LENGTH, refuse_outside
+from crackfront.core.bounds import LENGTH, refuse_outside
 
 if TYPE_CHECKING:
     from crackfront.core.spectrum import Spectrum

@@ -67,7 +67,7 @@ class ForceDifference:
 class SweepFit:
     r"""Fit of :math:`w_{retr,appr} = w_{int} - e_{el} \pm k e_{el}` to a sweep.
 
-    What each number means stands in :data:`crackfront.analysis.sweep.FIT_DEFINITION`;
+    What each number means stands in :data:`crackfront.analysis.sweep_fit.FIT_DEFINITION`;
     :func:`fit_columns` gives all arrays with dimensions, units and long names.
     """
 

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from crackfront.analysis.measures import RunMeasures
-from crackfront.analysis.steady import SteadyMeasures
+from crackfront.analysis.run_measures import RunMeasures
+from crackfront.analysis.steady_adhesion import SteadyMeasures
 from crackfront.core.arrays import Array
 from crackfront.core.spectrum import SelfAffineSpectrum, Spectrum
 from crackfront.core.units import WORK_OF_ADHESION

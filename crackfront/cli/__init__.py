@@ -8,16 +8,22 @@ from typing import Any
 
 import click
 
-from crackfront.cli.cycle import cycle
-from crackfront.cli.integrity import checksums, verify
-from crackfront.cli.law import law
-from crackfront.cli.loop import loop
+from crackfront.cli.checksum_commands import checksums, verify
+from crackfront.cli.common import StoppedError, announce_compilation, examples
+from crackfront.cli.cycle_command import cycle
+from crackfront.cli.law_command import law
+from crackfront.cli.loop_command import loop
 from crackfront.cli.output import output_that_may_close
-from crackfront.cli.report import StoppedError, announce_compilation, examples
-from crackfront.cli.results import aggregate, archive, figures, fit, summary
-from crackfront.cli.samples import samples
-from crackfront.cli.surface import predict, surface
-from crackfront.cli.sweep import plan, simulate, status
+from crackfront.cli.result_commands import (
+    aggregate,
+    archive,
+    figures,
+    fit,
+    summary,
+)
+from crackfront.cli.samples_command import samples
+from crackfront.cli.surface_commands import predict, surface
+from crackfront.cli.sweep_commands import plan, simulate, status
 from crackfront.sweep.parallel import stopping_as_ctrl_c
 
 
@@ -86,8 +92,8 @@ def compile_solvers() -> None:
     """
     import multiprocessing
 
-    from crackfront.simulate.line.schedule import LineSchedule
-    from crackfront.simulate.run import compile_solver
+    from crackfront.simulate.line.line_loads import LineSchedule
+    from crackfront.simulate.run_simulation import compile_solver
 
     announce_compilation()
     with multiprocessing.get_context("spawn").Pool(1) as pool:

@@ -17,10 +17,10 @@ if TYPE_CHECKING:
     from crackfront.core.adhesion import rough_adhesion as rough_adhesion
     from crackfront.core.cycle.follow import Load as Load
     from crackfront.core.cycle.follow import follow as follow
+    from crackfront.core.cycle.load_schedule import LoadSchedule as LoadSchedule
+    from crackfront.core.cycle.load_schedule import protocol as protocol
     from crackfront.core.cycle.record import Recorder as Recorder
     from crackfront.core.cycle.run import run_cycle as run_cycle
-    from crackfront.core.cycle.schedule import LoadSchedule as LoadSchedule
-    from crackfront.core.cycle.schedule import protocol as protocol
     from crackfront.core.cycle.touch import first_touch as first_touch
     from crackfront.core.geometry.line import line_field as line_field
     from crackfront.core.geometry.sphere import contact_field as contact_field

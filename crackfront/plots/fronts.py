@@ -14,9 +14,9 @@ from numpy.typing import NDArray
 
 from crackfront.core.arrays import Array
 from crackfront.core.variables import ADHESION, LATERAL, VERTICAL
+from crackfront.plots.axis_units import REDUCED, AxisUnits
 from crackfront.plots.parts import ON_WHITE, field_colours
 from crackfront.plots.style import BLUE, VERMILION
-from crackfront.plots.units import REDUCED, AxisUnits
 
 _MOST_GREYS = 10
 """Shades of the field; few, so that frames of an animation compress well."""

@@ -13,7 +13,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from crackfront.data.files import replace_atomically
+from crackfront.simulate.storage import replace_atomically
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -7,14 +7,9 @@ import math
 from dataclasses import dataclass, replace
 
 from crackfront.core import jkr
+from crackfront.core.bounds import LENGTH, PENETRATION, refuse_outside
+from crackfront.core.resources import refuse_beyond_memory, refuse_beyond_time
 from crackfront.core.spectrum import Spectrum
-from crackfront.data.bounds import (
-    LENGTH,
-    PENETRATION,
-    refuse_beyond_memory,
-    refuse_beyond_time,
-    refuse_outside,
-)
 from crackfront.simulate.laws import Settings
 from crackfront.simulate.numerics import Numerics
 from crackfront.simulate.simulation import Simulation

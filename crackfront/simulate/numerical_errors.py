@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from crackfront.analysis.steady import SteadyAdhesion
+from crackfront.analysis.steady_adhesion import SteadyAdhesion
 from crackfront.simulate.laws import SettingName, combined_error
 from crackfront.simulate.simulation import Simulation
 

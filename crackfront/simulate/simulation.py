@@ -21,9 +21,9 @@ from crackfront.core.field.fields import Interpolation, TileField
 from crackfront.core.geometry.base import Geometry
 from crackfront.core.solver.relax import Solver, named_solver
 from crackfront.core.spectrum import Spectrum
+from crackfront.simulate.contact import Schedule
 from crackfront.simulate.laws import Settings
 from crackfront.simulate.numerics import Numerics
-from crackfront.simulate.schedule import Schedule
 from crackfront.simulate.tiles import RandomSurface
 
 
@@ -176,7 +176,7 @@ def resolution(
     Examples
     --------
     >>> from crackfront.core.spectrum import SelfAffineSpectrum
-    >>> from crackfront.simulate.sphere.cycle import FullCycle
+    >>> from crackfront.simulate.sphere.full_cycle import FullCycle
     >>> flat = SelfAffineSpectrum(short_cutoff=0.1, roll_off=0.1, hurst=1.0)
     >>> settings = Settings(None, 2, 4, "cubic", 4, 1e-6)
     >>> numerics = Numerics(settings, tile_roll_offs=10, tile_cutoffs=20)

@@ -10,7 +10,7 @@ from crackfront.analysis.law import mean_w_loc
 from crackfront.analysis.law_spheres import held_factors
 from crackfront.analysis.standard_error import FEWEST_STATES
 from crackfront.core.adhesion import force_correlation_length, larkin_length
-from crackfront.simulate.line.schedule import front_rms
+from crackfront.simulate.line.line_loads import front_rms
 from crackfront.simulate.simulation import Simulation
 from crackfront.sweep.sweep import Sweep
 

@@ -15,9 +15,14 @@ from pydantic import Field, model_validator
 
 from crackfront.analysis.standard_error import FEWEST_STATES
 from crackfront.core.adhesion import FieldKind, larkin_length
+from crackfront.core.resources import refuse_beyond_memory, refuse_beyond_time
 from crackfront.core.units import Scales
-from crackfront.data.bounds import counted, refuse_beyond_memory, refuse_beyond_time
-from crackfront.data.section import (
+from crackfront.core.words import counted
+from crackfront.simulate.costs import expected_cost, refuse_oversized
+from crackfront.simulate.laws import Settings
+from crackfront.simulate.numerical_errors import missed_error
+from crackfront.simulate.simulation import Simulation
+from crackfront.sweep.section import (
     ConfigurationError,
     Count,
     Section,
@@ -26,10 +31,6 @@ from crackfront.data.section import (
     validated,
     yaml_mapping,
 )
-from crackfront.simulate.costs import expected_cost, refuse_oversized
-from crackfront.simulate.laws import Settings
-from crackfront.simulate.numerical_errors import missed_error
-from crackfront.simulate.simulation import Simulation
 from crackfront.sweep.sections import (
     AmplitudesSection,
     FitSection,

@@ -20,7 +20,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from crackfront.analysis.measures import RunMeasures
+from crackfront.analysis.run_measures import RunMeasures
 from crackfront.analysis.table import SweepRow
 from crackfront.core.cycle.record import CycleRecord
 from crackfront.core.geometry.base import State
@@ -28,17 +28,17 @@ from crackfront.core.geometry.line import LineState
 from crackfront.core.geometry.sphere import ContactState
 from crackfront.core.outcome import Status
 from crackfront.core.variables import ADHESION, ENERGY, Variable, variables
-from crackfront.data.digests import stated_digest
-from crackfront.data.files import (
+from crackfront.simulate.checksums import stated_digest
+from crackfront.simulate.labels import label
+from crackfront.simulate.provenance import Provenance
+from crackfront.simulate.run_simulation import SimulationResult
+from crackfront.simulate.simulation import Simulation
+from crackfront.simulate.storage import (
     UnreadableFileError,
     read_dataset,
     utf8_path,
     write_named_by_digest,
 )
-from crackfront.data.labels import label
-from crackfront.data.provenance import Provenance
-from crackfront.simulate.run import SimulationResult
-from crackfront.simulate.simulation import Simulation
 from crackfront.sweep.rows import STATUSES, row_columns
 
 SIMULATION, STATE, FRONT_SITE = "simulation", "state", "front_site"

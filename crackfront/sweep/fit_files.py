@@ -9,14 +9,14 @@ from pathlib import Path
 import xarray as xr
 
 from crackfront.analysis.finding import PAPER_FACTOR, PERTURBATION_FACTOR
-from crackfront.analysis.report import fit_notes, fit_table
+from crackfront.analysis.fit_text import fit_notes, fit_table
 from crackfront.analysis.result import SweepFit, fit_columns
-from crackfront.analysis.steady import STEADY_DEFINITION
-from crackfront.analysis.sweep import FIT_DEFINITION
-from crackfront.data.files import read_derived, write_derived, write_text
-from crackfront.data.jsonable import to_jsonable
-from crackfront.data.labels import labelled
-from crackfront.data.provenance import Provenance, utc_now
+from crackfront.analysis.steady_adhesion import STEADY_DEFINITION
+from crackfront.analysis.sweep_fit import FIT_DEFINITION
+from crackfront.simulate.jsonable import to_jsonable
+from crackfront.simulate.labels import labelled
+from crackfront.simulate.provenance import Provenance, utc_now
+from crackfront.simulate.storage import read_derived, write_derived, write_text
 
 _REQUEST = "request"
 """Attribute that says what a fit was asked for, by the digest of its request."""

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from zipfile import ZIP_DEFLATED, BadZipFile, ZipFile, ZipInfo
 
-from crackfront.data.bounds import in_bytes
-from crackfront.data.digests import (
+from crackfront.core.words import in_bytes
+from crackfront.simulate.checksums import (
     SUMS,
     file_digest,
     is_whole,
@@ -23,7 +23,7 @@ from crackfront.data.digests import (
     stated_digest,
     sums_text,
 )
-from crackfront.data.files import replace_atomically, write_text
+from crackfront.simulate.storage import replace_atomically, write_text
 
 _DERIVED = "hysteresis.nc", "fit.nc"
 """Files of a sweep that must have a checksum next to them, as those in its shards."""

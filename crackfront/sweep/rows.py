@@ -11,14 +11,14 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from crackfront.analysis.steady import SteadyAdhesion, SteadyMeasures, mean_adhesion
+from crackfront.analysis.steady_adhesion import SteadyAdhesion, SteadyMeasures, mean_adhesion
 from crackfront.analysis.table import PLACE, SweepRow
 from crackfront.core.cycle.record import CycleRecord
 from crackfront.core.outcome import Status
 from crackfront.core.variables import ADHESION, variables
-from crackfront.data.labels import label
+from crackfront.simulate.labels import label
 from crackfront.simulate.numerical_errors import stated_error
-from crackfront.simulate.run import SimulationResult
+from crackfront.simulate.run_simulation import SimulationResult
 from crackfront.simulate.simulation import Simulation
 
 COMPLETE = ("lost_contact", "steady")

@@ -17,13 +17,27 @@ from pydantic import (
     model_validator,
 )
 
-from crackfront.analysis.sweep import FEWEST_BOOTSTRAP
+from crackfront.analysis.sweep_fit import FEWEST_BOOTSTRAP
+from crackfront.core.bounds import (
+    PIXELS,
+    SI,
+    SITES,
+    TOLERANCE,
+    Range,
+)
 from crackfront.core.field.fields import Interpolation
 from crackfront.core.solver import DEFAULT_TOLERANCE
 from crackfront.core.solver.relax import named_solver
 from crackfront.core.spectrum import SelfAffineSpectrum, TabulatedSpectrum
-from crackfront.data.bounds import PIXELS, SI, SITES, TOLERANCE, Range
-from crackfront.data.section import (
+from crackfront.measured.options import ReadingOptions, reading_options
+from crackfront.measured.spectrum.measured_surface import MeasuredSurface, read_surface
+from crackfront.simulate.contact import SweepLoad
+from crackfront.simulate.laws import Settings
+from crackfront.simulate.line.line_loads import LAW_LENGTH, LineLoad, SpringUnit
+from crackfront.simulate.numerics import Numerics
+from crackfront.simulate.sphere.full_cycle import FullCycle
+from crackfront.simulate.sphere.steady_branches import SteadySchedule
+from crackfront.sweep.section import (
     ConfigurationError,
     Count,
     Density,
@@ -35,15 +49,7 @@ from crackfront.data.section import (
     refusal,
     resolved_path,
 )
-from crackfront.simulate.laws import Settings
-from crackfront.simulate.line.schedule import LAW_LENGTH, LineLoad, SpringUnit
-from crackfront.simulate.numerics import Numerics
-from crackfront.simulate.schedule import SweepLoad
-from crackfront.simulate.sphere.cycle import FullCycle
-from crackfront.simulate.sphere.steady import SteadySchedule
 from crackfront.sweep.sweep import NamedSpectrum
-from crackfront.topography.options import ReadingOptions, reading_options
-from crackfront.topography.spectrum.measures import MeasuredSurface, read_surface
 
 Rms = Annotated[float, Field(gt=0, lt=2, allow_inf_nan=False)]
 

@@ -15,13 +15,13 @@ from numpy.typing import NDArray
 from crackfront.analysis.table import PLACE, SweepRow
 from crackfront.core.variables import variables
 from crackfront.core.versions import PHYSICS_VERSION, ROWS_VERSION
-from crackfront.data.files import utf8_path, write_derived
-from crackfront.data.provenance import Provenance
+from crackfront.simulate.provenance import Provenance
+from crackfront.simulate.storage import utf8_path, write_derived
 from crackfront.sweep.curves import PARAMETERS, parameters_text
 from crackfront.sweep.requests import shard_request
 from crackfront.sweep.rows import AT_LIMIT, COMPLETE, STATUSES
 from crackfront.sweep.sweep import Shard, Sweep
-from crackfront.sweep.table import columns_dataset
+from crackfront.sweep.table_file import columns_dataset
 
 _BETWEEN = "; "
 """What stands between series and arithmetics in the attributes of a file."""

@@ -22,18 +22,18 @@ from numpy.typing import NDArray
 from crackfront.analysis.table import SweepRow, SweepTable
 from crackfront.core.variables import variables
 from crackfront.core.versions import PHYSICS_VERSION, ROWS_VERSION
-from crackfront.data.digests import forget_sums
-from crackfront.data.files import (
+from crackfront.simulate.checksums import forget_sums
+from crackfront.simulate.costs import expected_cost
+from crackfront.simulate.provenance import Provenance
+from crackfront.simulate.run_simulation import SimulationResult
+from crackfront.simulate.simulation import Simulation
+from crackfront.simulate.storage import (
     UnreadableFileError,
     read_dataset,
     read_derived,
     set_aside_if_damaged,
     write_text,
 )
-from crackfront.data.provenance import Provenance
-from crackfront.simulate.costs import expected_cost
-from crackfront.simulate.run import SimulationResult
-from crackfront.simulate.simulation import Simulation
 from crackfront.sweep.curves import (
     MERGED,
     SIMULATION,
@@ -64,7 +64,7 @@ from crackfront.sweep.shards import (
     write_shard,
 )
 from crackfront.sweep.sweep import NamedSpectrum, Shard, Sweep
-from crackfront.sweep.table import TABLE_REQUEST, read_table, write_hysteresis
+from crackfront.sweep.table_file import TABLE_REQUEST, read_table, write_hysteresis
 
 Announce = Callable[[str], None]
 """Called with a sentence on a damaged file, or on another process that is waited for."""

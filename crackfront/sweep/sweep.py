@@ -9,11 +9,11 @@ from dataclasses import dataclass, replace
 from typing import Literal
 
 from crackfront.core.adhesion import FieldKind
+from crackfront.core.arguments import nearest_name
 from crackfront.core.spectrum import Spectrum
 from crackfront.core.units import Scales
-from crackfront.data.arguments import nearest_name
+from crackfront.simulate.contact import SweepLoad
 from crackfront.simulate.numerics import Numerics
-from crackfront.simulate.schedule import SweepLoad
 from crackfront.simulate.simulation import Simulation, simulation_of
 
 

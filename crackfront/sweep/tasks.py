@@ -16,14 +16,19 @@ from pathlib import Path
 from numba.core.errors import NumbaError
 
 from crackfront.core.outcome import DefectError
-from crackfront.data.bounds import TooLargeError
-from crackfront.data.digests import forget_sums
-from crackfront.data.files import set_aside, set_aside_if_damaged, write_text
-from crackfront.data.provenance import Provenance
+from crackfront.core.resources import TooLargeError
+from crackfront.simulate.checksums import forget_sums
 from crackfront.simulate.costs import expected_cost
-from crackfront.simulate.files import read_checkpoint, write_checkpoint
-from crackfront.simulate.run import PartialRun, SimulationResult, compile_solver, run_simulation
+from crackfront.simulate.cycle_files import read_checkpoint, write_checkpoint
+from crackfront.simulate.provenance import Provenance
+from crackfront.simulate.run_simulation import (
+    PartialRun,
+    SimulationResult,
+    compile_solver,
+    run_simulation,
+)
 from crackfront.simulate.simulation import Simulation
+from crackfront.simulate.storage import set_aside, set_aside_if_damaged, write_text
 from crackfront.sweep import parallel
 from crackfront.sweep.checkpoints import CheckpointTimer
 from crackfront.sweep.curves import BATCH, FinishedSimulation, curves_dataset, write_curves

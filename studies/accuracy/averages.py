@@ -7,15 +7,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy import stats
 
-from crackfront.analysis.steady import steady_adhesion
+from crackfront.analysis.steady_adhesion import steady_adhesion
 from crackfront.core.arrays import Array
 from crackfront.core.variables import ADHESION, variable
 from crackfront.simulate.costs import expected_cost
 from crackfront.simulate.numerical_errors import numerical_error, stated_error
-from crackfront.simulate.run import run_simulation
+from crackfront.simulate.run_simulation import run_simulation
 from crackfront.simulate.simulation import Simulation
-from crackfront.simulate.sphere.cycle import FullCycle
-from crackfront.simulate.sphere.steady import SteadySchedule
+from crackfront.simulate.sphere.full_cycle import FullCycle
+from crackfront.simulate.sphere.steady_branches import SteadySchedule
 from studies.accuracy.scenes import HELD_OUT, Progress, Scene
 from studies.accuracy.study import branches_seconds, measured_branches
 

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from crackfront.core.arrays import Array
-from studies.accuracy import loops
+from studies.accuracy import measured_loops
 from studies.accuracy.averages import held_out_coverage, sampling_errors
 from studies.accuracy.energies import KINDS, found_scan
 from studies.accuracy.energy_balance import cycle, energies
@@ -114,8 +114,8 @@ def _movement() -> Mapping[str, Number]:
 
 def _measured_loop() -> Mapping[str, Number]:
     """Hysteresis of one loop, as the usual rig records it."""
-    usual = {"usual": loops.INSTRUMENTS["usual"]}
-    found = loops.coverage(loops.cycles(1), usual)["usual"]
+    usual = {"usual": measured_loops.INSTRUMENTS["usual"]}
+    found = measured_loops.coverage(measured_loops.cycles(1), usual)["usual"]
     unit, reason = "% of the true hysteresis", "last digit on the page"
     return {
         "error of the hysteresis": Number(100 * float(found.offset[0, 2]), 0.5, unit, reason),

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import click
 
-from crackfront.cli.report import (
+from crackfront.cli.common import (
     FILE,
     announce_compilation,
     announce_cost,
@@ -16,18 +16,18 @@ from crackfront.cli.report import (
     whole,
     with_progress,
 )
-from crackfront.data.arguments import nearest_name
-from crackfront.data.bounds import Range
-from crackfront.data.digests import forget_sums
-from crackfront.data.files import read_attributes, write_dataset, write_text
-from crackfront.data.provenance import provenance
+from crackfront.core.arguments import nearest_name
+from crackfront.core.bounds import Range
+from crackfront.measured.scan.reading import read_measurements
 from crackfront.plots.style import save_figure
-from crackfront.simulate.run import compile_solver
+from crackfront.simulate.checksums import forget_sums
+from crackfront.simulate.provenance import provenance
+from crackfront.simulate.run_simulation import compile_solver
+from crackfront.simulate.storage import read_attributes, write_dataset, write_text
 from crackfront.sweep.integrity import write_sums
-from crackfront.topography.scan.reading import read_measurements
 from studies.accuracy import energies as synthetic
 from studies.accuracy import energy_balance as balance
-from studies.accuracy import loops as rigs
+from studies.accuracy import measured_loops as rigs
 from studies.accuracy import movement as settled
 from studies.accuracy import predictions as films
 from studies.accuracy import scans as instrument

@@ -20,9 +20,9 @@ from crackfront.core.adhesion import rough_adhesion
 from crackfront.core.arrays import Array
 from crackfront.core.spectrum import SelfAffineSpectrum, Spectrum, TabulatedSpectrum
 from crackfront.core.synthesis import gaussian_field
-from crackfront.topography.options import ReadingOptions
-from crackfront.topography.scan.reading import read_measurements
-from crackfront.topography.spectrum.measures import MeasuredSurface, measured_surface
+from crackfront.measured.options import ReadingOptions
+from crackfront.measured.scan.reading import read_measurements
+from crackfront.measured.spectrum.measured_surface import MeasuredSurface, measured_surface
 from studies.accuracy.scans import scanned
 from studies.numbers import Number
 from studies.pages import markdown_table

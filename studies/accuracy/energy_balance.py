@@ -11,9 +11,9 @@ from __future__ import annotations
 import numpy as np
 
 from crackfront.core.adhesion import chemical_adhesion
+from crackfront.core.cycle.load_schedule import DEFAULT_STEP, LoadSchedule
 from crackfront.core.cycle.record import CycleRecord, Recorder
 from crackfront.core.cycle.run import run_cycle
-from crackfront.core.cycle.schedule import DEFAULT_STEP, LoadSchedule
 from crackfront.core.geometry.sphere import contact_field
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.synthesis import gaussian_field

@@ -10,12 +10,12 @@ import numpy as np
 import xarray as xr
 
 from crackfront.core.variables import Variable, variables
-from crackfront.data.files import UnreadableFileError, read_dataset
-from crackfront.data.labels import labelled, labelled_fields
-from crackfront.data.records import read_records, stacked
+from crackfront.simulate.labels import labelled, labelled_fields
+from crackfront.simulate.storage import UnreadableFileError, read_dataset
 from studies.accuracy import averages
 from studies.accuracy.scenes import HELD_OUT, SCENES, Progress, Scene, Trial
 from studies.accuracy.study import Errors, SceneErrors, scene_errors, trial_seconds
+from studies.records import read_records, stacked
 
 Record = TypeVar("Record")
 

@@ -10,10 +10,10 @@ import numpy as np
 
 from crackfront.analysis.estimate import Estimate
 from crackfront.core.arrays import Array
-from crackfront.topography.density.bands import analysed_scan
-from crackfront.topography.scan.reading import Measurement
-from crackfront.topography.spectrum.draws import BATCH
-from crackfront.topography.spectrum.joining import joint_spectrum
+from crackfront.measured.density.bands import analysed_scan
+from crackfront.measured.scan.reading import Measurement
+from crackfront.measured.spectrum.draws import BATCH
+from crackfront.measured.spectrum.joining import joint_spectrum
 from studies.pages import markdown_table
 
 SEEDS = 5

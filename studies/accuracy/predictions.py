@@ -16,9 +16,13 @@ from crackfront.analysis.estimate import with_interval
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.synthesis import gaussian_field
 from crackfront.core.units import Scales
-from crackfront.topography.prediction.prediction import Prediction, predicted
-from crackfront.topography.prediction.simulated import Simulated, prediction_plan, simulated
-from crackfront.topography.spectrum.measures import MeasuredSurface
+from crackfront.measured.prediction.prediction import Prediction, predicted
+from crackfront.measured.prediction.simulated_prediction import (
+    Simulated,
+    prediction_plan,
+    simulated,
+)
+from crackfront.measured.spectrum.measured_surface import MeasuredSurface
 from studies.accuracy.scans import scanned
 from studies.pages import markdown_table
 

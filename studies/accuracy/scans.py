@@ -15,9 +15,9 @@ import numpy as np
 from crackfront.core.arrays import Array
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.synthesis import gaussian_field
-from crackfront.topography.options import ReadingOptions
-from crackfront.topography.scan.reading import read_measurements
-from crackfront.topography.spectrum.measures import MeasuredSurface, measured_surface
+from crackfront.measured.options import ReadingOptions
+from crackfront.measured.scan.reading import read_measurements
+from crackfront.measured.spectrum.measured_surface import MeasuredSurface, measured_surface
 
 SEED = 20240229
 ROLL_OFF, HURST, PLATEAU = 2.1e-6, 1.0, 8.4e-27

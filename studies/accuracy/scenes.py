@@ -14,7 +14,7 @@ from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.simulate.laws import MEASURED, SETTINGS, SettingName, Settings, chosen_settings
 from crackfront.simulate.numerics import Numerics
 from crackfront.simulate.simulation import Simulation, simulation_of
-from crackfront.simulate.sphere.cycle import FullCycle
+from crackfront.simulate.sphere.full_cycle import FullCycle
 
 Progress = Callable[[str], None]
 """What is called with a line when a part of a study is done."""

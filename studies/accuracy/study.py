@@ -20,7 +20,7 @@ from crackfront.core.variables import ADHESION, FORCE, variable
 from crackfront.simulate.costs import run_cost
 from crackfront.simulate.laws import Settings
 from crackfront.simulate.simulation import simulation_field
-from crackfront.simulate.sphere.steady import forward_circle
+from crackfront.simulate.sphere.steady_branches import forward_circle
 from studies.accuracy.scenes import Progress, Scene, Trial
 
 _RUN, _BRANCH, _PER_CUTOFF = "realisation", "branch", "1 / short cutoff"

@@ -14,12 +14,17 @@ from numpy.typing import NDArray
 from pydantic import model_validator
 
 from crackfront.core.arrays import Array
+from crackfront.core.bounds import NUMBER, Range
 from crackfront.core.cycle.follow import Load
-from crackfront.core.cycle.schedule import LoadSchedule
+from crackfront.core.cycle.load_schedule import LoadSchedule
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.synthesis import gaussian_field
-from crackfront.data.bounds import NUMBER, Range
-from crackfront.data.section import Positive, Section, bounds_validator, refusal
+from crackfront.sweep.section import (
+    Positive,
+    Section,
+    bounds_validator,
+    refusal,
+)
 from studies.boundary_elements.contact import HalfSpaceContact, half_space_contact
 
 VERSION = 1

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from crackfront.cli.report import (
+from crackfront.cli.common import (
     FILE,
     StoppedError,
     announce_compilation,
@@ -35,11 +35,11 @@ def validate(configuration: Path, output: Path | None) -> None:
     """
     from tqdm import tqdm
 
-    from crackfront.data.digests import forget_sums
-    from crackfront.data.provenance import provenance
+    from crackfront.simulate.checksums import forget_sums
+    from crackfront.simulate.provenance import provenance
     from crackfront.sweep.configuration import refuse_other_configuration, results_folder
     from crackfront.sweep.integrity import write_sums
-    from crackfront.sweep.library import write_source
+    from crackfront.sweep.run_sweep import write_source
     from studies.boundary_elements import study
     from studies.boundary_elements.parameters import load_validation
 
@@ -77,7 +77,7 @@ def numbers(keep: bool) -> None:
     With --keep the table of the package, validity.csv, is written too.
     """
     from crackfront.analysis.validity import validity_text
-    from crackfront.data.files import write_text
+    from crackfront.simulate.storage import write_text
     from studies.boundary_elements.page import kept_surfaces, kept_validity, page_parts
 
     if keep:

@@ -9,14 +9,14 @@ from pathlib import Path
 from typing import Any
 
 from crackfront.analysis.validity import ValidityRow, excess_coefficient
-from crackfront.data.files import read_attributes
-from crackfront.data.records import read_records
+from crackfront.simulate.storage import read_attributes
 from studies.boundary_elements import report
 from studies.boundary_elements.averages import brought_to_no_range, rows_by_zone
 from studies.boundary_elements.differences import Differences
 from studies.boundary_elements.edges import EdgeForces
 from studies.boundary_elements.hysteresis import Hysteresis
 from studies.numbers import Number
+from studies.records import read_records
 
 REFERENCES = Path("docs/reference/validation")
 

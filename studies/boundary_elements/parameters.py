@@ -9,8 +9,16 @@ from typing import Annotated
 import numpy as np
 from pydantic import Field, model_validator
 
-from crackfront.data.bounds import refuse_beyond_memory
-from crackfront.data.section import Count, Positive, Section, Seed, refusal, validated, yaml_mapping
+from crackfront.core.resources import refuse_beyond_memory
+from crackfront.sweep.section import (
+    Count,
+    Positive,
+    Section,
+    Seed,
+    refusal,
+    validated,
+    yaml_mapping,
+)
 from studies.boundary_elements.cases import Case, Loads
 from studies.boundary_elements.contact import refuse_unresolved
 

@@ -6,11 +6,10 @@ from collections.abc import Callable, Iterable
 from importlib import import_module
 from pathlib import Path
 
-from crackfront.data.files import write_text
-from crackfront.data.optional_libraries import MissingExtraError
-from crackfront.data.provenance import Provenance
-from crackfront.data.records import read_record, write_record, write_records
+from crackfront.measured.optional_libraries import MissingExtraError
 from crackfront.plots.style import save_figure
+from crackfront.simulate.provenance import Provenance
+from crackfront.simulate.storage import write_text
 from studies.boundary_elements.averages import limit_settings
 from studies.boundary_elements.cases import Case
 from studies.boundary_elements.cycle import RUNNING, BoundaryCycle, boundary_cycle
@@ -26,6 +25,7 @@ from studies.boundary_elements.picture import (
     validation_picture,
 )
 from studies.boundary_elements.report import validation_report
+from studies.records import read_record, write_record, write_records
 
 Progress = Callable[[str], None]
 

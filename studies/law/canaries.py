@@ -8,10 +8,10 @@ from pathlib import Path
 
 import numpy as np
 
-from crackfront.simulate.run import run_simulation
+from crackfront.simulate.run_simulation import run_simulation
 from crackfront.sweep.configuration import load_configuration
 from crackfront.sweep.rows import row_columns, sweep_row
-from crackfront.sweep.table import columns_dataset
+from crackfront.sweep.table_file import columns_dataset
 from studies.law.cells import law_cells, measured_cells
 from studies.law.fitting import fitted_law
 from studies.law.spheres import SCENES, scene_rows

@@ -18,7 +18,7 @@ from crackfront.analysis.estimate import mean_estimate
 from crackfront.analysis.law import spectral_breadth
 from crackfront.core.adhesion import FieldKind, force_correlation_length, larkin_length
 from crackfront.core.variables import variable
-from crackfront.simulate.line.schedule import LineLoad
+from crackfront.simulate.line.line_loads import LineLoad
 from crackfront.sweep.sweep import Sweep
 
 Row = TypeVar("Row")

@@ -11,12 +11,12 @@ from typing import cast
 import click
 import xarray as xr
 
-from crackfront.cli.report import FILE, examples, refuse_unwritable
-from crackfront.data.files import read_dataset, write_text
+from crackfront.cli.common import FILE, examples, refuse_unwritable
 from crackfront.plots.style import save_picture
-from crackfront.simulate.sphere.steady import SteadySchedule
+from crackfront.simulate.sphere.steady_branches import SteadySchedule
+from crackfront.simulate.storage import read_dataset, write_text
 from crackfront.sweep.configuration import load_configuration
-from crackfront.sweep.library import opened
+from crackfront.sweep.run_sweep import opened
 from crackfront.sweep.sweep import Sweep
 from studies.law.cells import LawCell, Row, csv_rows, csv_text, law_cells, measured_cells
 from studies.law.drawing import law_figure, spectra_points

@@ -36,7 +36,7 @@ from crackfront.plots.style import (
     explain,
     house_style,
 )
-from crackfront.plots.sweep import draw_infinite_law
+from crackfront.plots.sweep_figures import draw_infinite_law
 from studies.law.cells import LawCell
 from studies.paper.drawing import name_panels, write_beside
 

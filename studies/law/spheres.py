@@ -15,11 +15,11 @@ from crackfront.analysis.law_spheres import SphereFactors, sphere_factors
 from crackfront.core import jkr
 from crackfront.core.adhesion import FieldKind
 from crackfront.core.spectrum import SelfAffineSpectrum
-from crackfront.data.files import read_dataset
 from crackfront.simulate.numerics import Numerics
-from crackfront.simulate.run import run_simulation
+from crackfront.simulate.run_simulation import run_simulation
 from crackfront.simulate.simulation import simulation_of
-from crackfront.simulate.sphere.steady import SteadySchedule
+from crackfront.simulate.sphere.steady_branches import SteadySchedule
+from crackfront.simulate.storage import read_dataset
 from crackfront.sweep.rows import sweep_row
 from crackfront.sweep.sweep import Sweep
 from studies.law.cells import COLUMNS, Means, cell_means, csv_rows, mean_factors

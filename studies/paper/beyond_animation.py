@@ -16,7 +16,7 @@ from crackfront.core.variables import ADHESION, ENERGY, FORCE, LATERAL, VERTICAL
 from crackfront.plots.fronts import closed_front, draw_field
 from crackfront.plots.parts import FORCE_LABEL, RADIUS_LABEL
 from crackfront.plots.style import BLACK, BLUE, PAGE, VERMILION, blank_figure, explain, house_style
-from crackfront.simulate.run import compile_solver
+from crackfront.simulate.run_simulation import compile_solver
 from crackfront.simulate.simulation import simulation_adhesion, simulation_field
 from studies.paper.drawing import BRANCHES, Animation
 from studies.paper.figure import Check, Figure, Integers, Progress, close_to, values_of

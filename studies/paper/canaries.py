@@ -10,7 +10,6 @@ from typing import Any
 
 import numpy as np
 
-from crackfront.data.records import read_record
 from studies.canaries import interval_number
 from studies.numbers import Number
 from studies.paper import event_laws, front_spectra
@@ -18,6 +17,7 @@ from studies.paper.figure import figure, load_figure
 from studies.paper.rough import STRONG
 from studies.paper.roughness import STRONG_LINE
 from studies.paper.si_5 import study_fit
+from studies.records import read_record
 
 _CLAIM = "tolerance of the claim of the figure"
 

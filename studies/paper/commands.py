@@ -10,19 +10,18 @@ from typing import Any, get_args
 
 import click
 
-from crackfront.cli.report import (
+from crackfront.cli.common import (
     FILE,
     announce_compilation,
     announce_cost,
     examples,
     refuse_unwritable,
 )
-from crackfront.cli.results import fit_of_sweep
-from crackfront.data.digests import forget_sums
-from crackfront.data.files import read_attributes, write_text
-from crackfront.data.provenance import provenance
-from crackfront.data.records import read_record, write_record
+from crackfront.cli.result_commands import fit_of_sweep
 from crackfront.plots.style import save_figure, save_picture
+from crackfront.simulate.checksums import forget_sums
+from crackfront.simulate.provenance import provenance
+from crackfront.simulate.storage import read_attributes, write_text
 from studies.numbers import store
 from studies.pages import keep_option, output_option, tell
 from studies.paper.drawing import save_animation
@@ -33,6 +32,7 @@ from studies.paper.experiment import (
     hystereses_table,
 )
 from studies.paper.figure import FIGURES, SCALES, Figure, Result, checks_table, figure, load_figure
+from studies.records import read_record, write_record
 
 commands = click.Group()
 

@@ -15,8 +15,8 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from PIL import Image
 
-from crackfront.data.files import replace_atomically
 from crackfront.plots.style import BLUE, VERMILION, house_style
+from crackfront.simulate.storage import replace_atomically
 
 BRANCHES = ((1, "approach", "appr", BLUE), (-1, "retraction", "retr", VERMILION))
 """Direction, name, index of the work of adhesion and colour of both branches."""

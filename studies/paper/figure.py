@@ -17,7 +17,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crackfront.analysis.estimate import with_error
-from crackfront.data.section import ConfigurationError, Section, validated, yaml_mapping
+from crackfront.sweep.section import (
+    ConfigurationError,
+    Section,
+    validated,
+    yaml_mapping,
+)
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure as Drawing

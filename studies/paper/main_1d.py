@@ -13,14 +13,14 @@ from pydantic import model_validator
 from crackfront.core import jkr
 from crackfront.core.arrays import Array
 from crackfront.core.cycle.follow import Load
-from crackfront.core.cycle.schedule import LoadSchedule
+from crackfront.core.cycle.load_schedule import LoadSchedule
 from crackfront.core.geometry.sphere import polar_field
 from crackfront.core.outcome import Direction
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.core.variables import ADHESION, FORCE, LATERAL, VERTICAL, variable
-from crackfront.data.section import Positive, Section, refusal
 from crackfront.plots.parts import FORCE_LABEL, RADIUS_LABEL, draw_arrow
 from crackfront.plots.style import COLUMN, VERMILION, blank_figure, house_style
+from crackfront.sweep.section import Positive, Section, refusal
 from studies.paper.drawing import BRANCHES, DOTTED, draw_jump, write_beside
 from studies.paper.figure import Check, Figure, Integers, Progress, close_to, values_of
 from studies.paper.rings import INNERMOST, circle_steps

@@ -16,10 +16,15 @@ from pydantic import Field, model_validator
 
 from crackfront.core import jkr
 from crackfront.core.arrays import Array
-from crackfront.core.cycle.schedule import LoadSchedule
+from crackfront.core.cycle.load_schedule import LoadSchedule
 from crackfront.core.variables import ADHESION, FORCE, LATERAL, VERTICAL, variable
-from crackfront.data.section import Count, Positive, Section, refusal
 from crackfront.plots import parts, style
+from crackfront.sweep.section import (
+    Count,
+    Positive,
+    Section,
+    refusal,
+)
 from studies.paper.drawing import BRANCHES, write_beside
 from studies.paper.figure import Check, Figure, Integers, Progress, close_to, values_of
 from studies.paper.rings import INNERMOST, Rings, first_stops, folds, steady_stiffness

@@ -15,19 +15,19 @@ from scipy.signal import resample
 from crackfront.core import jkr
 from crackfront.core.arrays import Array
 from crackfront.core.cycle.energy import dissipated_energy
-from crackfront.core.cycle.schedule import LoadSchedule
+from crackfront.core.cycle.load_schedule import LoadSchedule
 from crackfront.core.outcome import Direction
 from crackfront.core.variables import ADHESION, ENERGY, FORCE, LATERAL, VERTICAL, variable
-from crackfront.data.section import Count, Positive, refusal
-from crackfront.plots.instabilities import ENERGY_LABEL, draw_patches, energy_shades
+from crackfront.plots.instability_maps import ENERGY_LABEL, draw_patches, energy_shades
 from crackfront.plots.parts import FORCE_LABEL, RADIUS_LABEL
 from crackfront.plots.style import PAGE, PURPLE, VERMILION, blank_figure, explain, house_style
-from crackfront.simulate.instabilities import (
+from crackfront.surfaces.instabilities import (
     Motion,
     measured_instabilities,
     resolved_motion,
     shortest_instability,
 )
+from crackfront.sweep.section import Count, Positive, refusal
 from studies.paper.drawing import BRANCHES, draw_jump, name_panels, write_beside
 from studies.paper.figure import Check, Figure, Integers, Progress, close_to
 from studies.paper.rough import STRONG, WEAK, DisorderParameters, RoughContact, flat_spectrum

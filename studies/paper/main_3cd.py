@@ -15,7 +15,7 @@ from pydantic import Field
 from crackfront.analysis.estimate import REACH, with_error, with_interval
 from crackfront.analysis.finding import PAPER_FACTOR
 from crackfront.analysis.law_spheres import sphere_factors
-from crackfront.analysis.steady import steady_adhesion
+from crackfront.analysis.steady_adhesion import steady_adhesion
 from crackfront.core import jkr
 from crackfront.core.arrays import Array
 from crackfront.core.cycle.record import Recorder
@@ -23,13 +23,13 @@ from crackfront.core.field.rays import front_adhesion
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.core.variables import ADHESION, FORCE, LATERAL, VERTICAL, variable
-from crackfront.data.section import Positive
 from crackfront.plots.fronts import RETRACTION, label_plane
-from crackfront.plots.loop import draw_loop
+from crackfront.plots.loop_figures import draw_loop
 from crackfront.plots.parts import ADHESION_LABEL, field_colours
 from crackfront.plots.style import BLACK, BLUE, PAGE, VERMILION, blank_figure, explain, house_style
 from crackfront.simulate.numerical_errors import stated_error
 from crackfront.simulate.simulation import simulation_adhesion, simulation_field
+from crackfront.sweep.section import Positive
 from studies.paper.drawing import name_panels
 from studies.paper.figure import Check, Figure, Integers, Progress, close_to, values_of
 from studies.paper.rough import (

@@ -22,13 +22,20 @@ from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.synthesis import gaussian_field
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.core.variables import ADHESION, LATERAL, VERTICAL, variable
-from crackfront.data.section import Count, Energy, Positive, Section, Seed, refusal
 from crackfront.plots.parts import HEIGHT_LABEL, LENGTH_LABEL, label_panel
 from crackfront.plots.style import BLUE, PAGE, VERMILION, blank_figure, explain, house_style
+from crackfront.sweep.section import (
+    Count,
+    Energy,
+    Positive,
+    Section,
+    Seed,
+    refusal,
+)
 from studies.paper.drawing import DOTTED, write_beside
 from studies.paper.figure import Check, Figure, Integers, Progress, close_to
 from studies.paper.rough import rough_spectrum
-from studies.paper.tiles import tile_mean_square
+from studies.paper.tile_sizes import tile_mean_square
 
 _X, _Y, _BAND, _PLACE = "x", "y", "band", "coordinate"
 

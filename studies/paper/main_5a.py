@@ -11,8 +11,8 @@ from pydantic import model_validator
 
 from crackfront.core.arrays import Array
 from crackfront.core.variables import variable
-from crackfront.data.section import Positive, refusal
-from crackfront.plots import densities, style
+from crackfront.plots import density_axes, style
+from crackfront.sweep.section import Positive, refusal
 from studies.paper.drawing import write_beside
 from studies.paper.figure import Check, Figure, Progress, close_to, values_of
 from studies.paper.film import CONVERTED_LABEL, FilmDensities, FilmParameters, conformity_energy
@@ -134,9 +134,11 @@ def film_scales_figure(record: FilmScales) -> Drawing:
         figure, q = style.blank_figure(style.COLUMN, 1.35 * style.COLUMN), record.wavevector
         upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(1.25, 1))
         for axes in (upper, lower):
-            densities.set_density_scales(axes, q)
+            density_axes.set_density_scales(axes, q)
         upper.plot(q, record.isotropic, color=style.BLACK)
-        densities.draw_dominant_scales(upper, record.mean_square, record.shortest, record.longest)
+        density_axes.draw_dominant_scales(
+            upper, record.mean_square, record.shortest, record.longest
+        )
         place, text = 2 * np.pi / record.roll_off, f"roll-off {1e6 * record.roll_off:.3g} µm"
         # Up to the density, so that it crosses no bar and no name.
         ends = upper.get_ylim()[0], record.isotropic[0]
@@ -151,9 +153,9 @@ def film_scales_figure(record: FilmScales) -> Drawing:
             lower.plot(points, density, ".", color=style.VERMILION, markersize=2, label="measured")
         lower.axvline(place, color="0.6", linewidth=0.6, zorder=1)
         lower.legend(loc="upper right")
-        upper.set_ylabel(densities.ISOTROPIC_LABEL)
-        lower.set(xlabel=densities.WAVEVECTOR_LABEL, ylabel=densities.PROFILE_LABEL)
-        densities.add_wavelengths(upper)
+        upper.set_ylabel(density_axes.ISOTROPIC_LABEL)
+        lower.set(xlabel=density_axes.WAVEVECTOR_LABEL, ylabel=density_axes.PROFILE_LABEL)
+        density_axes.add_wavelengths(upper)
         style.explain(figure, "bars: scales of 80% of a mean square; grey: the roll-off")
         return figure
 

@@ -16,7 +16,7 @@ from matplotlib.figure import Figure as Drawing
 
 from crackfront.analysis.estimate import REACH
 from crackfront.analysis.finding import PAPER_FACTOR
-from crackfront.analysis.steady import steady_adhesion
+from crackfront.analysis.steady_adhesion import steady_adhesion
 from crackfront.core import jkr
 from crackfront.core.arrays import Array
 from crackfront.core.cycle.follow import Load

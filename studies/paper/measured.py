@@ -19,7 +19,7 @@ from crackfront.analysis.estimate import Estimate, student_estimate
 from crackfront.core import jkr
 from crackfront.core.arrays import Array
 from crackfront.core.units import Scales
-from crackfront.data.section import refusal
+from crackfront.sweep.section import refusal
 from studies.paper.figure import Integers
 
 _FEWEST_POINTS = 3

@@ -16,9 +16,9 @@ from crackfront.core.arrays import Array
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.units import Scales
 from crackfront.core.variables import variable
-from crackfront.data.section import Positive, refusal
 from crackfront.simulate.simulation import Simulation
-from crackfront.simulate.sphere.cycle import FullCycle
+from crackfront.simulate.sphere.full_cycle import FullCycle
+from crackfront.sweep.section import Positive, refusal
 from studies.paper.figure import Integers
 from studies.paper.film import FilmSection
 from studies.paper.measured import ForceRadius, read_force_radius

@@ -14,7 +14,7 @@ from scipy.optimize import brentq
 from crackfront.core import jkr
 from crackfront.core.arrays import Array
 from crackfront.core.cycle.follow import Load, Step, follow
-from crackfront.core.cycle.schedule import LoadSchedule
+from crackfront.core.cycle.load_schedule import LoadSchedule
 from crackfront.core.field.fields import RayField
 from crackfront.core.geometry.sphere import polar_field
 from crackfront.core.outcome import Status

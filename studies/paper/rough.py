@@ -22,19 +22,26 @@ from crackfront.core.outcome import Direction, Status
 from crackfront.core.solver.relax import Newton, Solver
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.units import WORK_OF_ADHESION
-from crackfront.data.section import Count, Energy, Positive, Section, Seed, refusal
 from crackfront.simulate.costs import expected_cost
 from crackfront.simulate.laws import chosen_settings, measured_energies
 from crackfront.simulate.numerical_errors import missed_error
 from crackfront.simulate.numerics import Numerics
-from crackfront.simulate.run import compile_solver
+from crackfront.simulate.run_simulation import compile_solver
 from crackfront.simulate.simulation import (
     Simulation,
     simulation_adhesion,
     simulation_field,
     simulation_of,
 )
-from crackfront.simulate.sphere.cycle import FullCycle
+from crackfront.simulate.sphere.full_cycle import FullCycle
+from crackfront.sweep.section import (
+    Count,
+    Energy,
+    Positive,
+    Section,
+    Seed,
+    refusal,
+)
 from studies.paper.figure import Check
 
 ONE_DIGIT = 0.5

@@ -10,7 +10,7 @@ from pydantic import model_validator
 from scipy.fft import rfft
 
 from crackfront.core.arrays import Array
-from crackfront.data.section import Count, Positive, refusal
+from crackfront.sweep.section import Count, Positive, refusal
 from studies.paper.figure import Integers, Progress
 from studies.paper.front_spectra import (
     RoughnessRecord,

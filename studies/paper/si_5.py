@@ -14,15 +14,15 @@ from numpy.typing import NDArray
 
 from crackfront.analysis.estimate import REACH, slope, with_error, with_interval
 from crackfront.analysis.finding import PAPER_FACTOR
-from crackfront.analysis.report import pooled_limits
+from crackfront.analysis.fit_text import pooled_limits
 from crackfront.analysis.result import SweepFit
-from crackfront.analysis.sweep import fit_sweep
+from crackfront.analysis.sweep_fit import fit_sweep
 from crackfront.analysis.table import SweepTable
 from crackfront.core.arrays import Array
 from crackfront.core.variables import ADHESION, LATERAL, variable
-from crackfront.data.section import Section
 from crackfront.plots.parts import legend_entries
 from crackfront.plots.style import PAGE, blank_figure, explain, house_style
+from crackfront.sweep.section import Section
 from studies.paper.drawing import name_panels
 from studies.paper.figure import Check, Figure, Progress, values_of
 from studies.paper.rough import ONE_DIGIT
@@ -221,7 +221,7 @@ def _ordered_pairs(length: Array, onset: Array, is_bound: NDArray[np.bool_]) -> 
 
 def parametric_study_figure(study: ParametricStudy) -> Drawing:
     """Hysteresis against disorder with the spectra, k against disorder, k against size."""
-    from crackfront.plots.sweep import (
+    from crackfront.plots.sweep_figures import (
         SHIFTS_EXPLAINED,
         arrows_explained,
         draw_factor_by_disorder,
@@ -260,7 +260,7 @@ def parametric_study_figure(study: ParametricStudy) -> Drawing:
 
 def _draw_inset(axes: Axes, fit: SweepFit) -> None:
     """Spectra in small print, below the points of hysteresis."""
-    from crackfront.plots.sweep import draw_spectra
+    from crackfront.plots.sweep_figures import draw_spectra
 
     inset = axes.inset_axes((0.68, 0.12, 0.3, 0.27))
     draw_spectra(inset, fit)

@@ -16,8 +16,7 @@ from crackfront.core.adhesion import half_derivative_mean_square
 from crackfront.core.arrays import Array
 from crackfront.core.synthesis import gaussian_field
 from crackfront.core.variables import variable
-from crackfront.data.section import Count, Positive, Seed, refusal
-from crackfront.plots import densities
+from crackfront.plots import density_axes
 from crackfront.plots.style import (
     BLACK,
     BLUE,
@@ -27,10 +26,16 @@ from crackfront.plots.style import (
     explain,
     house_style,
 )
+from crackfront.sweep.section import (
+    Count,
+    Positive,
+    Seed,
+    refusal,
+)
 from studies.paper.drawing import DOTTED, write_beside
 from studies.paper.figure import Check, Figure, Progress, close_to, values_of
 from studies.paper.film import CONVERTED_LABEL, POINTS_PER_DECADE, FilmDensities, FilmParameters
-from studies.paper.tiles import tile_mean_square
+from studies.paper.tile_sizes import tile_mean_square
 
 _MODE = "mode"
 
@@ -205,7 +210,7 @@ def synthetic_film_figure(record: SyntheticFilm) -> Drawing:
     with house_style():
         figure, q = blank_figure(COLUMN, COLUMN), record.wavevector
         axes = figure.add_subplot()
-        densities.set_density_scales(axes, q)
+        density_axes.set_density_scales(axes, q)
         # Wider and paler than what lies on it.
         wide: dict[str, Any] = {"color": VERMILION, "linewidth": 2.4, "alpha": 0.5, "zorder": 1.5}
         axes.plot(q, record.profile, label="nanodiamond, ideal spectrum", **wide)
@@ -217,9 +222,9 @@ def synthetic_film_figure(record: SyntheticFilm) -> Drawing:
         axes.plot(record.mode, record.synthetic, color=BLUE, linewidth=0.8, label=label)
         _draw_end(axes, f"tile {1e6 * record.side:.0f} µm", record.side, "left")
         _draw_end(axes, f"cutoff {1e9 * record.shortest:.0f} nm", record.shortest, "right")
-        axes.set(ylabel=densities.PROFILE_LABEL, xlabel=densities.WAVEVECTOR_LABEL)
+        axes.set(ylabel=density_axes.PROFILE_LABEL, xlabel=density_axes.WAVEVECTOR_LABEL)
         axes.set_ylim(top=20 * float(record.profile.max()))
-        densities.add_wavelengths(axes)
+        density_axes.add_wavelengths(axes)
         axes.legend(loc="lower left", bbox_to_anchor=(0.07, 0.0))
         explain(
             figure,

@@ -8,13 +8,13 @@ from typing import Any, get_args
 
 import click
 
-from crackfront.cli.report import examples, refuse_unwritable
-from crackfront.data.files import write_text
-from crackfront.data.provenance import provenance
-from crackfront.data.records import write_records
+from crackfront.cli.common import examples, refuse_unwritable
+from crackfront.simulate.provenance import provenance
+from crackfront.simulate.storage import write_text
 from studies.numbers import Number
 from studies.pages import keep_option, output_option, tell
-from studies.speed import costs as cost_model
+from studies.records import write_records
+from studies.speed import cost_ratios as cost_model
 from studies.speed import needs as requests
 from studies.speed import profile as kernels
 from studies.speed import scaling as sweeps

@@ -8,7 +8,7 @@ from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 from typing import Any, TypeVar
 
-from crackfront.core.memory import peak_memory
+from crackfront.core.resources import peak_memory
 
 Result = TypeVar("Result")
 

@@ -19,21 +19,21 @@ from crackfront.core.cycle.run import run_cycle
 from crackfront.core.field.fields import Field, first_place
 from crackfront.core.field.samples import make_memory
 from crackfront.core.geometry.sphere import polar_field
-from crackfront.core.memory import peak_memory
 from crackfront.core.outcome import Status
+from crackfront.core.resources import peak_memory
 from crackfront.core.solver.relax import Newton
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.core.variables import variable
-from crackfront.data.files import write_dataset
-from crackfront.data.provenance import provenance
-from crackfront.simulate.files import cycle_dataset
+from crackfront.simulate.cycle_files import cycle_dataset
 from crackfront.simulate.laws import Settings
 from crackfront.simulate.numerics import Numerics
-from crackfront.simulate.run import compile_solver, run_simulation
+from crackfront.simulate.provenance import provenance
+from crackfront.simulate.run_simulation import compile_solver, run_simulation
 from crackfront.simulate.simulation import Simulation, simulation_field, simulation_of
-from crackfront.simulate.sphere.cycle import FullCycle
-from crackfront.simulate.sphere.steady import SteadySchedule
+from crackfront.simulate.sphere.full_cycle import FullCycle
+from crackfront.simulate.sphere.steady_branches import SteadySchedule
+from crackfront.simulate.storage import write_dataset
 from crackfront.sweep.curves import FinishedSimulation, curves_dataset
 from crackfront.sweep.rows import sweep_row
 from studies.pages import markdown_table

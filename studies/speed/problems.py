@@ -8,7 +8,7 @@ from typing import Literal
 import numpy as np
 
 from crackfront.core.adhesion import AdhesionMap, chemical_adhesion, rough_adhesion
-from crackfront.core.cycle.schedule import LoadSchedule
+from crackfront.core.cycle.load_schedule import LoadSchedule
 from crackfront.core.field.fields import Interpolation, RayField, TileField, tile_field
 from crackfront.core.field.rays import sampled_on_rays
 from crackfront.core.geometry.sphere import sphere

@@ -22,11 +22,11 @@ from typing import Any
 
 import click
 
-from crackfront.analysis.measures import RunMeasures
+from crackfront.analysis.run_measures import RunMeasures
 from crackfront.core.cycle.record import Recorder
 from crackfront.core.variables import variable
-from crackfront.data.provenance import provenance
-from crackfront.simulate.run import SimulationResult, compile_solver
+from crackfront.simulate.provenance import provenance
+from crackfront.simulate.run_simulation import SimulationResult, compile_solver
 from crackfront.simulate.simulation import Simulation, simulation_adhesion, simulation_field
 from crackfront.sweep.configuration import load_configuration
 from crackfront.sweep.curves import FinishedSimulation, curves_dataset

@@ -23,11 +23,11 @@ import numpy as np
 
 from crackfront.cli import main
 from crackfront.core.arrays import Array
-from crackfront.core.memory import peak_memory
-from crackfront.data.files import write_text
-from crackfront.data.provenance import Provenance, provenance
+from crackfront.core.resources import peak_memory
 from crackfront.simulate.costs import expected_cost
-from crackfront.simulate.run import run_simulation
+from crackfront.simulate.provenance import Provenance, provenance
+from crackfront.simulate.run_simulation import run_simulation
+from crackfront.simulate.storage import write_text
 from crackfront.sweep.configuration import load_configuration
 from crackfront.sweep.curves import FinishedSimulation
 from crackfront.sweep.requests import shard_request
@@ -147,9 +147,9 @@ def million(
 _HAND_OUT = """
 import sys, time
 from pathlib import Path
-from crackfront.cli.sweep import run_missing
+from crackfront.cli.sweep_commands import run_missing
 from crackfront.sweep import parallel, tasks
-from crackfront.sweep.library import opened
+from crackfront.sweep.run_sweep import opened
 run, first = tasks._run, []
 def answer(task, between):
     first[:] = first or [run(task, between)]

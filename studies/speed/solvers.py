@@ -8,11 +8,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from crackfront.core.cycle.load_schedule import LoadSchedule
 from crackfront.core.cycle.record import CycleRecord, Recorder
 from crackfront.core.cycle.run import run_cycle
-from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.field.fields import RayField, TileField
-from crackfront.core.memory import peak_memory
+from crackfront.core.resources import peak_memory
 from crackfront.core.solver import DEFAULT_TOLERANCE
 from crackfront.core.solver.relax import SOLVERS
 from crackfront.core.variables import ADHESION, variable

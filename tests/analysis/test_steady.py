@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from crackfront.analysis.steady import steady_adhesion
+from crackfront.analysis.steady_adhesion import steady_adhesion
 from crackfront.core import jkr
 from crackfront.core.cycle.record import CycleRecord
 from crackfront.core.geometry.sphere import ContactState

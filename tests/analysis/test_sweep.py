@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from crackfront.analysis.estimate import Estimate, mean_estimate
+from crackfront.analysis.fit_text import fit_notes, fit_table, trend_sentence
 from crackfront.analysis.law import law_value, shipped_law, spectral_breadth
-from crackfront.analysis.report import fit_notes, fit_table, trend_sentence
 from crackfront.analysis.result import SweepFit
-from crackfront.analysis.sweep import fit_sweep
+from crackfront.analysis.sweep_fit import fit_sweep
 from crackfront.analysis.sweep_law import SweepLaw
 from crackfront.analysis.table import REALISATION, SweepTable
 from crackfront.core import jkr
@@ -138,7 +138,7 @@ def test_realisations_are_resampled_with_all_their_amplitudes(rng):
 def test_a_bootstrap_that_is_drawn_in_parts_is_the_one_that_is_drawn_at_once(rng, monkeypatch):
     table = synthetic_table(rng, constant)
     whole = fit_all(table).spectra.factor
-    monkeypatch.setattr("crackfront.analysis.sweep.COUNTS_AT_ONCE", 100)
+    monkeypatch.setattr("crackfront.analysis.sweep_fit.COUNTS_AT_ONCE", 100)
     assert fit_all(table).spectra.factor.standard_error == pytest.approx(
         whole.standard_error, rel=1e-12
     )

@@ -22,20 +22,20 @@ from matplotlib.figure import Figure
 
 import crackfront as cf
 from crackfront.cli import Commands, main
-from crackfront.cli.report import StoppedError
+from crackfront.cli.common import StoppedError
 from crackfront.core import jkr
 from crackfront.core.outcome import DefectError, Status
 from crackfront.core.solver.relax import named_solver
 from crackfront.core.units import WORK_OF_ADHESION
-from crackfront.data.provenance import provenance
 from crackfront.plots.style import save_figure
+from crackfront.simulate.provenance import provenance
 from crackfront.sweep.configuration import load_configuration
 from crackfront.sweep.curves import FinishedSimulation
 from crackfront.sweep.rows import failed_row
 from crackfront.sweep.store import Store
 from crackfront.sweep.tasks import BatchWriter
 from tests.commands import curves, refused, run, simulated
-from tests.topography.made import DETAIL, measure_surfaces_once
+from tests.measured.made import DETAIL, measure_surfaces_once
 
 TEST = Path(__file__).parents[2] / "config/test.yaml"
 
@@ -143,7 +143,7 @@ def test_a_sweep_runs_from_its_plan_to_its_figures_and_tells_what_a_missing_loop
     again = run("simulate", TEST, *output)
     assert "8 of 8 simulations are stored" in again.output
     assert "[1/" not in again.output
-    monkeypatch.setattr("crackfront.cli.report._MOMENT", 0.0)
+    monkeypatch.setattr("crackfront.cli.common._MOMENT", 0.0)
     for command in ("aggregate", "fit", "figures"):
         result = run(command, TEST, *output)
         assert result.exit_code == 0, result.output
@@ -423,7 +423,7 @@ def test_machines_read_how_a_cycle_ended(smooth_tile, tmp_path):
 
 
 def test_a_cycle_tells_in_a_line_what_it_found_and_draws_it(rough_surface, tmp_path, monkeypatch):
-    monkeypatch.setattr(sys.modules["crackfront.cli.cycle"], "_SECONDS_IN_LOG", 0.0)
+    monkeypatch.setattr(sys.modules["crackfront.cli.cycle_command"], "_SECONDS_IN_LOG", 0.0)
     result = cycle(rough_surface, tmp_path, "--figure", tmp_path / "pictures/loop", step=0.02)
     assert result.exit_code == 0, result.output
     found = xr.load_dataset(tmp_path / "out.nc")
@@ -476,7 +476,9 @@ def stopped_cycle(monkeypatch, signal_number, *arguments):
 
     with monkeypatch.context() as patched:
         shown = nullcontext(interrupted)
-        patched.setattr(sys.modules["crackfront.cli.cycle"], "_progress", lambda *_, **__: shown)
+        patched.setattr(
+            sys.modules["crackfront.cli.cycle_command"], "_progress", lambda *_, **__: shown
+        )
         return cycle(*arguments)
 
 
@@ -677,7 +679,7 @@ def test_a_link_to_itself_is_refused_in_a_sentence(tmp_path, monkeypatch, comman
 def test_a_cycle_that_could_not_be_written_is_not_computed(
     smooth_tile, monkeypatch, output, reason
 ):
-    monkeypatch.setattr("crackfront.simulate.user_surface.read_field", None)
+    monkeypatch.setattr("crackfront.surfaces.given_surface.read_field", None)
     options = ("--field", smooth_tile, "--max-penetration", "0.5")
     assert f"cannot be used: {reason}" in refused("cycle", *options, "--output", output)
 
@@ -690,9 +692,9 @@ def test_a_full_disk_is_told_as_that_whatever_netcdf_says(smooth_tile, tmp_path,
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
     monkeypatch.setattr(xr.Dataset, "to_netcdf", write)
-    module = sys.modules["crackfront.cli.cycle"]
+    module = sys.modules["crackfront.cli.cycle_command"]
     monkeypatch.setattr(module, "refuse_unwritable", lambda folder: None)
-    monkeypatch.setattr("crackfront.data.files.tempfile.TemporaryFile", full)
+    monkeypatch.setattr("crackfront.simulate.storage.tempfile.TemporaryFile", full)
     options = ("--field", smooth_tile, "--max-penetration", "0.1", "--step", "0.1")
     sentence = refused("cycle", *options, "--output", tmp_path / "cycle.nc")
     told = f"{tmp_path / 'cycle.nc'} cannot be written: No space left on device; make room and rep"

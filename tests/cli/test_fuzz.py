@@ -618,8 +618,8 @@ def test_no_generated_input_ends_in_a_traceback_a_hang_or_a_wrong_result(
     kind, tmp_path, monkeypatch
 ):
     # Few draws fail where many do.
-    monkeypatch.setattr("crackfront.topography.spectrum.draws.BATCHES", (1,))
-    monkeypatch.setattr("crackfront.topography.spectrum.draws.BATCH", 2**6)
+    monkeypatch.setattr("crackfront.measured.spectrum.draws.BATCHES", (1,))
+    monkeypatch.setattr("crackfront.measured.spectrum.draws.BATCH", 2**6)
     with np.errstate(all="warn", under="ignore"):
         assert faults(kind, range(FEW), tmp_path) == {}
         # What libraries leave open warns here, and not amid another test.

@@ -8,7 +8,7 @@ import pytest
 from click.testing import CliRunner
 
 from crackfront.cli import main
-from tests.experiment.made import W_APPR, W_RETR, loop
+from tests.measured.loops.made import W_APPR, W_RETR, loop
 
 
 @pytest.fixture

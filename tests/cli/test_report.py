@@ -7,7 +7,7 @@ import time
 import pytest
 import tqdm
 
-from crackfront.cli.report import with_progress
+from crackfront.cli.common import with_progress
 
 
 class Terminal(io.StringIO):

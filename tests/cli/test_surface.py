@@ -17,10 +17,10 @@ from crackfront.analysis.estimate import Estimate
 from crackfront.analysis.law import shipped_law
 from crackfront.analysis.validity import shipped_validity
 from crackfront.core.variables import variables
-from crackfront.simulate.user_surface import read_field, surface_adhesion
-from crackfront.topography.prediction.prediction import Prediction, predicted
+from crackfront.measured.prediction.prediction import Prediction, predicted
+from crackfront.surfaces.given_surface import read_field, surface_adhesion
 from tests.commands import refused, run
-from tests.topography.made import (
+from tests.measured.made import (
     DETAIL,
     OVERVIEW,
     SCENE,
@@ -110,7 +110,7 @@ def test_an_interrupted_batch_of_scans_keeps_the_rows_of_those_before(
             raise KeyboardInterrupt
         return measured_once(paths, options)
 
-    monkeypatch.setattr("crackfront.topography.samples.read_surface", interrupted)
+    monkeypatch.setattr("crackfront.measured.samples.read_surface", interrupted)
     table = tmp_path / "samples.csv"
     assert run("predict", *sphere(), "--csv", table, smooth, OVERVIEW).exit_code != 0
     with table.open(encoding="utf-8", newline="") as file:

@@ -10,9 +10,9 @@ from crackfront.core.adhesion import chemical_adhesion, rough_adhesion
 from crackfront.core.arrays import Array
 from crackfront.core.cycle.energy import contact_energy, dissipated_energy
 from crackfront.core.cycle.follow import Load
+from crackfront.core.cycle.load_schedule import LoadSchedule, protocol
 from crackfront.core.cycle.record import CycleRecord, Recorder
 from crackfront.core.cycle.run import run_cycle
-from crackfront.core.cycle.schedule import LoadSchedule, protocol
 from crackfront.core.cycle.touch import first_touch
 from crackfront.core.field.fields import Field, Interpolation, RayField
 from crackfront.core.field.rays import front_adhesion, sampled_on_rays, swept_adhesion
@@ -21,11 +21,11 @@ from crackfront.core.geometry.sphere import contact_field, polar_field
 from crackfront.core.outcome import Status
 from crackfront.core.solver.relax import Solver, front_force
 from crackfront.core.units import WORK_OF_ADHESION
-from crackfront.simulate.line.schedule import LineSchedule
-from crackfront.simulate.run import run_simulation
+from crackfront.simulate.line.line_loads import LineSchedule
+from crackfront.simulate.run_simulation import run_simulation
 from crackfront.simulate.simulation import Resolution, Simulation
-from crackfront.simulate.sphere.cycle import FullCycle
-from crackfront.simulate.sphere.steady import SteadySchedule
+from crackfront.simulate.sphere.full_cycle import FullCycle
+from crackfront.simulate.sphere.steady_branches import SteadySchedule
 from tests.golden.closed_forms import FLAT, FRACTAL, TABLE
 from tests.golden.golden import Values
 

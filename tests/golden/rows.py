@@ -8,10 +8,10 @@ from dataclasses import asdict, fields, replace
 
 import numpy as np
 
-from crackfront.analysis.measures import RunMeasures
 from crackfront.analysis.result import fit_columns
-from crackfront.analysis.steady import passing_adhesion
-from crackfront.analysis.sweep import fit_sweep
+from crackfront.analysis.run_measures import RunMeasures
+from crackfront.analysis.steady_adhesion import passing_adhesion
+from crackfront.analysis.sweep_fit import fit_sweep
 from crackfront.analysis.table import SweepRow, SweepTable
 from crackfront.core.arrays import Array
 from crackfront.core.cycle.record import CycleRecord
@@ -20,11 +20,11 @@ from crackfront.core.geometry.sphere import ContactState
 from crackfront.core.outcome import Status
 from crackfront.core.solver.relax import Newton
 from crackfront.core.spectrum import SelfAffineSpectrum
-from crackfront.simulate.line.schedule import LineSchedule
-from crackfront.simulate.run import SimulationResult, run_simulation
+from crackfront.simulate.line.line_loads import LineSchedule
+from crackfront.simulate.run_simulation import SimulationResult, run_simulation
 from crackfront.simulate.simulation import Resolution, Simulation
-from crackfront.simulate.sphere.cycle import FullCycle
-from crackfront.simulate.sphere.steady import SteadySchedule
+from crackfront.simulate.sphere.full_cycle import FullCycle
+from crackfront.simulate.sphere.steady_branches import SteadySchedule
 from crackfront.sweep.rows import sweep_row
 from tests.golden.golden import Scenes, Values
 

@@ -5,16 +5,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from crackfront.analysis.steady import steady_adhesion
+from crackfront.analysis.steady_adhesion import steady_adhesion
 from crackfront.core import jkr
 from crackfront.core.adhesion import chemical_adhesion
+from crackfront.core.cycle.load_schedule import LoadSchedule
 from crackfront.core.cycle.run import run_cycle
-from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.geometry.line import LineState
 from crackfront.core.geometry.sphere import contact_field
 from crackfront.core.solver.relax import Newton
 from crackfront.core.units import WORK_OF_ADHESION
-from crackfront.plots.loop import draw_loop, draw_pinning, steady_loop_figure
+from crackfront.plots.loop_figures import draw_loop, draw_pinning, steady_loop_figure
 from crackfront.plots.style import COLUMN, blank_figure, house_style
 
 

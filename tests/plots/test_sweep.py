@@ -10,13 +10,13 @@ import pytest
 from matplotlib.colors import to_hex
 
 from crackfront.analysis.law import law_value, shipped_law, spectral_breadth
-from crackfront.analysis.sweep import fit_sweep
+from crackfront.analysis.sweep_fit import fit_sweep
 from crackfront.analysis.table import SweepTable
 from crackfront.core.adhesion import larkin_length
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.plots.parts import spectrum_label
 from crackfront.plots.style import COLOURS, MARKERS, save_figure
-from crackfront.plots.sweep import factor_figure, hysteresis_figure
+from crackfront.plots.sweep_figures import factor_figure, hysteresis_figure
 
 
 @pytest.fixture

@@ -12,9 +12,9 @@ from crackfront.core.adhesion import correlation_length, rough_adhesion
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.synthesis import gaussian_field
 from crackfront.simulate.costs import expected_cost
-from crackfront.simulate.run import run_simulation
-from crackfront.simulate.sphere.cycle import FullCycle
-from crackfront.simulate.sphere.steady import integral_breadth
+from crackfront.simulate.run_simulation import run_simulation
+from crackfront.simulate.sphere.full_cycle import FullCycle
+from crackfront.simulate.sphere.steady_branches import integral_breadth
 from crackfront.sweep.configuration import load_configuration
 
 ROOT = Path(__file__).parents[2]
@@ -114,7 +114,7 @@ def test_memory_is_predicted_within_a_factor_one_and_a_half():
         "from dataclasses import replace\n"
         "from crackfront.sweep.configuration import load_configuration\n"
         "from crackfront.simulate.costs import expected_cost\n"
-        "from crackfront.simulate.run import run_simulation\n"
+        "from crackfront.simulate.run_simulation import run_simulation\n"
         f"sweep = load_configuration(Path({str(ROOT / 'config/test.yaml')!r}))\n"
         "one = sweep.simulation(sweep.spectra[0], 0.1, 0)\n"
         "one = replace(one, resolution=replace(one.resolution, n_point=2500))\n"

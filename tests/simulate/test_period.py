@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
-from crackfront.analysis.steady import period_adhesion
+from crackfront.analysis.steady_adhesion import period_adhesion
 from crackfront.cli import main
 from crackfront.core.adhesion import AdhesionMap, correlation_length, larkin_length
 from crackfront.core.cycle.record import Recorder
@@ -16,11 +16,11 @@ from crackfront.core.outcome import Status
 from crackfront.core.solver.relax import SOLVERS
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.units import WORK_OF_ADHESION
-from crackfront.simulate.line.schedule import LineSchedule
+from crackfront.simulate.line.line_loads import LineSchedule
 from crackfront.simulate.simulation import simulation_adhesion, simulation_field
 from crackfront.sweep.configuration import load_configuration
 from crackfront.sweep.store import Store
-from crackfront.sweep.table import read_table
+from crackfront.sweep.table_file import read_table
 
 CONFIG = Path(__file__).parents[2] / "config"
 TEXT = (CONFIG / "line-test.yaml").read_text(encoding="utf-8")

@@ -15,17 +15,17 @@ from crackfront.core.solver.relax import Newton, Reference
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.simulate.laws import Settings
-from crackfront.simulate.line.schedule import LineSchedule
+from crackfront.simulate.line.line_loads import LineSchedule
 from crackfront.simulate.numerics import Numerics
-from crackfront.simulate.run import run_simulation
+from crackfront.simulate.run_simulation import run_simulation
 from crackfront.simulate.simulation import (
     Resolution,
     Simulation,
     resolution,
     simulation_adhesion,
 )
-from crackfront.simulate.sphere.cycle import FullCycle
-from crackfront.simulate.sphere.steady import SteadySchedule
+from crackfront.simulate.sphere.full_cycle import FullCycle
+from crackfront.simulate.sphere.steady_branches import SteadySchedule
 
 SETTINGS = Settings(None, 2, 4, "cubic", 4, 1e-6)
 NUMERICS = Numerics(SETTINGS, 10, 20, max_sweeps=100_000, solver="reference")

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from crackfront.analysis.steady import steady_adhesion
+from crackfront.analysis.steady_adhesion import steady_adhesion
 from crackfront.core import jkr
 from crackfront.core.adhesion import correlation_length
 from crackfront.core.cycle.follow import Load
@@ -18,10 +18,10 @@ from crackfront.core.outcome import Status
 from crackfront.core.solver.relax import Newton
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.units import WORK_OF_ADHESION
-from crackfront.simulate.run import run_simulation
+from crackfront.simulate.run_simulation import run_simulation
 from crackfront.simulate.simulation import Resolution, Simulation, simulation_adhesion
-from crackfront.simulate.sphere.cycle import FullCycle
-from crackfront.simulate.sphere.steady import (
+from crackfront.simulate.sphere.full_cycle import FullCycle
+from crackfront.simulate.sphere.steady_branches import (
     SteadySchedule,
     forward_circle,
     own_part,

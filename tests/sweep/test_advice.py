@@ -7,15 +7,15 @@ from pathlib import Path
 
 import pytest
 
-from crackfront.analysis.steady import steady_adhesion
+from crackfront.analysis.steady_adhesion import steady_adhesion
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.units import Scales
 from crackfront.simulate.laws import Settings
 from crackfront.simulate.numerics import Numerics
-from crackfront.simulate.run import run_simulation
+from crackfront.simulate.run_simulation import run_simulation
 from crackfront.simulate.simulation import simulation_of
-from crackfront.simulate.sphere.cycle import FullCycle
-from crackfront.simulate.sphere.steady import SteadySchedule
+from crackfront.simulate.sphere.full_cycle import FullCycle
+from crackfront.simulate.sphere.steady_branches import SteadySchedule
 from crackfront.sweep.advice import expectation
 from tests.commands import run
 from tests.yaml_texts import from_yaml, to_yaml

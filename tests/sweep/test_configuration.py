@@ -12,17 +12,17 @@ import crackfront as cf
 from crackfront.analysis.law import spectral_breadth
 from crackfront.core.spectrum import TabulatedSpectrum
 from crackfront.core.units import Scales
-from crackfront.data.files import write_derived
-from crackfront.data.provenance import provenance
-from crackfront.data.section import ConfigurationError, movable_text, yaml_mapping
+from crackfront.measured.options import ReadingOptions
+from crackfront.measured.scan.reading import read_measurements
+from crackfront.measured.spectrum.measured_surface import measured_surface
 from crackfront.simulate.laws import Settings
-from crackfront.simulate.sphere.steady import SteadySchedule
+from crackfront.simulate.provenance import provenance
+from crackfront.simulate.sphere.steady_branches import SteadySchedule
+from crackfront.simulate.storage import write_derived
 from crackfront.sweep.configuration import load_configuration
 from crackfront.sweep.rows import failed_row
-from crackfront.sweep.table import read_table
-from crackfront.topography.options import ReadingOptions
-from crackfront.topography.scan.reading import read_measurements
-from crackfront.topography.spectrum.measures import measured_surface
+from crackfront.sweep.section import ConfigurationError, movable_text, yaml_mapping
+from crackfront.sweep.table_file import read_table
 from tests.commands import dataset_of_rows
 from tests.yaml_texts import from_yaml, to_yaml
 
@@ -469,7 +469,7 @@ def with_surface(spectra=MEASURED, scales=SCENE, **changes):
 @pytest.fixture(scope="module", autouse=True)
 def _few_draws():
     """Spectra of scans from fewer draws, whose number is not tested here."""
-    with mock.patch.multiple("crackfront.topography.spectrum.draws", BATCH=2**10, BATCHES=(1,)):
+    with mock.patch.multiple("crackfront.measured.spectrum.draws", BATCH=2**10, BATCHES=(1,)):
         yield
 
 
@@ -761,7 +761,7 @@ def test_an_anchor_may_be_used_as_often_as_it_is_useful(tmp_path):
 def test_many_realisations_are_no_reason_to_refuse_but_samples_that_no_memory_holds(
     tmp_path, monkeypatch
 ):
-    monkeypatch.setattr("crackfront.data.bounds.memory_at_hand", lambda: 1e9)
+    monkeypatch.setattr("crackfront.core.resources.memory_at_hand", lambda: 1e9)
     text = changed("realisations: 2", "realisations: 100000").replace("p: 500", "p: 5000")
     assert load_configuration(written(tmp_path, text)).n_simulation == 400_000
     message = refusal(tmp_path, text.replace("p: 5000", "p: 10000000"))

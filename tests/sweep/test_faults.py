@@ -12,12 +12,12 @@ from pathlib import Path
 import pytest
 import xarray as xr
 
-from crackfront.data.digests import is_whole
-from crackfront.data.provenance import provenance
-from crackfront.simulate.run import run_simulation
+from crackfront.simulate.checksums import is_whole
+from crackfront.simulate.provenance import provenance
+from crackfront.simulate.run_simulation import run_simulation
 from crackfront.sweep.configuration import load_configuration
 from crackfront.sweep.curves import curve_files
-from crackfront.sweep.library import run_sweep
+from crackfront.sweep.run_sweep import run_sweep
 from crackfront.sweep.store import Store
 from crackfront.sweep.tasks import run_and_store
 from tests.commands import done, simulated, slow, stored, table

@@ -8,7 +8,7 @@ import zipfile
 
 import pytest
 
-from crackfront.data.digests import SUMS
+from crackfront.simulate.checksums import SUMS
 from tests.commands import refused, run
 
 DERIVED = ("shards/flat.nc", "hysteresis.nc", "fit.nc")

@@ -13,25 +13,25 @@ import pytest
 import xarray as xr
 from numba.core.errors import NumbaError
 
-from crackfront.cli.results import _loop_example
+from crackfront.cli.result_commands import _loop_example
 from crackfront.core.outcome import DefectError
+from crackfront.core.resources import TooLargeError
 from crackfront.core.versions import PHYSICS_VERSION, ROWS_VERSION
-from crackfront.data.bounds import TooLargeError
-from crackfront.data.digests import is_whole
-from crackfront.data.files import (
+from crackfront.simulate.checksums import is_whole
+from crackfront.simulate.costs import expected_cost
+from crackfront.simulate.cycle_files import write_checkpoint
+from crackfront.simulate.provenance import Provenance, provenance
+from crackfront.simulate.run_simulation import run_simulation
+from crackfront.simulate.storage import (
     UnreadableFileError,
     read_dataset,
     write_derived,
     write_named_by_digest,
 )
-from crackfront.data.provenance import Provenance, provenance
-from crackfront.simulate.costs import expected_cost
-from crackfront.simulate.files import write_checkpoint
-from crackfront.simulate.run import run_simulation
 from crackfront.sweep import tasks
 from crackfront.sweep.configuration import load_configuration
 from crackfront.sweep.curves import curve_files
-from crackfront.sweep.library import run_sweep
+from crackfront.sweep.run_sweep import run_sweep
 from crackfront.sweep.store import Store
 from tests.commands import done, refused, run, simulated, slow, stored, table
 
@@ -313,7 +313,7 @@ def test_what_the_machine_could_not_store_runs_again(
 def test_results_of_several_processors_are_reported(configuration, tmp_path, monkeypatch):
     folder = tmp_path / "sweep"
     with monkeypatch.context() as patched:
-        patched.setattr("crackfront.data.provenance._arithmetic", lambda: "another")
+        patched.setattr("crackfront.simulate.provenance._arithmetic", lambda: "another")
         patched.setattr(Provenance, "here", lambda origin: replace(origin, arithmetic="another"))
         simulate(configuration, folder, "--realisations", "0-0")
     plan = ("plan", configuration, "--output", folder)
@@ -664,9 +664,9 @@ from dataclasses import fields, is_dataclass, replace
 from pathlib import Path
 import netCDF4, numpy as np
 from crackfront.analysis.table import SweepRow
-from crackfront.data.provenance import provenance
+from crackfront.simulate.provenance import provenance
 from crackfront.sweep.configuration import load_configuration
-from crackfront.sweep.table import write_hysteresis
+from crackfront.sweep.table_file import write_hysteresis
 
 KINDS = {"float": float, "int": np.int64, "str": "S40"}
 
@@ -696,7 +696,7 @@ assert netCDF4.get_chunk_cache() == cache
 _STARTS = """
 import os, sys
 from pathlib import Path
-from crackfront.data.provenance import provenance
+from crackfront.simulate.provenance import provenance
 from crackfront.sweep.store import Store
 from crackfront.sweep.tasks import run_and_store
 

@@ -20,7 +20,7 @@ import pytest
 import xarray as xr
 
 import crackfront as cf
-from crackfront.data.digests import DAMAGED_SUFFIX
+from crackfront.simulate.checksums import DAMAGED_SUFFIX
 from tests.commands import done, simulated, slow
 
 ROOT = Path(__file__).parents[2]

@@ -13,7 +13,7 @@ BASE = Path(workflow.current_basedir).parents[1]
 sys.path.insert(0, str(BASE))  # where the studies stand
 
 from crackfront.core.versions import PHYSICS_VERSION, ROWS_VERSION
-from crackfront.data.bounds import memory_at_hand
+from crackfront.core.resources import memory_at_hand
 from crackfront.simulate.costs import expected_cost
 from crackfront.sweep.configuration import (
     load_configuration,

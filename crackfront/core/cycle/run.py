@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from crackfront.core.cycle.load_schedule import LoadSchedule
 from crackfront.core.cycle.record import CycleRecord, Recorder
-from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.cycle.touch import checked_touch
 from crackfront.core.field.fields import Field
 from crackfront.core.solver.relax import Solver

@@ -8,9 +8,9 @@ from scipy.integrate import quad
 
 from crackfront.core import jkr
 from crackfront.core.cycle.energy import contact_energy, dissipated_energy
+from crackfront.core.cycle.load_schedule import LoadSchedule
 from crackfront.core.cycle.record import Recorder
 from crackfront.core.cycle.run import run_cycle
-from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.field.fields import first_place
 from crackfront.core.field.rays import front_adhesion, swept_adhesion
 from crackfront.core.geometry.sphere import line_energy

@@ -5,12 +5,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from crackfront.analysis.steady import steady_adhesion
+from crackfront.analysis.steady_adhesion import steady_adhesion
 from crackfront.core import jkr
 from crackfront.core.adhesion import rough_adhesion
+from crackfront.core.cycle.load_schedule import LoadSchedule
 from crackfront.core.cycle.record import Recorder
 from crackfront.core.cycle.run import run_cycle
-from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.field.fields import first_place, tile_field
 from crackfront.core.field.rays import front_adhesion
 from crackfront.core.geometry.sphere import polar_field, sphere

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from crackfront.core.cycle.schedule import LoadSchedule
+from crackfront.core.cycle.load_schedule import LoadSchedule
 
 
 @given(st.floats(0.0, 3.0), st.floats(0.01, 1.0))

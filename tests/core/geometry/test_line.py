@@ -11,14 +11,14 @@ from matplotlib.figure import Figure
 from crackfront.cli import main
 from crackfront.core.adhesion import AdhesionMap
 from crackfront.core.cycle.follow import Load, follow, front_at
+from crackfront.core.cycle.load_schedule import protocol
 from crackfront.core.cycle.record import Recorder
-from crackfront.core.cycle.schedule import protocol
 from crackfront.core.field.rays import front_adhesion
 from crackfront.core.geometry.line import initial_front, line_field
 from crackfront.core.solver.forces import line_force
 from crackfront.core.solver.relax import SOLVERS, Newton, Reference, front_force, relax
 from crackfront.core.units import WORK_OF_ADHESION
-from crackfront.plots.library import plot_fronts, plot_loop
+from crackfront.plots.figures import plot_fronts, plot_loop
 
 every_solver = pytest.mark.parametrize("solver", sorted(SOLVERS))
 

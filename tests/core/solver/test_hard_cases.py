@@ -7,9 +7,9 @@ import pytest
 
 from crackfront.core import jkr
 from crackfront.core.adhesion import AdhesionMap, chemical_adhesion, rough_adhesion
+from crackfront.core.cycle.load_schedule import LoadSchedule
 from crackfront.core.cycle.record import Recorder
 from crackfront.core.cycle.run import run_cycle
-from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.field.fields import tile_field
 from crackfront.core.field.rays import front_adhesion
 from crackfront.core.geometry.sphere import contact_field, half_laplacian, polar_field, sphere
@@ -18,7 +18,7 @@ from crackfront.core.solver.relax import SOLVERS, front_force, relax
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.synthesis import gaussian_field
 from crackfront.core.units import WORK_OF_ADHESION, Scales
-from crackfront.simulate.run import run_simulation
+from crackfront.simulate.run_simulation import run_simulation
 from crackfront.sweep.configuration import load_configuration
 from tests.yaml_texts import from_yaml, to_yaml
 

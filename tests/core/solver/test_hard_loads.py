@@ -14,9 +14,9 @@ from hypothesis import strategies as st
 from crackfront.core import jkr
 from crackfront.core.adhesion import AdhesionMap
 from crackfront.core.cycle.follow import Load
+from crackfront.core.cycle.load_schedule import LoadSchedule
 from crackfront.core.cycle.record import Recorder
 from crackfront.core.cycle.run import run_cycle
-from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.field.fields import first_place, last_place, tile_field
 from crackfront.core.geometry.sphere import polar_field, sphere
 from crackfront.core.outcome import Status

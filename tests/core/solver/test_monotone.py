@@ -12,9 +12,9 @@ from scipy.ndimage import gaussian_filter
 
 from crackfront.core.adhesion import AdhesionMap, rough_adhesion
 from crackfront.core.compiled import jit
+from crackfront.core.cycle.load_schedule import LoadSchedule
 from crackfront.core.cycle.record import Recorder
 from crackfront.core.cycle.run import run_cycle
-from crackfront.core.cycle.schedule import LoadSchedule
 from crackfront.core.field.fields import first_place, last_place, tile_field
 from crackfront.core.field.rays import front_products, segment_below
 from crackfront.core.field.samples import make_memory

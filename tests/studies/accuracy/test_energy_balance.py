@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from crackfront.core.cycle.schedule import DEFAULT_STEP
+from crackfront.core.cycle.load_schedule import DEFAULT_STEP
 from studies.accuracy.energy_balance import cycle, energies
 from tests.commands import slow
 

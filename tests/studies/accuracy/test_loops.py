@@ -8,11 +8,17 @@ from click.testing import CliRunner
 
 import crackfront as cf
 from crackfront.core import jkr
-from crackfront.experiment.loop import Rig, analyse_loop
-from crackfront.experiment.simulated import simulated_loop
+from crackfront.measured.loops.loop import Rig, analyse_loop
+from crackfront.measured.loops.simulated_loop import simulated_loop
 from studies.__main__ import main
-from studies.accuracy import loops
-from studies.accuracy.loops import Coverage, Instrument, coverage, coverage_table, recording
+from studies.accuracy import measured_loops
+from studies.accuracy.measured_loops import (
+    Coverage,
+    Instrument,
+    coverage,
+    coverage_table,
+    recording,
+)
 
 PERFECT = Instrument(force_noise=0.0, radius_noise=0.0, stiffness=1e9, recorded=1.0)
 
@@ -21,7 +27,7 @@ PERFECT = Instrument(force_noise=0.0, radius_noise=0.0, stiffness=1e9, recorded=
 def cycle():
     surface = cf.random_surface(0.1, 0.03, side=4.0, seed=1)
     loop = cf.run_loop(surface, max_penetration=2.5, step=0.03, fronts=False)
-    return cf.in_si_units(loop, loops.SPHERE)
+    return cf.in_si_units(loop, measured_loops.SPHERE)
 
 
 def test_a_perfect_rig_records_every_state_of_the_cycle(cycle, rng):
@@ -56,23 +62,23 @@ def test_a_part_of_the_retraction_ends_in_contact(cycle, rng):
 
 def test_intervals_hold_what_an_unknown_zero_of_the_displacement_leaves(rng):
     """Works of rough spheres change along the contact radius, which a wrong zero imitates."""
-    rig = Rig(loops.SPHERE.radius, loops.SPHERE.contact_modulus, stiffness=1e3)
+    rig = Rig(measured_loops.SPHERE.radius, measured_loops.SPHERE.contact_modulus, stiffness=1e3)
     held = []
     for seed in range(4):
         surface = cf.random_surface(0.1, 0.02, side=4.0, seed=seed)
         cycle = cf.run_loop(surface, max_penetration=1.5, step=0.03, fronts=False)
-        cycle = cf.in_si_units(cycle, loops.SPHERE)
+        cycle = cf.in_si_units(cycle, measured_loops.SPHERE)
         instrument = replace(PERFECT, stiffness=1e3, sees_contact=False)
         found, truth = analyse_loop(recording(cycle, instrument, rng), rig), simulated_loop(cycle)
-        for name in loops.WORKS:
+        for name in measured_loops.WORKS:
             estimate = getattr(found, name)
             held.append(estimate.low <= getattr(truth, name).value <= estimate.high)
     assert np.mean(held) >= 0.9
 
 
 def test_offsets_and_intervals_are_told_in_parts_of_the_true_hysteresis(cycle):
-    found = coverage([cycle], loops.INSTRUMENTS)
-    assert found.keys() == loops.INSTRUMENTS.keys()
+    found = coverage([cycle], measured_loops.INSTRUMENTS)
+    assert found.keys() == measured_loops.INSTRUMENTS.keys()
     truth = simulated_loop(cycle)
     assert found["usual"].refused == 0
     for one in found.values():
@@ -91,7 +97,7 @@ def test_the_table_has_the_shares_of_every_instrument_and_of_all():
 
 
 def test_the_command_prints_the_table(cycle, monkeypatch):
-    monkeypatch.setattr(loops, "cycles", lambda count, press: [cycle] * count)
+    monkeypatch.setattr(measured_loops, "cycles", lambda count, press: [cycle] * count)
     done = CliRunner().invoke(main, ["accuracy", "loops", "--loops", "1"])
     assert done.exit_code == 0, done.output
     assert "| machine of 100 N/m | 1 | 0 |" in done.output
@@ -101,12 +107,12 @@ def test_the_command_prints_the_table(cycle, monkeypatch):
 @pytest.mark.slow
 def test_intervals_hold_the_truth_of_simulated_spheres():
     """95% are claimed; in 90% of 12 loops, three works and all instruments."""
-    for press, instruments in loops.RECORDED:
-        found = coverage(loops.cycles(12, press), instruments)
+    for press, instruments in measured_loops.RECORDED:
+        found = coverage(measured_loops.cycles(12, press), instruments)
         assert np.mean(np.concatenate([one.inside for one in found.values()])) >= 0.9
 
 
 def test_deep_spheres_are_pressed_to_the_force_of_their_name():
-    smooth = -jkr.pull_off_force() * loops.SPHERE.force
-    (cycle,) = loops.cycles(1, loops.DEEP)
+    smooth = -jkr.pull_off_force() * measured_loops.SPHERE.force
+    (cycle,) = measured_loops.cycles(1, measured_loops.DEEP)
     assert float(np.max(cycle.force)) / smooth == pytest.approx(18, rel=0.03)

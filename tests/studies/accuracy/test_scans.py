@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from crackfront.topography.scan.reading import read_measurements
+from crackfront.measured.scan.reading import read_measurements
 from studies.accuracy import scans
 
 SHIPPED = tuple(sorted((Path(__file__).parents[3] / "examples/scans").glob("*.al3d")))

@@ -10,11 +10,11 @@ from crackfront.core.cycle.record import Recorder
 from crackfront.core.cycle.run import run_cycle
 from crackfront.core.solver.relax import Newton
 from crackfront.core.spectrum import SelfAffineSpectrum
-from crackfront.data.files import write_dataset
-from crackfront.data.provenance import provenance
 from crackfront.simulate.laws import chosen_settings
+from crackfront.simulate.provenance import provenance
 from crackfront.simulate.simulation import simulation_field
-from crackfront.simulate.sphere.cycle import FullCycle
+from crackfront.simulate.sphere.full_cycle import FullCycle
+from crackfront.simulate.storage import write_dataset
 from studies.accuracy.files import errors_dataset, read_errors
 from studies.accuracy.scenes import SCENES, with_setting
 from studies.accuracy.study import (

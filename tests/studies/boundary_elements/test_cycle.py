@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from crackfront.core import jkr
-from crackfront.data.provenance import provenance
-from crackfront.data.records import read_record, write_record
+from crackfront.simulate.provenance import provenance
 from studies.boundary_elements.cases import Loads
 from studies.boundary_elements.cycle import LOST_CONTACT, boundary_cycle, perimeter
+from studies.records import read_record, write_record
 
 
 def test_the_perimeter_of_a_disc_is_its_circle():

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from crackfront.data.section import ConfigurationError
+from crackfront.sweep.section import ConfigurationError
 from studies.boundary_elements.cases import Loads
 from studies.boundary_elements.parameters import load_validation, validation_cases
 

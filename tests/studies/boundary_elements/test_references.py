@@ -15,8 +15,7 @@ from crackfront.analysis.validity import (
     shipped_validity,
     validity_text,
 )
-from crackfront.data.files import read_attributes
-from crackfront.data.records import read_record, read_records
+from crackfront.simulate.storage import read_attributes
 from studies.boundary_elements.averages import (
     limit_settings,
     range_limits,
@@ -30,6 +29,7 @@ from studies.boundary_elements.page import kept_validity, page_parts
 from studies.boundary_elements.parameters import load_validation, validation_cases
 from studies.boundary_elements.picture import ValidationPicture, hysteresis_figure
 from studies.numbers import stored
+from studies.records import read_record, read_records
 
 ROOT = Path(__file__).parents[3]
 REFERENCES = ROOT / "docs/reference/validation"

@@ -7,14 +7,14 @@ import pytest
 from click.testing import CliRunner
 
 from crackfront.analysis.validity import validity_of, validity_text
-from crackfront.data.files import UnreadableFileError
-from crackfront.data.records import read_record, read_records
+from crackfront.simulate.storage import UnreadableFileError
 from studies.boundary_elements.averages import limit_settings, rows_by_zone
 from studies.boundary_elements.commands import commands
 from studies.boundary_elements.differences import Differences
 from studies.boundary_elements.hysteresis import Hysteresis
 from studies.boundary_elements.picture import ValidationPicture, validation_figure
 from studies.boundary_elements.report import validation_report
+from studies.records import read_record, read_records
 
 
 def run(configuration, *options):

@@ -10,8 +10,8 @@ import pytest
 from click.testing import CliRunner
 
 from crackfront.analysis.law import law_value, shipped_law
-from crackfront.data.files import write_derived
-from crackfront.data.provenance import provenance
+from crackfront.simulate.provenance import provenance
+from crackfront.simulate.storage import write_derived
 from crackfront.sweep.configuration import load_configuration
 from crackfront.sweep.rows import failed_row
 from studies.__main__ import main

@@ -2,9 +2,9 @@
 
 from pathlib import Path
 
-from crackfront.data.provenance import provenance
-from crackfront.data.records import read_record, write_record
+from crackfront.simulate.provenance import provenance
 from studies.paper.figure import FIGURES, figure, load_figure
+from studies.records import read_record, write_record
 
 CONFIGURATIONS = Path(__file__).parents[3] / "config" / "figures"
 

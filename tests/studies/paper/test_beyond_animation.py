@@ -6,9 +6,9 @@ import pytest
 from click.testing import CliRunner
 from PIL import Image
 
-from crackfront.data.provenance import provenance
-from crackfront.data.records import write_record
+from crackfront.simulate.provenance import provenance
 from studies.__main__ import main
+from studies.records import write_record
 from tests.studies.paper.made import computed, failed, parameters
 
 

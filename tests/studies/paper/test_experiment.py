@@ -4,9 +4,9 @@ from pathlib import Path
 
 import pytest
 
-from crackfront.data.records import read_record
 from studies.paper.experiment import hystereses, hystereses_figure, hystereses_table
 from studies.paper.nanodiamond import NanodiamondContact
+from studies.records import read_record
 
 REFERENCE = Path(__file__).parents[3] / "docs/reference/main-5bc.nc"
 

@@ -9,10 +9,9 @@ import numpy as np
 import pytest
 
 from crackfront.core.variables import variable
-from crackfront.data.files import UnreadableFileError, read_attributes
-from crackfront.data.provenance import provenance
-from crackfront.data.records import read_record, write_record
-from crackfront.data.section import ConfigurationError
+from crackfront.simulate.provenance import provenance
+from crackfront.simulate.storage import UnreadableFileError, read_attributes
+from crackfront.sweep.section import ConfigurationError
 from studies.numbers import stored
 from studies.paper.figure import (
     FIGURES,
@@ -24,6 +23,7 @@ from studies.paper.figure import (
     load_figure,
     sweep_of_figure,
 )
+from studies.records import read_record, write_record
 from tests.studies.paper.made import CONFIGURATIONS
 
 REFERENCES = Path(__file__).parents[3] / "docs" / "reference"

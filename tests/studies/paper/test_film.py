@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
-from crackfront.data.section import ConfigurationError
+from crackfront.sweep.section import ConfigurationError
 from studies.paper.figure import figure, load_figure
 from studies.paper.film import conformity_energy
 from studies.paper.si_6 import profile_periodogram

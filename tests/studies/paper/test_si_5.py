@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from crackfront.analysis.sweep import fit_sweep
+from crackfront.analysis.sweep_fit import fit_sweep
 from crackfront.analysis.table import SweepTable
-from crackfront.data.provenance import provenance
-from crackfront.data.records import read_record, write_record
+from crackfront.simulate.provenance import provenance
 from studies.paper.figure import figure
 from studies.paper.si_5 import ParametricStudy, ParametricStudyParameters, study_fit
+from studies.records import read_record, write_record
 
 SCENE = figure("si-5")
 AMPLITUDES = np.array([0.002, 0.01, 0.05, 0.15])

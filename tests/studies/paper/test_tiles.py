@@ -6,7 +6,7 @@ import pytest
 from crackfront.core.adhesion import half_derivative_mean_square
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.synthesis import gaussian_field
-from studies.paper.tiles import tile_mean_square
+from studies.paper.tile_sizes import tile_mean_square
 
 SHAPES = [SelfAffineSpectrum(0.1, 0.1, 0.8), SelfAffineSpectrum(0.05, 0.25, 0.8)]
 LENGTH = 1.0

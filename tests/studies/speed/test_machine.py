@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from crackfront.core.memory import peak_memory
+from crackfront.core.resources import peak_memory
 from studies.speed.machine import in_fresh_process, restart_peak
 
 

@@ -1,0 +1,309 @@
+"""The fit of k, of the exponent, of the midpoint and of the trends of k to a sweep."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import astuple, fields
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.special import stdtr
+
+from crackfront.analysis.estimate import (
+    Estimate,
+    combination,
+    finite_mean,
+    finite_sum,
+    mean_estimate,
+    ratio,
+    resample_counts,
+    scatter,
+    slope,
+    student_estimate,
+)
+from crackfront.analysis.law import WEAKEST, pinning_factor
+from crackfront.analysis.result import CellEstimates, ForceDifference, LawEstimates, SweepFit
+from crackfront.analysis.sweep_law import SweepLaw, law_departure
+from crackfront.analysis.table import SweepTable
+from crackfront.core.adhesion import FieldKind
+from crackfront.core.arrays import Array
+
+FEWEST_BOOTSTRAP = 100
+"""Bootstrap samples below which a standard error is itself mostly noise."""
+
+COUNTS_AT_ONCE = 2**23
+"""Counts of bootstrap samples in memory at once; few realisations are drawn in one go."""
+
+_SAME_SIZE = 1e-6
+"""Difference of the logarithm of lengths, below which spectra have no different size."""
+
+FIT_DEFINITION = (
+    "k of one simulation is (w_retr - w_appr) / (2 e_el) with e_el measured on its tile. k of a "
+    "spectrum is the mean over the amplitudes in the range, each the mean over its realisations, "
+    "with equal weights of the amplitudes: k depends on disorder and size, so that its average "
+    "over a range depends on the weights. Equal weights are the same for every spectrum, whatever "
+    "the noise; weights from the scatter of few realisations would differ. The pooled k is the "
+    "mean of the spectra's. The ratio of sums, sum of hysteresis over sum of 2 e_el, weighs each "
+    "amplitude by its e_el; where the two differ, k is no constant. The exponent is the slope of "
+    "log mean hysteresis in log w_rms (measured), the disorder slope that of mean k in log2 w_rms, "
+    "both by least squares with equal weights, pooled with one intercept a spectrum. The midpoint "
+    "slope m in w_int - (w_retr + w_appr)/2 = m e_el (by the law 1 for roughness, 0 for a chemical "
+    "field) is a ratio of sums, the best estimator for noise whose variance grows with w_rms^2. "
+    "A cell of one realisation among others of several has no part in either slope, whose "
+    "interval would lack its scatter. The size slope is that of k in log2 of the correlation "
+    "length among spectra of one shape (equal roll_off / short_cutoff and Hurst exponent; of "
+    "straight fronts also equal springs in correlation lengths), with one intercept a shape. The "
+    "law's k is that of the straight front at the measured w_rms and at "
+    "g, the length of the springs that hold the front (of a sphere those of the smooth contact of "
+    "the radius in the middle of the steady window) over the Larkin length; the law was not "
+    "fitted to spheres. k of the infinite contact is the measured one times what the law's k gains "
+    "from g to infinity. Intervals are 95%, of Student's t with the bootstrap's standard error: "
+    "realisations of a spectrum are resampled, each with all its amplitudes because these share "
+    "their noise, spectra independently of each other; percentiles of the bootstrap would be far "
+    "too narrow for the few realisations there are. They cover the scatter between realisations, "
+    "not the differences between spectra."
+)
+"""What the numbers of a fit mean; stored in every file that holds them."""
+
+
+class _Samples(NamedTuple):
+    """What one simulation contributes, (..., n_amplitude, n_realisation); or means of it."""
+
+    energy: Array
+    rms: Array
+    hysteresis: Array
+    depression: Array
+    factor: Array
+    factor_from_force: Array
+
+
+def fit_sweep(
+    table: SweepTable,
+    *,
+    lowest_elastic_energy: float,
+    highest_elastic_energy: float,
+    n_bootstrap: int = 4000,
+    seed: int = 0,
+    kind: FieldKind = "roughness",
+    uncorrelated: bool = False,
+    watched: Callable[[list[int]], Iterable[int]] = iter,
+) -> SweepFit:
+    """Fit k, the exponent, the midpoint and the trends of k, with intervals.
+
+    The fit uses the amplitudes between two requested e_el, ends included (Units: w_int). The point
+    estimates do not depend on the seed of the bootstrap. The midpoint should be w_int - e_el for
+    roughness, w_int for a chemical field. With `uncorrelated`, the sites of straight fronts
+    are independent: the law's limit of weak disorder, whatever the amplitude. Spectra are
+    fitted as `watched` yields their numbers, which may show how far this is.
+
+    Estimates are as :data:`FIT_DEFINITION` says. What the data do not give is NaN and has a
+    sentence in :func:`crackfront.analysis.fit_text.fit_notes`. ValueError if the range is empty,
+    holds no amplitude or no simulation with a value, or there are too few bootstrap samples.
+    """
+    in_range = _amplitudes_in_range(table, lowest_elastic_energy, highest_elastic_energy)
+    if n_bootstrap < FEWEST_BOOTSTRAP:
+        raise ValueError(f"n_bootstrap is {n_bootstrap}; use {FEWEST_BOOTSTRAP} or more")
+    samples = _samples(table)
+    chosen = _Samples(*(values[:, in_range] for values in samples))
+    n_realisation = np.count_nonzero(np.any(np.isfinite(chosen.factor), axis=1), axis=-1)
+    freedom = n_realisation - 1
+    parts, weights = _fit_spectra(chosen, freedom, n_bootstrap, seed, watched)
+    spectra, shares = LawEstimates(*parts), ratio(weights, np.sum(weights, axis=1, keepdims=True))
+    pooled = [combination(part, freedom, share) for part, share in zip(parts, shares, strict=True)]
+    law = SweepLaw(table, kind, uncorrelated)
+    cells = _cell_estimates(samples, 1.0 if kind == "roughness" else 0.0, law)
+    n_large, departure = law_departure(cells.factor, cells.law_factor, cells.size)
+    largest, probability = _largest_deviation(cells, in_range)
+    return SweepFit(
+        table=table,
+        kind=kind,
+        lowest_elastic_energy=lowest_elastic_energy,
+        highest_elastic_energy=highest_elastic_energy,
+        n_bootstrap=n_bootstrap,
+        seed=seed,
+        uncorrelated=uncorrelated,
+        in_range=in_range,
+        n_realisation=n_realisation,
+        n_failed=np.count_nonzero(~np.isfinite(chosen.factor), axis=(1, 2)),
+        cells=cells,
+        spectra=spectra,
+        pooled=LawEstimates(*pooled),
+        size_slope=_size_slopes(table, cells),
+        pooled_size_slope=_size_slope(table, spectra.factor, freedom),
+        midpoint_largest=largest,
+        midpoint_probability=probability,
+        from_force=_force_difference(table, in_range),
+        k_0=pinning_factor(WEAKEST, np.inf).factor.each(np.asarray),
+        n_large=np.asarray(n_large),
+        law_departure=np.asarray(departure),
+    )
+
+
+def _amplitudes_in_range(table: SweepTable, lowest: float, highest: float) -> NDArray[np.bool_]:
+    """Amplitudes within the range, which must hold at least one value."""
+    if not 0 < lowest <= highest:
+        raise ValueError(
+            f"range of e_el is {lowest} to {highest} w_int; give two positive ends, the lower first"
+        )
+    requested = table.amplitude
+    in_range = (requested >= lowest * (1 - 1e-9)) & (requested <= highest * (1 + 1e-9))
+    if not np.any(in_range):
+        raise ValueError(
+            f"no amplitude lies in the range {lowest} to {highest} w_int; the sweep has e_el = "
+            f"{', '.join(f'{value:.4g}' for value in requested)}, so widen the range"
+        )
+    if not np.any(table.finite[:, in_range]):
+        raise ValueError(
+            f"none of the {table.finite[:, in_range].size} simulations with e_el from {lowest} to "
+            f"{highest} w_int has a value; see their status in the dataset"
+        )
+    return in_range
+
+
+def _samples(table: SweepTable) -> _Samples:
+    """What every simulation contributes, NaN where it failed."""
+    finite = table.finite
+    energy = np.where(finite, table.e_el, np.nan)
+    w_appr, w_retr = np.where(finite, (table.w_appr, table.w_retr), np.nan)
+    return _Samples(
+        energy=energy,
+        rms=np.where(finite, table.w_rms, np.nan),
+        hysteresis=w_retr - w_appr,
+        depression=1 - (w_retr + w_appr) / 2,
+        factor=(w_retr - w_appr) / (2 * energy),
+        factor_from_force=(table.w_retr_from_force - table.w_appr_from_force) / (2 * energy),
+    )
+
+
+def _cell_estimates(samples: _Samples, lowering: float, law: SweepLaw) -> CellEstimates:
+    """Means over the realisations where e_el lowers the mean of w_loc, as a multiple of e_el."""
+    factor, count = mean_estimate(samples.factor)
+    law_factor, size = law.cells()
+    return CellEstimates(
+        count=count,
+        e_el=mean_estimate(samples.energy)[0].value,
+        w_rms=mean_estimate(samples.rms)[0].value,
+        hysteresis=mean_estimate(samples.hysteresis)[0],
+        factor=factor,
+        midpoint_deviation=mean_estimate(lowering * samples.energy - samples.depression)[0],
+        size=size,
+        law_factor=law_factor,
+        infinite_factor=law.infinite(factor, size),
+    )
+
+
+def _fit_spectra(
+    samples: _Samples,
+    freedom: NDArray[np.int64],
+    n_bootstrap: int,
+    seed: int,
+    watched: Callable[[list[int]], Iterable[int]],
+) -> tuple[list[Estimate], Array]:
+    """Estimates of every statistic for the spectra, and their (statistic, spectrum) weights."""
+    shape = len(fields(LawEstimates)), freedom.size
+    values, errors, weights = np.empty(shape), np.full(shape, np.nan), np.empty(shape)
+    streams = np.random.SeedSequence(seed).spawn(freedom.size)
+    for index in watched([*range(freedom.size)]):
+        own = _Samples(*(quantity[index] for quantity in samples))
+        present = np.any(np.isfinite(own.factor), axis=0)
+        own = _Samples(*(quantity[:, present] for quantity in own))
+        whole = np.ones((1, np.count_nonzero(present)))
+        count = np.count_nonzero(np.isfinite(own.factor), axis=1)
+        # A cell of one realisation has no scatter, which the slopes' intervals would lack.
+        sloped = count >= min(2, np.max(count, initial=0))
+        value, weight = _statistics(_means(own, whole), sloped)
+        values[:, index], weights[:, index] = value[:, 0], weight[:, 0]
+        if freedom[index] > 0:
+            rng = np.random.default_rng(streams[index])
+            drawn, _ = _statistics(_resampled(own, n_bootstrap, rng), sloped)
+            errors[:, index] = scatter(drawn)
+    estimates = [student_estimate(*row, freedom) for row in zip(values, errors, strict=True)]
+    return estimates, weights
+
+
+def _resampled(samples: _Samples, n_bootstrap: int, rng: np.random.Generator) -> _Samples:
+    """Means of bootstrap samples, of which a bounded number of counts is in memory at once."""
+    n_realisation = samples.factor.shape[1]
+    at_once = max(1, COUNTS_AT_ONCE // n_realisation)
+    sizes = [min(at_once, n_bootstrap - first) for first in range(0, n_bootstrap, at_once)]
+    parts = [_means(samples, resample_counts(size, n_realisation, rng)) for size in sizes]
+    return _Samples(*(np.concatenate(part) for part in zip(*parts, strict=True)))
+
+
+def _means(samples: _Samples, counts: Array) -> _Samples:
+    """Means over realisations of every bootstrap sample, (n_sample, n_amplitude); NaN of none."""
+    means = []
+    for quantity in samples:
+        finite = np.isfinite(quantity)
+        known = np.where(finite, quantity, 0.0)
+        means.append(ratio(counts @ known.T, counts @ finite.T))
+    return _Samples(*means)
+
+
+def _statistics(means: _Samples, sloped: NDArray[np.bool_]) -> tuple[Array, Array]:
+    """Entries of LawEstimates for every bootstrap sample, and weights, (n_entry, n_sample).
+
+    The slopes are those of some amplitudes.
+    """
+    doublings = np.where(sloped, np.log2(means.rms), np.nan)
+    positive = means.hysteresis > 0
+    logarithm = np.log2(means.hysteresis, where=positive, out=np.full(positive.shape, np.nan))
+    energy, one = finite_sum(means.energy), np.ones(positive.shape[0])
+    exponent, spread = slope(doublings, logarithm)
+    disorder_slope, spread_of_factors = slope(doublings, means.factor)
+    values = (
+        finite_mean(means.factor),
+        ratio(finite_sum(means.hysteresis), 2 * energy),
+        finite_mean(means.factor_from_force),
+        exponent,
+        ratio(finite_sum(means.depression), energy),
+        disorder_slope,
+    )
+    weights = (one, energy, one, spread, energy, spread_of_factors)
+    return np.array(values), np.where(np.isfinite(values), weights, 0.0)
+
+
+def _largest_deviation(cells: CellEstimates, in_range: NDArray[np.bool_]) -> tuple[Array, Array]:
+    """Largest deviation of a midpoint in standard errors, and its probability by chance."""
+    deviation, freedom = cells.midpoint_deviation, cells.count - 1
+    tested = (deviation.standard_error > 0) & in_range
+    if not np.any(tested):
+        return np.array(np.nan), np.array(np.nan)
+    scores = np.abs(deviation.value[tested] / deviation.standard_error[tested])
+    chances = 2 * stdtr(freedom[tested], -scores)
+    most = np.argmax(scores)
+    return np.asarray(scores[most]), np.asarray(min(chances[most] * scores.size, 1.0))
+
+
+def _size_slopes(table: SweepTable, cells: CellEstimates) -> Estimate:
+    """Change of k per doubling of the correlation length at every amplitude."""
+    slopes = [
+        _size_slope(table, cells.factor.at((slice(None), index)), cells.count[:, index] - 1)
+        for index in range(table.amplitude.size)
+    ]
+    return Estimate(*np.transpose([astuple(one) for one in slopes]))
+
+
+def _size_slope(table: SweepTable, factor: Estimate, freedom: NDArray[np.int64]) -> Estimate:
+    """Change of k per doubling of the correlation length among spectra of one shape."""
+    doublings = np.log2(table.correlation_length)
+    deviation = np.zeros(doublings.size)
+    for index in np.unique(table.family):
+        family = (table.family == index) & np.isfinite(factor.value)
+        # Equal lengths may differ by a rounding.
+        if np.any(family) and np.ptp(doublings[family]) > _SAME_SIZE:
+            deviation[family] = doublings[family] - np.mean(doublings[family])
+    spread = np.sum(deviation**2)
+    return combination(factor, freedom, deviation / spread if spread > 0 else np.zeros(1))
+
+
+def _force_difference(table: SweepTable, in_range: NDArray[np.bool_]) -> ForceDifference:
+    """Differences of the experimenter's estimates over the simulations in the range."""
+    approach, retraction = (
+        one[:, in_range].reshape(table.spectrum.size, -1)
+        for one in (table.w_appr_from_force - table.w_appr, table.w_retr_from_force - table.w_retr)
+    )
+    # The larger of a number and NaN is the number.
+    largest = [np.fmax.reduce(np.abs(one), axis=-1) for one in (approach, retraction)]
+    return ForceDifference(finite_mean(approach), largest[0], finite_mean(retraction), largest[1])

@@ -1,0 +1,245 @@
+"""What a sweep that has run becomes: one file, its fit, figures, a page and an archive."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from crackfront.cli.common import (
+    FILE,
+    announce_cost,
+    as_json,
+    examples,
+    with_progress,
+)
+from crackfront.cli.sweep_commands import configuration_argument, output_option, warn
+
+if TYPE_CHECKING:
+    from crackfront.analysis.result import SweepFit
+    from crackfront.analysis.table import SweepTable
+    from crackfront.simulate.simulation import Simulation
+    from crackfront.sweep.store import Store
+    from crackfront.sweep.sweep import Sweep
+
+
+@click.command(epilog=examples("crackfront aggregate config/default.yaml"))
+@configuration_argument
+@output_option
+def aggregate(configuration: Path, output: Path | None) -> None:
+    """Collect the rows of all shards of a sweep in hysteresis.nc."""
+    from crackfront.sweep.run_sweep import opened, without_value
+
+    sweep, store, origin = opened(configuration, output, warn)
+    path = store.aggregate(
+        sweep, origin, lambda shards: with_progress(shards, len(shards), "shards")
+    )
+    failed, sentence = without_value(path)
+    if failed > sweep.failed_fraction * sweep.n_simulation:
+        raise click.ClickException(
+            f"{sentence}; failed_fraction of the configuration allows {sweep.failed_fraction:g}"
+        )
+    if failed:
+        warn(sentence)
+    click.echo(f"hysteresis: {path}")
+
+
+@click.command(
+    epilog=examples(
+        "crackfront fit config/default.yaml", "crackfront fit config/default.yaml --json"
+    )
+)
+@configuration_argument
+@output_option
+@as_json
+def fit(configuration: Path, output: Path | None, as_json: bool) -> None:
+    """Fit k to hysteresis.nc; write fit.nc, fit.json and fit.md, and print the result."""
+    from crackfront.analysis.fit_text import fit_result
+    from crackfront.simulate.checksums import forget_sums
+    from crackfront.sweep.fit_files import write_fit
+    from crackfront.sweep.requests import fit_request
+    from crackfront.sweep.run_sweep import opened
+    from crackfront.sweep.store import write_request
+
+    sweep, store, origin = opened(configuration, output, warn)
+    fitted = _fitted(sweep, store)
+    forget_sums(store.folder)
+    request = fit_request(sweep)
+    write_request(store.folder, request)
+    paths = write_fit(store.folder, fitted, request.digest, origin)
+    if as_json:
+        click.echo(paths[1].read_text(encoding="utf-8"))
+        return
+    click.echo(fit_result(fitted))
+    click.echo(f"fit: {', '.join(map(str, paths))}")
+
+
+@click.command(epilog=examples("crackfront figures config/default.yaml"))
+@configuration_argument
+@output_option
+def figures(configuration: Path, output: Path | None) -> None:
+    """Draw the figures of a sweep from hysteresis.nc as PDF and PNG."""
+    from crackfront.plots.loop_figures import simulation_figure
+    from crackfront.plots.style import save_figure
+    from crackfront.plots.sweep_figures import factor_figure, hysteresis_figure
+    from crackfront.simulate.checksums import forget_sums
+    from crackfront.simulate.costs import expected_cost
+    from crackfront.simulate.run_simulation import run_simulation
+    from crackfront.simulate.storage import UnreadableFileError
+    from crackfront.sweep.requests import fit_request
+    from crackfront.sweep.run_sweep import opened
+
+    sweep, store, _ = opened(configuration, output, warn)
+    fitted = _fitted(sweep, store)
+    simulation = _loop_example(sweep, fitted.table)
+    try:
+        result = store.result(sweep, simulation)
+    except UnreadableFileError:  # as in an archive without curves
+        announce_cost(expected_cost(simulation).seconds)
+        result = run_simulation(simulation)
+    forget_sums(store.folder)
+    request = fit_request(sweep).digest
+    drawn = {
+        "hysteresis": hysteresis_figure(fitted),
+        "loop": simulation_figure(result),
+        "factor": factor_figure(fitted),
+    }
+    for name, figure in drawn.items():
+        for path in save_figure(figure, store.folder / "figures" / name, request):
+            click.echo(f"figure: {path}")
+
+
+_CAPTIONS = {
+    "factor": "The factor k against disorder (a) and against the size of the roughness (b).",
+    "hysteresis": "Hysteresis against disorder, and the spectra.",
+    "loop": "One simulation of the sweep: the loop of force against radius, or of a straight front "
+    "the pinning force against its load.",
+}
+
+
+@click.command(epilog=examples("crackfront summary config/default.yaml"))
+@configuration_argument
+@output_option
+def summary(configuration: Path, output: Path | None) -> None:
+    """Write summary.html: result, figures, fit, how simulations ended, configuration, origin."""
+    from crackfront.analysis.fit_text import fit_table
+    from crackfront.plots.style import picture_subject
+    from crackfront.simulate.checksums import forget_sums
+    from crackfront.simulate.storage import write_text
+    from crackfront.sweep.fit_files import fitted_request
+    from crackfront.sweep.requests import fit_request
+    from crackfront.sweep.run_sweep import opened
+    from crackfront.sweep.summary import summary_page
+    from crackfront.sweep.table_file import read_statuses
+
+    sweep, store, origin = opened(configuration, output, warn)
+    about = {name: text for name, text in store.about(sweep).items() if name != "configuration"}
+    kept = store.folder / "fit.nc"
+    request = fit_request(sweep).digest
+    if kept.is_file() and fitted_request(kept) != request:
+        raise ValueError(
+            f"{kept} is the fit of another range or table than those of the configuration given, "
+            "or of an older version; run crackfront fit with it, or the workflow"
+        )
+    pictures = {text: store.folder / "figures" / f"{name}.png" for name, text in _CAPTIONS.items()}
+    if absent := [path for path in pictures.values() if not path.is_file()]:
+        raise ValueError(
+            f"{absent[0]} is not there; run crackfront figures with this configuration, or the "
+            "workflow"
+        )
+    if other := [path for path in pictures.values() if picture_subject(path) != request]:
+        raise ValueError(
+            f"{other[0]} was drawn with another configuration than the one given, or by an older "
+            "version; run crackfront figures with this one, or the workflow"
+        )
+    page = summary_page(
+        f"Adhesion hysteresis: {configuration.stem}",
+        fit_table(_fitted(sweep, store)),
+        pictures,
+        read_statuses(store.hysteresis),
+        origin.configuration,
+        about | {"seed of the sweep": str(sweep.seed)},
+    )
+    path = store.folder / "summary.html"
+    forget_sums(store.folder)
+    write_text(path, page)
+    click.echo(f"summary: {path}")
+
+
+@click.command(
+    epilog=examples(
+        "crackfront archive results/default",
+        "crackfront archive results/default --no-curves --output numbers.zip",
+    )
+)
+@click.argument("folder", type=FILE)
+@click.option("--output", type=FILE, help="The archive.  [default: <folder>.zip]")
+@click.option("--no-curves", is_flag=True, help="Leave out the finished simulations, curves/.")
+def archive(folder: Path, output: Path | None, no_curves: bool) -> None:
+    """Pack the results of a folder into a ZIP file with their checksums, SHA256SUMS.
+
+    The folder must have the list, and agree with it; links are followed.
+    """
+    from crackfront.sweep.integrity import archive_results
+
+    named = folder if folder.name not in ("", "..") else folder.resolve()
+    path = named.with_name(f"{named.name}.zip") if output is None else output
+    if path.suffix.lower() != ".zip":
+        raise ValueError(f"--output is {path}; name a ZIP file, as in {named.name}.zip")
+    if Path(os.path.realpath(folder)) in Path(os.path.realpath(path)).parents:
+        raise ValueError(f"--output is {path}, among the results; name a file outside of {folder}")
+    number = archive_results(named, path, curves=not no_curves)
+    click.echo(f"archive: {path}, {number} files")
+
+
+def fit_of_sweep(configuration: Path) -> SweepFit:
+    """Fit of a sweep that stands in `results/`; ValueError where it has not been run."""
+    from crackfront.sweep.run_sweep import opened
+
+    sweep, store, _ = opened(configuration, None)
+    if not store.hysteresis.exists():
+        raise ValueError(
+            f"{store.folder} holds no hysteresis.nc; run the sweep first: "
+            f"make SWEEP={configuration}"
+        )
+    return _fitted(sweep, store)
+
+
+def _fitted(sweep: Sweep, store: Store) -> SweepFit:
+    """Fit of a sweep, always the same for the same table."""
+    from crackfront.analysis.sweep_fit import fit_sweep
+
+    return fit_sweep(
+        store.table(sweep),
+        **asdict(sweep.fit),
+        seed=sweep.seed,
+        kind=sweep.kind,
+        uncorrelated=sweep.schedule.uncorrelated,
+        watched=lambda spectra: with_progress(spectra, len(spectra), "spectra"),
+    )
+
+
+def _loop_example(sweep: Sweep, table: SweepTable) -> Simulation:
+    """The simulation that comes nearest to the paper's Fig. 3c, a front on its longest springs.
+
+    It is one with a value: others may have no curve.
+    """
+    import numpy as np
+
+    self_affine = [
+        item for item in sweep.spectra if item.spectrum.longest_feature > item.spectrum.short_cutoff
+    ]
+    # The springs of spheres are NaN and count as none: the first spectrum stays.
+    longest = max(self_affine or sweep.spectra, key=lambda item: max(0.0, item.spring))
+    spectrum, amplitude, realisation = np.nonzero(table.finite)
+    away = np.abs(np.array(sweep.elastic_energies) - 0.05)[amplitude]
+    others = spectrum != sweep.spectra.index(longest)
+    first = np.lexsort((realisation, away, others))[0]
+    return sweep.simulation(
+        sweep.spectra[spectrum[first]],
+        sweep.elastic_energies[amplitude[first]],
+        int(realisation[first]),
+    )

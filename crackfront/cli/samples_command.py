@@ -1,0 +1,149 @@
+"""`crackfront samples`: predictions for a series of samples, as a table and a figure."""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from crackfront.cli.common import (
+    FILE,
+    examples,
+    options_of,
+    refuse_foreign_table,
+    refuse_overwriting,
+    refuse_together,
+    refuse_unwritable,
+)
+from crackfront.measured.options import PredictionOptions, ReadingOptions, SphereOptions
+
+if TYPE_CHECKING:
+    from crackfront.measured.samples import Sample, SampleResult
+
+
+@click.command(
+    epilog=examples(
+        "crackfront samples samples.csv --modulus 0.7MPa --poisson 0.5 --radius 1.25mm \\",
+        "    --work-of-adhesion 63mJ/m2",
+        "crackfront samples samples.yaml --csv - --quantity pull_off_force",
+    )
+)
+@click.argument("path", type=FILE, metavar="TABLE")
+@options_of(SphereOptions)
+@options_of(ReadingOptions)
+@options_of(PredictionOptions)
+@click.option(
+    "--csv",
+    "table",
+    type=FILE,
+    help="Table of results; - prints it.  [default: results/samples/<table>.csv]",
+)
+@click.option(
+    "--figure",
+    type=FILE,
+    help="Figure of the series; without suffix PDF and PNG.  [default: results/samples/<table>]",
+)
+@click.option("--no-figure", is_flag=True, help="Draw no figure.")
+@click.option(
+    "--quantity",
+    type=click.Choice(["hysteresis", "w_appr", "w_retr", "e_el", "pull_off_force"]),
+    default="hysteresis",
+    help="What the figure shows.",
+)
+@click.option("--strict", is_flag=True, help="Exit with 3 if there are reservations.")
+@click.pass_context
+def samples(
+    context: click.Context,
+    /,
+    path: Path,
+    table: Path | None,
+    figure: Path | None,
+    no_figure: bool,
+    quantity: str,
+    strict: bool,
+    **options: Any,
+) -> None:
+    """Predict a series of samples from a table, with a figure of predicted and measured values.
+
+    TABLE is CSV, TSV or YAML with a row for each sample: `sample`, `scans` (with | between several)
+    or `psd` or `rms`, and if they are known `group`, `radius (mm)`, `modulus (MPa)`,
+    `work_of_adhesion (mJ/m2)`, `measured_hysteresis (mJ/m2)` and any other option of
+    `crackfront predict` for scans, sphere and theory. Options of the command apply to rows that do
+    not give a value.
+
+    If a row cannot be used, the table is refused with the number of its line before anything is
+    computed. A sample whose files fail later has the outcome `refused` in its row. The exit code is
+    the largest of all samples, each as that of `crackfront predict`.
+    """
+    from crackfront.measured.samples import read_samples
+
+    refuse_together(context, "no_figure", "figure", "quantity")
+    refuse_overwriting([path], {"--csv": table, "--figure": figure})
+    refuse_foreign_table("--csv", table, "sample")
+    stem = Path("results/samples", path.stem)
+    table = table or stem.with_name(f"{stem.name}.csv")
+    common = {name: value for name, value in options.items() if value not in (None, ())}
+    series = read_samples(path, common)
+    if not no_figure:
+        refuse_unwritable((figure or stem).parent)
+    found = write_samples(table, series, "sample")
+    refused = [one.sample.name for one in found if one.outcome == "refused"]
+    if refused:
+        click.echo(f"without a value: {', '.join(refused)}; the table states the reasons", err=True)
+    if not no_figure:
+        from crackfront.measured.page.series import series_figure
+        from crackfront.plots.style import save_figure
+
+        drawn = series_figure([one.point(quantity) for one in found], quantity)
+        for file in save_figure(drawn, figure or stem):
+            click.echo(f"figure: {file}", err=str(table) == "-")
+    context.exit(max(exit_code(one.outcome, strict) for one in found))
+
+
+def write_samples(path: Path, samples: Sequence[Sample], first: str) -> list[SampleResult]:
+    """Write a table with a row for each sample, as soon as it is known; - is standard output."""
+    from crackfront.measured.samples import predicted_samples
+    from crackfront.simulate.storage import refuse_no_file, write_text
+
+    is_printed, found = str(path) == "-", []
+    if not is_printed:
+        refuse_no_file(path)
+        refuse_unwritable(path.parent)
+    text = ""
+    for one in predicted_samples(samples):
+        click.echo(_line(one), err=is_printed)
+        found.append(one)
+        rows = [{first: each.row["sample"]} | each.row for each in found]
+        if first != "sample":
+            rows = [{k: v for k, v in row.items() if k not in ("sample", "group")} for row in rows]
+        # After every sample, as each takes seconds: an interruption keeps what was read.
+        stream = io.StringIO()
+        table = csv.DictWriter(stream, dict.fromkeys(name for row in rows for name in row))
+        table.writeheader()
+        table.writerows(rows)
+        text = stream.getvalue()
+        if not is_printed:
+            write_text(path, text)
+    click.echo(text if is_printed else f"table: {path}", nl=not is_printed)
+    return found
+
+
+def _line(one: SampleResult) -> str:
+    """What came of a sample."""
+    from crackfront.measured.prediction.texts import ENERGY, estimate_text
+
+    if one.prediction is None:
+        return f"{one.sample.name}: {one.outcome}"
+    hysteresis = estimate_text(ENERGY, one.prediction.hysteresis)
+    return f"{one.sample.name}: hysteresis {hysteresis}; {one.outcome}"
+
+
+def exit_code(outcome: str, strict: bool) -> int:
+    """Exit code of what came of a surface: 3 of reservations if strict, 4 without a prediction."""
+    if outcome in ("does not apply", "refused"):
+        return 4
+    return 3 if strict and outcome != "applies" else 0

@@ -1,0 +1,306 @@
+"""`crackfront surface` and `crackfront predict`: what scans of a surface hold, and its adhesion."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from crackfront.cli.common import (
+    FILE,
+    announce_compilation,
+    as_json,
+    echo_answer,
+    echo_json,
+    examples,
+    options_of,
+    refuse_foreign_netcdf,
+    refuse_foreign_table,
+    refuse_overwriting,
+    refuse_together,
+    refuse_unwritable,
+    refuse_without,
+    whole,
+)
+from crackfront.cli.samples_command import exit_code, write_samples
+from crackfront.core.bounds import SEED, Range
+from crackfront.core.words import counted, in_time
+from crackfront.measured.options import (
+    PredictionOptions,
+    PsdOptions,
+    ReadingOptions,
+    SelfAffineOptions,
+    SphereOptions,
+    checked_options,
+    for_files,
+    named_options,
+    reading_options,
+    sphere_scales,
+)
+
+if TYPE_CHECKING:
+    from crackfront.core.units import Scales
+    from crackfront.measured.prediction.prediction import Prediction
+    from crackfront.measured.prediction.simulated_prediction import Simulated
+    from crackfront.measured.spectrum.measured_surface import MeasuredSurface
+    from crackfront.measured.spectrum.stated import Surface
+
+Command = Callable[..., None]
+Say = Callable[[str], None]
+
+
+def _listed(
+    context: click.Context, parameter: click.Parameter, scans: tuple[Path, ...]
+) -> tuple[Path, ...]:
+    """The scans, unless a command is to list their channels instead of what it does."""
+    if context.params.get("list_channels"):
+        if not scans:
+            raise ValueError("--list-channels lists those of scans; name SCANS")
+        from crackfront.measured.scan.instruments import list_channels
+
+        for scan in scans:
+            click.echo("\n  ".join(map(str, (scan, *list_channels(scan)))))
+        context.exit()
+    return scans
+
+
+def _scans(*, required: bool) -> Callable[[Command], Command]:
+    """Give a command its scans; eager, so that channels are listed without its other options."""
+
+    def decorated(command: Command) -> Command:
+        command = click.option(
+            "--list-channels", is_flag=True, is_eager=True, help="Only list the channels of SCANS."
+        )(command)
+        scans = click.argument(
+            "scans", type=FILE, nargs=-1, required=required, is_eager=True, callback=_listed
+        )
+        return scans(command)
+
+    return decorated
+
+
+@click.command(
+    epilog=examples(
+        "crackfront predict examples/scans/nanodiamond-detail.al3d --modulus 0.7MPa \\",
+        "    --poisson 0.5 --radius 1.25mm --work-of-adhesion 63mJ/m2 --json",
+        "crackfront predict --rms 60nm --correlation-length 1um --hurst 0.8 --modulus 0.7MPa \\",
+        "    --poisson 0.5 --radius 1.25mm --work-of-adhesion 63mJ/m2",
+    )
+)
+@_scans(required=False)
+@options_of(ReadingOptions)
+@click.option("--psd", type=FILE, help="Text file of a spectral density, instead of scans.")
+@options_of(PsdOptions)
+@options_of(SelfAffineOptions)
+@options_of(SphereOptions, required=True)
+@options_of(PredictionOptions)
+@as_json
+@click.option("--simulate", is_flag=True, help="Also simulate surfaces of the measured spectrum.")
+@click.option(
+    "--realisations",
+    type=whole(Range(1, 1e6)),
+    default=3,
+    help="Synthesised surfaces that --simulate runs.",
+)
+@click.option("--seed", type=whole(SEED), default=0, help="Seed of these surfaces.")
+@click.option(
+    "--figure",
+    type=FILE,
+    help="Figure: talk.svg, or without suffix PDF and PNG.  [default: results/predict/<scan>]",
+)
+@click.option("--panel", type=click.Choice("abcd"), help="Draw one panel of the figure alone.")
+@click.option("--no-figure", is_flag=True, help="Draw no figure, which saves most of the time.")
+@click.option(
+    "--csv",
+    "table",
+    type=FILE,
+    help="Treat each scan as a sample, and write a row for it; - prints the rows.",
+)
+@click.option("--long", "is_long", is_flag=True, help="Print all results instead of one page.")
+@click.option("--strict", is_flag=True, help="Exit with 3 if there are reservations.")
+@click.pass_context
+def predict(
+    context: click.Context,
+    /,
+    scans: tuple[Path, ...],
+    psd: Path | None,
+    as_json: bool,
+    simulate: bool,
+    realisations: int,
+    seed: int,
+    figure: Path | None,
+    panel: str | None,
+    no_figure: bool,
+    table: Path | None,
+    is_long: bool,
+    strict: bool,
+    **options: Any,
+) -> None:
+    """Predict how strongly a soft sphere sticks to a measured surface, from the fitted law.
+
+    SCANS are files of instruments in any format that SurfaceTopography reads, one measurement of
+    the surface or several. Instead of scans, --psd names an exported spectral density, or --rms,
+    --hurst and --correlation-length or --roll-off describe a self-affine surface. Works of
+    adhesion are w_int - e_el -+ k e_el. k is that of `crackfront law`, divided by the ratio of the
+    front to boundary elements.
+
+    Exit code 0: a prediction, with reservations where there are any or where it cannot be decided
+    whether the theory applies (3 with --strict). 4: the theory does not apply; nothing is
+    predicted, and the output says which modulus, radius, roughness or w_int would meet the
+    condition. With --csv the code is the largest of all samples; a scan that cannot be used counts
+    as 4.
+    """
+    from crackfront.measured.page.texts import machine_readable, report_text
+    from crackfront.measured.prediction.prediction import check_and_predict
+
+    scales = _scales(options)
+    given = checked_options(PredictionOptions, options, "--")
+    name = _origin(scans, psd, options)
+    refuse_without(context, "simulate", "realisations", "seed")
+    refuse_together(context, "no_figure", "figure", "panel")
+    refuse_together(context, "as_json", "is_long")
+    inputs = scans if psd is None else (psd,)
+    refuse_overwriting(inputs, {"--csv": table, "--figure": figure})
+    refuse_foreign_table("--csv", table, "scan")
+    if table is not None:
+        if not scans:
+            raise ValueError("--csv writes a row for each scan; name scans")
+        if as_json or simulate or is_long or panel or figure:
+            raise ValueError("--csv writes rows alone; leave out what prints, draws or simulates")
+        from crackfront.measured.samples import scans_as_samples
+
+        reading = reading_options(for_files(options, scans), len(scans), "--")
+        found = write_samples(table, scans_as_samples(scans, reading, scales, given), "scan")
+        context.exit(max(exit_code(one.outcome, strict) for one in found))
+    stem = Path("results/predict", name) if figure is None else figure
+    if not no_figure:
+        refuse_unwritable(stem.parent)
+    surface: Surface = _surface(scans, options) if scans else _stated_surface(psd, options)
+    (verdict, prediction), outcome = check_and_predict(surface, scales, given), None
+    say: Say = (lambda _: None) if as_json else click.echo
+    if prediction is not None:
+        say(repr(prediction))
+    if is_long or prediction is None:
+        say("\n" * is_long + report_text(surface, scales, verdict, prediction))
+    if prediction is not None and not no_figure:
+        from crackfront.measured.page.prediction_figures import prediction_figure
+        from crackfront.plots.style import save_figure
+
+        for path in save_figure(prediction_figure(surface, prediction, panel), stem):
+            say(f"figure: {path}")
+    if prediction is not None and simulate:
+        announce_compilation(err=as_json)
+        outcome = _simulated(prediction, scales, realisations, seed, say)
+    if as_json:
+        echo_json(machine_readable(surface, scales, verdict, prediction, outcome))
+    context.exit(exit_code(verdict.outcome, strict))
+
+
+def _origin(scans: tuple[Path, ...], psd: Path | None, options: Mapping[str, Any]) -> str:
+    """Name for the figure of a surface, which is refused unless it is given in one way."""
+    stated = named_options(SelfAffineOptions, options)
+    number = f"--{stated[0].replace('_', '-')}" if stated else "--rms"
+    ways = {"SCANS": bool(scans), "--psd": psd is not None, number: bool(stated)}
+    named = [way for way, is_named in ways.items() if is_named]
+    if len(named) != 1:
+        raise ValueError(
+            f"the surface is given {'by ' + ' and '.join(named) if named else 'in no way'}; name "
+            "scans, or a spectral density with --psd, or numbers with --rms"
+        )
+    further = named_options(PsdOptions, options)
+    if psd is None and further:
+        raise ValueError(f"--{further[0].replace('_', '-')} is of a density; name it with --psd")
+    reading = named_options(ReadingOptions, options)
+    if not scans and reading:
+        raise ValueError(f"--{reading[0].replace('_', '-')} is of scans; leave it out")
+    return scans[0].stem if scans else "numbers" if psd is None else psd.stem
+
+
+def _stated_surface(psd: Path | None, options: Mapping[str, Any]) -> Surface:
+    """Surface of a density or of numbers that a command names."""
+    from crackfront.measured.scan.psd import read_psd_file
+    from crackfront.measured.spectrum.stated import density_surface, self_affine_surface_of
+
+    if psd is None:
+        return self_affine_surface_of(checked_options(SelfAffineOptions, options, "--"))
+    return density_surface(read_psd_file(psd, checked_options(PsdOptions, options, "--")))
+
+
+def _simulated(
+    prediction: Prediction, scales: Scales, realisations: int, seed: int, say: Say
+) -> Simulated:
+    """Run the simulations of a predicted surface, and print their cost and their results."""
+    from crackfront.measured.page.texts import simulation_text
+    from crackfront.measured.prediction.simulated_prediction import prediction_plan, simulated
+
+    plan = prediction_plan(prediction.surface, scales, realisations, seed)
+    seconds = in_time(plan.expected_seconds)
+    about = f"simulating {counted(realisations, 'surface')}, about {seconds} ..."
+    say("\n".join(filter(None, (plan.remark, about))))
+    outcome = simulated(plan, scales)
+    say(simulation_text(outcome, prediction))
+    return outcome
+
+
+@click.command(
+    epilog=examples(
+        "crackfront surface examples/scans/nanodiamond-detail.al3d",
+        "crackfront surface scan.x3p --modulus 0.7MPa --poisson 0.5 --radius 20um \\",
+        "    --work-of-adhesion 63mJ/m2 --field field.nc",
+    )
+)
+@_scans(required=True)
+@options_of(ReadingOptions)
+@options_of(SphereOptions)
+@as_json
+@click.option("--field", type=FILE, help="Write the map as a field for crackfront cycle.")
+def surface(scans: tuple[Path, ...], as_json: bool, field: Path | None, **options: Any) -> None:
+    """Analyse one measurement of a surface or several: spectrum, rms measures, their scales.
+
+    SCANS are files of instruments in any format that SurfaceTopography reads. Options of
+    the sphere add e_el and w_rms.
+    """
+    from crackfront.measured.page.texts import machine_readable, report_text
+
+    is_pressed = any(options[name] is not None for name in SphereOptions.model_fields)
+    scales = _scales(options) if is_pressed or field is not None else None
+    refuse_overwriting(scans, {"--field": field})
+    refuse_foreign_netcdf("--field", field)
+    if field is not None:
+        from crackfront.simulate.storage import refuse_no_file
+
+        if len(scans) > 1:
+            raise ValueError(f"--field takes one scan, not {len(scans)}; name the one to press on")
+        refuse_no_file(field)
+        refuse_unwritable(field.parent)
+    found = _surface(scans, options)
+    content = machine_readable(found, scales)
+    echo_answer(content, [report_text(found, scales)], as_json=as_json)
+    if field is None or scales is None:
+        return
+    if len(found.scans) > 1:
+        raise ValueError(f"--field takes one scan, and {scans[0]} holds {len(found.scans)}")
+    from crackfront.measured.tile import scan_surface
+    from crackfront.surfaces.given_surface import surface_adhesion
+    from crackfront.surfaces.saving import save_result
+
+    pressed = scan_surface(found.scans[0], scales)
+    energy = surface_adhesion(pressed).e_el
+    save_result(pressed, field)
+    if not as_json:
+        click.echo(f"field: {field}, e_el {energy:.4g} w_int on the tile")
+
+
+def _surface(scans: tuple[Path, ...], options: Mapping[str, Any]) -> MeasuredSurface:
+    """Surface of the files that a command names, read by its options."""
+    reading = reading_options(for_files(options, scans), len(scans), "--")
+    from crackfront.measured.spectrum.measured_surface import read_surface
+
+    return read_surface(scans, reading)
+
+
+def _scales(options: Mapping[str, Any]) -> Scales:
+    """Scene of the sphere of a command, in SI units."""
+    return sphere_scales(checked_options(SphereOptions, options, "--"), "--")

@@ -1,0 +1,374 @@
+"""A sweep while it runs: what it will cost, its simulations, and how far they are."""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import closing
+from dataclasses import astuple, dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from crackfront.cli.common import (
+    FILE,
+    Number,
+    announce_compilation,
+    announce_cost,
+    as_json,
+    echo_answer,
+    examples,
+    table,
+    whole,
+)
+from crackfront.core.bounds import COUNT, Range
+from crackfront.core.resources import refuse_beyond_memory
+from crackfront.core.words import counted, in_bytes
+
+# The rest is imported where it is used, so that --help does not wait for it.
+if TYPE_CHECKING:
+    from crackfront.simulate.provenance import Provenance
+    from crackfront.simulate.simulation import Simulation
+    from crackfront.sweep.advice import Expectation
+    from crackfront.sweep.inventory import Inventory, MissingSimulations
+    from crackfront.sweep.parallel import Ranks
+    from crackfront.sweep.store import Store
+    from crackfront.sweep.sweep import Shard, Sweep
+
+configuration_argument = click.argument("configuration", type=FILE)
+output_option = click.option(
+    "--output", type=FILE, help="Folder of the results.  [default: results/<configuration's name>]"
+)
+
+
+@click.command(
+    epilog=examples(
+        "crackfront plan config/paper.yaml", "crackfront plan config/default.yaml --json"
+    )
+)
+@configuration_argument
+@output_option
+@click.option("--block", type=whole(COUNT), help="Realisations of a shard (a job).  [default: all]")
+@as_json
+def plan(configuration: Path, output: Path | None, block: int | None, as_json: bool) -> None:
+    """Print what a sweep would run for each spectrum, what is stored and what the rest costs.
+
+    Nothing is computed. Files that are found damaged are renamed to *.damaged, so that the workflow
+    makes them again.
+    """
+    from crackfront.sweep.advice import expectations, steady_part_warnings
+    from crackfront.sweep.run_sweep import opened
+
+    sweep, store, _ = opened(configuration, output, warn)
+    store.set_aside_damaged()
+    shards, expected = sweep.shards(block), expectations(sweep)
+    progress = {item.name: store.progress(sweep, item) for item in sweep.spectra}
+    missing = [one for found in progress.values() for one in found.missing]
+    n_missing = sum(found.n_missing for found in progress.values())
+    content = {
+        "results": store.folder,
+        "spectra": [item.name for item in sweep.spectra],
+        "elastic_energies": sweep.elastic_energies,
+        "realisations": sweep.n_realisation,
+        "simulations": sweep.n_simulation,
+        "missing": n_missing,
+        "arithmetic": sorted(set().union(*(found.arithmetic for found in progress.values()))),
+        "shards": [shard.name for shard in shards],
+        "unit_of_lengths": "reduced" if sweep.scales is None else "m",
+        "expected": expected,
+        "doubts": (warnings := [*steady_part_warnings(sweep)]),
+        **_costs(missing),
+    }
+    lines = _plan_lines(sweep, store, shards, progress, expected)
+    echo_answer(content, [*lines, *warnings], as_json=as_json)
+
+
+def _plan_lines(
+    sweep: Sweep,
+    store: Store,
+    shards: Sequence[Shard],
+    progress: Mapping[str, Inventory],
+    expected: Mapping[str, Sequence[Expectation]],
+) -> Iterator[str]:
+    """Tables of the spectra of a sweep and of what is left to run, and its sizes."""
+    from crackfront.sweep.inventory import Inventory, mixture_sentence
+
+    everything = sum(progress.values(), Inventory())
+    lateral, unit = (1.0, "") if sweep.scales is None else (sweep.scales.lateral, " (m)")
+    spectra, left = [], []
+    for item in sweep.spectra:
+        found = progress[item.name]
+        shape, sizes = item.spectrum, [one.resolution for one in sweep.one_per_amplitude(item)]
+        spectra.append(
+            (
+                item.name,
+                f"{lateral * shape.short_cutoff:.4g}",
+                f"{lateral * shape.longest_feature:.4g}",
+                f"{shape.hurst:.2f}" if hasattr(shape, "hurst") else "-",
+                *(
+                    _span([getattr(one, name) for one in expected[item.name]], "{:.2g}")
+                    for name in ("disorder", "size", "factor")
+                ),
+                _span([size.n_angle for size in sizes]),
+                _span([size.n_point for size in sizes]),
+                f"{found.stored}/{found.stored + found.n_missing}",
+            )
+        )
+        left.append(_left(item.name, sum(shard.item is item for shard in shards), found.missing))
+    lengths = f"lambda_s{unit}", f"lambda_r{unit}"
+    yield from table(
+        ("spectrum", *lengths, "H", "s", "g", "k", "angles", "points", "stored"),
+        spectra,
+    )
+    yield "s is w_rms/w_int, g the size, and k what the law expects at the largest load"
+    yield from filter(None, (*everything.sentences(), mixture_sentence(everything.arithmetic)))
+    yield ""
+    left.append(_left("all", len(shards), everything.missing))
+    header = "to run", "shards", "simulations", "core hours", "longest s", "MB a rank"
+    yield from table(header, left)
+    energies = ", ".join(f"{energy:g}" for energy in sweep.elastic_energies)
+    yield f"\n{len(sweep.elastic_energies)} amplitudes e_el/w_int: {energies}"
+    lowest, highest = sweep.fit.lowest_elastic_energy, sweep.fit.highest_elastic_energy
+    yield f"the fit of k takes those from {lowest:g} to {highest:g}"
+    yield f"{sweep.n_realisation} realisations; {sweep.n_simulation} simulations"
+    yield f"results in {store.folder}/"
+
+
+def _costs(missing: Sequence[MissingSimulations]) -> dict[str, float]:
+    """What simulations are expected to cost, under the names that machines read."""
+    from crackfront.simulate.costs import expected_cost
+
+    costs = [(expected_cost(item.first), item.realisations.size) for item in missing]
+    return {
+        "core_seconds": sum(count * cost.seconds for cost, count in costs),
+        "longest_seconds": max((cost.seconds for cost, _ in costs), default=0.0),
+        "bytes_a_rank": max((cost.memory for cost, _ in costs), default=0.0),
+    }
+
+
+def _left(name: str, n_shard: int, missing: Sequence[MissingSimulations]) -> tuple[str, ...]:
+    """Row of what the missing simulations of a spectrum, or of all, are expected to cost."""
+    core, longest, memory = _costs(missing).values()
+    n_missing = sum(item.realisations.size for item in missing)
+    cells = f"{core / 3600:.3g}", f"{longest:.3g}", f"{memory / 1e6:.0f}"
+    return name, str(n_shard), str(n_missing), *cells
+
+
+def _span(values: Sequence[float | None], form: str = "{:.0f}") -> str:
+    """Range of values over the amplitudes, or the one that all have."""
+    known = [value for value in values if value is not None]
+    if not known:
+        return "-"
+    low, high = form.format(min(known)), form.format(max(known))
+    return low if low == high else f"{low}-{high}"
+
+
+def _block(context: click.Context, parameter: click.Parameter, value: str | None) -> range | None:
+    """Range that an option like 0-49 means, both ends included."""
+    if value is None:
+        return None
+    first, dash, last = value.partition("-")
+    if not (dash and first.isdecimal() and last.isdecimal() and int(first) <= int(last)):
+        raise click.BadParameter(
+            f"{value!r} is no range of numbers; write the first and the last, as in 0-49"
+        )
+    return range(int(first), int(last) + 1)
+
+
+@click.command(
+    epilog=examples(
+        "mpiexec -n 5 crackfront simulate config/default.yaml",
+        "crackfront simulate config/default.yaml --spectrum flat --realisations 0-1",
+    )
+)
+@configuration_argument
+@output_option
+@click.option("--spectrum", help="Only this spectrum.  [default: all]")
+@click.option(
+    "--realisations", callback=_block, help="Only these realisations, as in 0-49.  [default: all]"
+)
+@click.option(
+    "--checkpoint",
+    type=Number(Range(0, 1e9)),
+    default=60.0,
+    help="Seconds between checkpoints of a running simulation.",
+)
+def simulate(
+    configuration: Path,
+    output: Path | None,
+    spectrum: str | None,
+    realisations: range | None,
+    checkpoint: float,
+) -> None:
+    """Run the simulations of a sweep that are not stored yet.
+
+    After Ctrl-C or SIGTERM the states of running simulations are stored, and the exit code is 75.
+    Run the same command to continue.
+    """
+    from crackfront.sweep.parallel import deferring_stops, ranks
+
+    # Ranks wait for the manager within `ranks`.
+    with deferring_stops(), ranks() as workers:
+        if workers is not None:
+            _simulate(configuration, output, spectrum, realisations, checkpoint, workers)
+
+
+def _simulate(
+    configuration: Path,
+    output: Path | None,
+    spectrum: str | None,
+    realisations: range | None,
+    checkpoint: float,
+    workers: Ranks,
+) -> None:
+    """Run what some shards lack, and derive their rows."""
+    from crackfront.sweep.advice import steady_part_warnings
+    from crackfront.sweep.inventory import Inventory
+    from crackfront.sweep.run_sweep import opened, write_source
+
+    sweep, store, origin = opened(configuration, output, warn)
+    items = sweep.spectra if spectrum is None else (sweep.named(spectrum),)
+    chosen = range(sweep.n_realisation) if realisations is None else realisations
+    shards = [sweep.named_shard(item, chosen) for item in items]
+    write_source(configuration, store.folder)
+    with store.locked(shards):
+        inventories = [store.unfinished(sweep, [shard]) for shard in shards]
+        inventory = sum(inventories, Inventory())
+        total = inventory.stored + inventory.n_missing
+        click.echo(f"{configuration}: {inventory.stored} of {total} simulations are stored")
+        for sentence in inventory.sentences():
+            click.echo(sentence)
+        if inventory.missing:
+            costs = _costs(inventory.missing)
+            busy = min(workers.n_here, inventory.n_missing)
+            refuse_beyond_memory(
+                f"{counted(busy, 'rank')} of {in_bytes(costs['bytes_a_rank'])}",
+                costs["bytes_a_rank"] * busy,
+                "use fewer ranks, coarser numerics or a smaller tile",
+            )
+            announce_cost(costs["core_seconds"])
+            for sentence in steady_part_warnings(sweep):
+                warn(sentence)
+        lacking = [
+            (shard, found.simulations()) for shard, found in zip(shards, inventories, strict=True)
+        ]
+        run_missing(store, lacking, origin, workers, checkpoint)
+        for shard in shards:
+            click.echo(f"rows: {store.finish_shard(sweep, shard, origin)}")
+
+
+def run_missing(
+    store: Store,
+    lacking: Sequence[tuple[Shard, Sequence[Simulation]]],
+    origin: Provenance,
+    workers: Ranks,
+    checkpoint_seconds: float = 60.0,
+) -> None:
+    """Run what shards lack with a bar on a terminal, elsewhere with a line for each simulation."""
+    from tqdm import tqdm
+
+    from crackfront.sweep.rows import COMPLETE
+    from crackfront.sweep.tasks import NotStoredError, run_and_store
+
+    started, terminal = time.monotonic(), sys.stderr.isatty()
+    if total := sum(len(simulations) for _, simulations in lacking):
+        announce_compilation()
+    try:
+        with (
+            closing(run_and_store(store, lacking, origin, checkpoint_seconds, workers)) as outcomes,
+            tqdm(total=total, unit="simulation", disable=not terminal, file=sys.stderr) as bar,
+        ):
+            for count, (simulation, finished) in enumerate(outcomes, start=1):
+                line = f"{simulation.label}: {finished.status}"
+                line += f", {finished.sentence or f'{finished.seconds:.2f} s'}"
+                if not terminal:
+                    click.echo(f"[{count}/{total}] {line}")
+                elif finished.status not in COMPLETE:
+                    bar.write(line)
+                bar.update()
+    except NotStoredError as error:
+        raise click.ClickException(str(error)) from error
+    if total:
+        click.echo(f"{total} simulations in {time.monotonic() - started:.1f} s")
+
+
+@click.command(
+    epilog=examples("crackfront status results/default", "crackfront status results/default --json")
+)
+@click.argument("folder", type=FILE)
+@as_json
+def status(folder: Path, as_json: bool) -> None:
+    """Show the progress of the sweep in a folder, and which of its shards are running.
+
+    Shards that run on other machines are shown where the file system passes their locks on; a batch
+    system knows them all. Files that are found damaged are renamed to *.damaged.
+    """
+    from crackfront.sweep.configuration import load_configuration, refuse_older_layout
+    from crackfront.sweep.inventory import Inventory
+    from crackfront.sweep.store import Store
+
+    store = Store(folder, warn)
+    refuse_older_layout(folder)
+    if not store.configuration.is_file():
+        raise ValueError(f"{folder} holds no sweep that was begun; name results/<its name>")
+    sweep = load_configuration(store.configuration)
+    inventories = {item.name: store.progress(sweep, item) for item in sweep.spectra}
+    progress, running = _progress(inventories), store.running_shards()
+    sentences = sum(inventories.values(), Inventory()).sentences()
+    content = {"spectra": progress, "running": running, "older": sentences}
+    echo_answer(content, [*_status_lines(progress, running), *sentences], as_json=as_json)
+
+
+def warn(sentence: str) -> None:
+    """Print a warning."""
+    click.echo(f"Warning: {sentence}", err=True)
+
+
+@dataclass(frozen=True, slots=True)
+class Progress:
+    """How far one spectrum is."""
+
+    name: str
+    done: int
+    failed: int
+    left: int
+    """Simulations with values; those that ended without; all others."""
+    seconds: float
+    """Processor time that is expected for those that are left. (Units: s)"""
+
+
+def _progress(inventories: Mapping[str, Inventory]) -> list[Progress]:
+    """Progress of each spectrum; the time that is left assumes the speed so far."""
+    known = [*inventories.values()]
+    spent, expected = (sum(getattr(one, name) for one in known) for name in _SPENT)
+    pace = spent / expected if spent else 1.0
+    return [
+        Progress(
+            name,
+            found.done,
+            found.failed,
+            found.n_missing,
+            pace * sum(item.seconds for item in found.missing),
+        )
+        for name, found in inventories.items()
+    ]
+
+
+_SPENT = "cpu_seconds", "expected_seconds"
+"""Fields of an inventory: processor time of what is stored, and what was expected for it."""
+
+
+def _status_lines(spectra: Sequence[Progress], running: Sequence[str]) -> Iterator[str]:
+    """Table of the spectra of a sweep, and the shards that run."""
+    rows = [(*map(str, astuple(item)[:-1]), f"{item.seconds / 3600:.3g}") for item in spectra]
+    yield from table(("spectrum", "done", "failed", "left", "core hours left"), rows)
+    if running:
+        yield f"running: {', '.join(running)}"
+    ended = sum(item.done + item.failed for item in spectra)
+    total = ended + sum(item.left for item in spectra)
+    sentence = f"{ended} of {total} simulations have ended"
+    if ended < total and not running:
+        sentence += "; no process that is seen here stores any"
+    yield sentence

@@ -1,0 +1,153 @@
+"""A measured loop in the library: from a file or from arrays to its works of adhesion."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from os import PathLike
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import ArrayLike
+from xarray import DataArray, Dataset
+
+from crackfront.core.arguments import refuse_no_numbers, refuse_other_type
+from crackfront.core.arrays import Array
+from crackfront.measured.loops.loop import MeasuredLoop, Rig, analyse_loop
+from crackfront.measured.loops.recording import UNITS, Recording, read_recording
+from crackfront.measured.loops.simulated_loop import is_netcdf, simulated_loop
+from crackfront.simulate.storage import read_dataset
+from crackfront.surfaces.si_units import in_si
+from crackfront.surfaces.written_units import unit_value
+
+
+def measured_loop(
+    loop: str | PathLike[str] | Mapping[str, ArrayLike] | Dataset,
+    *,
+    radius: float | str | None = None,
+    contact_modulus: float | str | None = None,
+    modulus_error: float = 0.0,
+    radius_error: float = 0.0,
+    stiffness: float | str | None = None,
+    window: tuple[float, float] | None = None,
+) -> MeasuredLoop:
+    """Works of adhesion of a loop that a rig measured, or of a simulated one, with intervals.
+
+    Parameters
+    ----------
+    loop : path, mapping or xarray.Dataset
+        A table whose heads name force, contact radius and displacement with their units, or arrays
+        by these names in SI units: `force`, `radius` (0 or NaN out of contact), `displacement`. Two
+        of them suffice; rows that are masked or NaN are left out. Or a simulated cycle, the result
+        of :func:`run_loop` or the file of one; it states its sphere, and all other arguments are
+        left out.
+    radius : float or str, optional
+        Radius of the sphere, which a measured loop needs; a number of metres, or a text with a
+        unit, as '1.25mm'. (Units: m)
+    contact_modulus : float or str, optional
+        E' = E / (1 - nu^2); fitted to force and contact radius if it is not given. (Units: Pa)
+    modulus_error, radius_error : float, optional
+        Relative standard errors of the two.
+    stiffness : float or str, optional
+        Stiffness of the machine, for displacements with a force or a contact radius alone.
+        (Units: N/m)
+    window : (float, float), optional
+        Contact radii that both branches are averaged over; numbers, or texts with a unit.
+        (Units: m)
+
+    Returns
+    -------
+    MeasuredLoop
+        w_appr, w_retr, hysteresis and more in SI units; printed, it is a page. Those of a simulated
+        cycle are what the simulation has, and in its units.
+
+    Raises
+    ------
+    ValueError
+        If the loop cannot be used; the sentence says what to do.
+    TypeError
+        If it is neither a path, nor a mapping, nor a dataset.
+    OSError
+        If the file cannot be opened.
+
+    Examples
+    --------
+    >>> radius = np.concatenate([np.linspace(60e-6, 150e-6, 40), np.linspace(149e-6, 60e-6, 40)])
+    >>> work = np.repeat([0.03, 0.06], 40)
+    >>> force = 4e6 / 3 * radius**3 / 1e-3 - np.sqrt(8 * np.pi * 1e6 * work * radius**3)
+    >>> loop = measured_loop({"force": force, "radius": radius}, radius=1e-3, contact_modulus=1e6)
+    >>> round(loop.w_appr.value, 6), round(loop.w_retr.value, 6)
+    (0.03, 0.06)
+    """
+    given = {
+        "radius": radius,
+        "contact_modulus": contact_modulus,
+        "modulus_error": modulus_error or None,
+        "radius_error": radius_error or None,
+        "stiffness": stiffness,
+        "window": window,
+    }
+    if isinstance(loop, (str, PathLike)) and is_netcdf(Path(loop)):
+        loop = read_dataset(Path(loop))
+    if isinstance(loop, Dataset) and not {"penetration", "pinning_force"} & {*loop}:
+        # Simulated cycles have one of these. Other columns, as a time, are left out.
+        named = {name: loop[name] for name in UNITS if name in loop}
+        if len(named) < 2:
+            raise ValueError(
+                f"the dataset has {', '.join(map(str, loop)) or 'no variables'}; a measured loop "
+                f"needs two of {', '.join(UNITS)}"
+            )
+        loop = named
+    if isinstance(loop, Dataset):
+        if without := [name for name, value in given.items() if value is not None]:
+            leave_out = ", ".join(without)
+            raise ValueError(
+                f"a simulated cycle states its sphere and has no rig; leave out {leave_out} "
+                "(crackfront.in_si_units gives a cycle in reduced units a sphere)"
+            )
+        return simulated_loop(loop)
+    refuse_other_type(
+        "loop", loop, (str, PathLike, Mapping), "the path of a table, or arrays by their names"
+    )
+    if radius is None:
+        raise ValueError("a measured loop does not state its sphere; give its radius in metres")
+    refuse_no_numbers(modulus_error=modulus_error, radius_error=radius_error)
+    if window is not None:
+        refuse_other_type("window", window, (tuple, list), "a pair of contact radii")
+        if len(window) != 2:
+            raise ValueError(f"window has {len(window)} values; give two contact radii")
+        first, last = (in_si("a contact radius of window", one, "m") for one in window)
+        window = first, last
+    rig = Rig(
+        in_si("radius", radius, "m"),
+        None if contact_modulus is None else in_si("contact_modulus", contact_modulus, "Pa"),
+        modulus_error,
+        radius_error,
+        None if stiffness is None else in_si("stiffness", stiffness, "N/m"),
+        window,
+    )
+    if isinstance(loop, Mapping):
+        if unknown := set(map(str, loop)) - set(UNITS):
+            raise ValueError(
+                f"a loop has no {', '.join(sorted(unknown))}; give two of {', '.join(UNITS)}"
+            )
+        columns = {
+            name: None if loop.get(name) is None else _column(name, loop[name]) for name in UNITS
+        }
+        return analyse_loop(Recording(**columns), rig)
+    return analyse_loop(read_recording(Path(loop), {}, {}), rig)
+
+
+def _column(name: str, values: ArrayLike) -> Array:
+    """A column in SI units, NaN where it is masked; refused where no row has a number.
+
+    An array that states its unit is converted.
+    """
+    given = values.attrs.get("units") if isinstance(values, DataArray) else None
+    factor = 1.0 if given is None else unit_value(given, UNITS[name])
+    try:
+        found: Array = factor * np.ma.array(values, dtype=float).filled(np.nan)
+    except (TypeError, ValueError) as error:
+        raise TypeError(f"the values of {name} are no array of numbers: {error}") from error
+    if not np.any(np.isfinite(found)):
+        raise ValueError(f"{name} has no finite value; leave the column out, or check the file")
+    return np.where(np.isfinite(found), found, np.nan)

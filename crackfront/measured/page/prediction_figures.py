@@ -1,0 +1,289 @@
+"""A measured surface and the adhesion that is predicted for it, in SI units."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure, FigureBase
+
+from crackfront.core import jkr
+from crackfront.core.arrays import Array
+from crackfront.core.units import Scales
+from crackfront.measured.density.densities import Density
+from crackfront.measured.prediction.prediction import Prediction
+from crackfront.measured.scan.reading import Measurement
+from crackfront.measured.spectrum.measured_surface import MeasuredSurface
+from crackfront.measured.spectrum.stated import StatedSurface, Surface
+from crackfront.plots.axis_units import scaled_unit
+from crackfront.plots.density_axes import (
+    ISOTROPIC_LABEL,
+    PROFILE_LABEL,
+    WAVEVECTOR_LABEL,
+    add_wavelengths,
+    draw_dominant_scales,
+    set_density_scales,
+)
+from crackfront.plots.parts import ON_WHITE, label_panel
+from crackfront.plots.style import (
+    BLACK,
+    BLUE,
+    COLOURS,
+    MARKERS,
+    PAGE,
+    VERMILION,
+    blank_figure,
+    house_style,
+)
+
+_MOST_MAPS, _FEWEST_PLACES = 4, 2
+"""Scans that are shown as maps, and places for them."""
+
+_MOST_PIXELS = 512
+"""Points along a side that a drawn map has at most; others are left out."""
+
+_SHOWN = (0.002, 0.998)
+"""Quantiles of the heights between which colours are spread."""
+
+_LAST = 0.4
+"""Part of the last wavevector from which on a limit is named on its left."""
+
+_BESIDE_TICKS = 12.0
+"""Points to the left of a panel where its letter is beside the ticks of an upper axis."""
+
+_ROOM = 3.0
+"""How far beyond the longest trusted wavelength the spectrum is shown."""
+
+
+def prediction_figure(surface: Surface, prediction: Prediction, panel: str | None = None) -> Figure:
+    """Densities with the spectrum, forces of both branches and scans; or one panel, by letter.
+
+    Of a spectrum alone there are panels a and c; ValueError of any other.
+    """
+    with house_style():
+        if isinstance(surface, StatedSurface):
+            return _stated_figure(surface, prediction, panel)
+        if panel == "d":
+            figure = blank_figure(0.5 * PAGE * min(len(surface.scans), _MOST_MAPS), 0.4 * PAGE)
+            _draw_scans(figure, surface)
+            return figure
+        if panel is not None:
+            figure = blank_figure(0.6 * PAGE, 0.45 * PAGE)
+            _DRAWINGS[panel](figure.subplots(), surface, prediction)
+            return figure
+        figure = blank_figure(PAGE, 0.86 * PAGE)
+        above, below = figure.subfigures(2, 1, height_ratios=(0.56, 0.3), squeeze=False)[:, 0]
+        panels = above.subplot_mosaic([["a", "c"], ["b", "c"]], height_ratios=(1.35, 1))
+        panels["a"].sharex(panels["b"])
+        for name, draw in _DRAWINGS.items():
+            draw(panels[name], surface, prediction)
+            label_panel(panels[name], name, _BESIDE_TICKS)
+        panels["a"].tick_params(labelbottom=False)
+        panels["a"].set_xlabel("")
+        _draw_scans(below, surface, _FEWEST_PLACES)
+        below.text(0.005, 0.97, "d", fontsize=9, fontweight="bold", va="top")
+        return figure
+
+
+def _stated_figure(surface: StatedSurface, prediction: Prediction, panel: str | None) -> Figure:
+    """The spectrum and the forces of both branches, or one of them."""
+    names = ["a", "c"] if panel is None else [panel]
+    if not set(names) <= {"a", "c"}:
+        raise ValueError(f"panel {panel} shows scans, and there are none; choose a or c")
+    figure = blank_figure(PAGE if panel is None else 0.6 * PAGE, 0.45 * PAGE)
+    for name, axes in zip(names, figure.subplots(1, len(names), squeeze=False)[0], strict=True):
+        if name == "a":
+            _draw_stated(axes, surface)
+        else:
+            _draw_forces(axes, surface, prediction)
+        if panel is None:
+            label_panel(axes, name, _BESIDE_TICKS)
+    return figure
+
+
+def _draw_stated(axes: Axes, surface: StatedSurface) -> None:
+    """A spectrum that is stated, and the scales that dominate."""
+    spectrum = surface.spectrum
+    wavevector = _set_wavevectors(axes, surface)
+    shown = wavevector[wavevector <= 2 * np.pi / spectrum.short_cutoff]
+    axes.plot(shown, spectrum.density(shown), color=BLACK, label="spectrum", zorder=4)
+    axes.plot(
+        2 * np.pi / np.array(spectrum.wavelengths),
+        spectrum.densities,
+        linestyle="none",
+        marker="o",
+        markersize=2.8,
+        markerfacecolor="none",
+        markeredgewidth=0.6,
+        color=BLUE,
+        label="as given",
+        zorder=3,
+    )
+    axes.set_ylim(bottom=0.02 * min(spectrum.densities))
+    scales = [(item.rms.value**2, item.shortest, item.longest) for item in surface.measures]
+    draw_dominant_scales(axes, *np.transpose(scales))
+    axes.set_ylabel(ISOTROPIC_LABEL)
+    add_wavelengths(axes)
+    axes.legend(loc="lower left")
+
+
+def _draw_scans(figure: FigureBase, surface: MeasuredSurface, fewest: int = 1) -> None:
+    """The scans as used, in a row of at least so many places."""
+    shown = surface.scans[:_MOST_MAPS]
+    maps = figure.subplots(1, max(len(shown), fewest), squeeze=False)[0]
+    for axes, one in zip(maps, shown, strict=False):
+        draw_scan(axes, one.measurement, one.band.stripes)
+    for axes in maps[len(shown) :]:
+        axes.set_axis_off()
+
+
+def _set_wavevectors(axes: Axes, surface: Surface) -> Array:
+    """Wavevectors at which the spectrum is drawn, for which axes are prepared (Units: 1 / m)."""
+    ends = surface.longest * _ROOM, surface.spectrum.short_cutoff / 1.5
+    wavevector = np.geomspace(2 * np.pi / ends[0], 2 * np.pi / ends[1], 400)
+    set_density_scales(axes, wavevector)
+    axes.set_xlabel(WAVEVECTOR_LABEL)
+    return wavevector
+
+
+def _draw_isotropic(axes: Axes, surface: MeasuredSurface, _: Prediction) -> None:
+    """Densities of maps, trusted and not, the spectrum and the scales that dominate."""
+    spectrum, measures = surface.joint.spectrum, surface.measures
+    wavevector = _set_wavevectors(axes, surface)
+    shown = wavevector[wavevector <= 2 * np.pi / spectrum.short_cutoff]
+    for index, one in enumerate(surface.scans):
+        if not one.measurement.is_line:
+            _draw_density(axes, index, one.trusted, one.measurement.path.name)
+            whole = one.density.within(2 * np.pi / wavevector[-1], 2 * np.pi / wavevector[0])
+            colour = COLOURS[index % len(COLOURS)]
+            axes.plot(
+                whole.wavevector, whole.value, color=colour, linewidth=0.5, alpha=0.6, zorder=2
+            )
+    draws = surface.joint.draws
+    inside = (draws.wavevector >= shown[0]) & (draws.wavevector <= shown[-1] * (1 + 1e-9))
+    low, high = draws.low[inside], draws.high[inside]
+    axes.fill_between(draws.wavevector[inside], low, high, color="0.8", linewidth=0, zorder=1)
+    label = "spectrum, with its 95% interval"
+    axes.plot(shown, spectrum.density(shown), color=BLACK, label=label, zorder=4)
+    axes.set_ylim(0.02 * np.min(low), 5 * np.max(high))
+    scales = [(item.rms.value**2, item.shortest, item.longest) for item in measures]
+    draw_dominant_scales(axes, *np.transpose(scales))
+    _draw_limits(axes, surface, named=False)
+    axes.set_ylabel(ISOTROPIC_LABEL)
+    add_wavelengths(axes)
+    axes.legend(loc="lower left", **ON_WHITE)
+
+
+def _draw_limits(axes: Axes, surface: MeasuredSurface, *, named: bool) -> None:
+    """Ends of the trusted bands, with what ends them above the data."""
+    for index, one in enumerate(surface.scans):
+        colour = COLOURS[index % len(COLOURS)]
+        for limit in one.band.ends:
+            place = 2 * np.pi / limit.wavelength
+            axes.axvline(place, color=colour, linewidth=0.5, dashes=(2, 2), zorder=1)
+            is_last = place > _LAST * axes.get_xlim()[1]
+            if named:
+                side, aside = ("right", -1.5) if is_last else ("left", 1.5)
+                beside = (aside, -2 - 7 * index), ("data", "axes fraction"), "offset points"
+                look: dict[str, Any] = {"ha": side, "va": "top", "fontsize": 6, "color": colour}
+                axes.annotate(limit.cause, (place, 1.0), *beside, **look)
+
+
+def _draw_profiles(axes: Axes, surface: MeasuredSurface, _: Prediction) -> None:
+    """Densities of profiles and the projection of the model that continues the spectrum."""
+    wavevector = _set_wavevectors(axes, surface)
+    for index, one in enumerate(surface.scans):
+        name = one.measurement.path.name if one.measurement.is_line else ""
+        _draw_density(axes, index, one.profile, name)
+    projection = surface.joint.fit.projected_density(wavevector)
+    axes.plot(wavevector, projection, color=BLACK, label="projection of the model", zorder=4)
+    low, high = axes.get_ylim()
+    axes.set_ylim(low, high * (high / low) ** (0.12 * len(surface.scans)))
+    _draw_limits(axes, surface, named=True)
+    axes.set_ylabel(PROFILE_LABEL)
+    axes.legend(loc="lower left", **ON_WHITE)
+
+
+def _draw_density(axes: Axes, index: int, density: Density, name: str) -> None:
+    """Density of one measurement as open markers."""
+    axes.plot(
+        density.wavevector,
+        density.value,
+        linestyle="none",
+        marker=MARKERS[index % len(MARKERS)],
+        markersize=2.8,
+        markerfacecolor="none",
+        markeredgewidth=0.6,
+        color=COLOURS[index % len(COLOURS)],
+        label=name or None,
+        zorder=3,
+    )
+
+
+def _draw_forces(axes: Axes, _: Surface, prediction: Prediction) -> None:
+    """Force against contact radius of both branches with their intervals, and of a smooth one."""
+    w_int = prediction.work_of_adhesion
+    scales = Scales(prediction.radius, w_int, prediction.contact_modulus)
+    strongest = max(prediction.w_retr.high, w_int)
+    radius = np.linspace(1e-3, 1.15 * jkr.radius_at_force(0.0, strongest / w_int), 400)
+    unit, newtons = scaled_unit("N", scales.force)
+    place = 1e6 * radius * scales.lateral
+
+    def force(adhesion: float) -> Array:
+        return jkr.equilibrium_force(radius, max(adhesion, 0.0) / w_int) * scales.force / newtons
+
+    for name, colour, found in (
+        ("approach", BLUE, prediction.w_appr),
+        ("retraction", VERMILION, prediction.w_retr),
+    ):
+        label = rf"{name}, $w = {1e3 * found.value:.3g}$ mJ m$^{{-2}}$"
+        axes.plot(place, force(found.value), color=colour, label=label, zorder=3)
+        ends = force(found.low), force(found.high)
+        axes.fill_between(place, *ends, color=colour, alpha=0.2, linewidth=0)
+    smooth = rf"smooth, $w_\mathrm{{int}} = {1e3 * w_int:.3g}$ mJ m$^{{-2}}$"
+    axes.plot(place, force(w_int), color="0.35", dashes=(4, 2), label=smooth)
+    axes.axhline(0.0, color="0.6", linewidth=0.5, zorder=1)
+    axes.set_xlim(0, place[-1])
+    axes.set_xlabel("contact radius (µm)")
+    axes.set_ylabel(f"normal force ({unit})")
+    axes.legend(loc="upper left", title="95% intervals shaded", title_fontsize=6)
+
+
+_DRAWINGS = {"a": _draw_isotropic, "b": _draw_profiles, "c": _draw_forces}
+"""What draws a panel, by its letter."""
+
+
+def draw_scan(axes: Axes, measurement: Measurement, stripes: Sequence[int] = ()) -> None:
+    """A map in colours, or heights along a line; its density leaves out waves along `stripes`."""
+    low, high = (float(end) for end in np.quantile(measurement.heights, _SHOWN))
+    unit, scale = scaled_unit("m", max(abs(low), abs(high)))
+    lateral, side = scaled_unit("m", max(measurement.size))
+    channel = f", channel {measurement.channel}" if measurement.channel else ""
+    levelling = f"without {measurement.levelling}" if measurement.levelling else "as it is"
+    left_out = " and ".join("xy"[axis] for axis in stripes)
+    waves = f"\n(a) without waves along {left_out} alone" if stripes else ""
+    axes.set_title(f"{measurement.path.name}{channel}\n{levelling}{waves}", fontsize=6)
+    axes.set_xlabel(f"x ({lateral})")
+    label = f"height ({unit})"
+    if measurement.is_line:
+        places = np.arange(measurement.heights.size) * measurement.pixels[0] / side
+        axes.plot(places, measurement.heights / scale, color=BLUE, linewidth=0.5)
+        axes.set_xlim(0, measurement.size[0] / side)
+        axes.set_ylabel(label)
+        return
+    heights, (width, height) = measurement.heights, measurement.size
+    steps = (slice(None, None, math.ceil(count / _MOST_PIXELS)) for count in heights.shape)
+    image = axes.imshow(
+        heights[tuple(steps)].T / scale,
+        origin="lower",
+        extent=(0.0, width / side, 0.0, height / side),
+        cmap="viridis",
+        vmin=low / scale,
+        vmax=high / scale,
+    )
+    axes.set_ylabel(f"y ({lateral})")
+    bar = axes.get_figure().colorbar(image, ax=axes, extend="both", shrink=0.9)  # type: ignore[union-attr]
+    bar.set_label(label)

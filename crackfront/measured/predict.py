@@ -1,0 +1,213 @@
+"""Scans in the library: a map as a surface to press on, and the prediction for a sphere."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+from xarray import DataArray
+
+from crackfront.core.arguments import refuse_other_type
+from crackfront.core.units import Scales
+from crackfront.measured.density.bands import analysed_scan
+from crackfront.measured.options import (
+    PredictionOptions,
+    PsdOptions,
+    ReadingOptions,
+    SelfAffineOptions,
+    checked_options,
+    reading_options,
+    refuse_unknown,
+)
+from crackfront.measured.prediction.prediction import Prediction, check_and_predict
+from crackfront.measured.prediction.remarks import remark_text
+from crackfront.measured.scan.instruments import surface_library
+from crackfront.measured.scan.psd import read_psd_file
+from crackfront.measured.scan.reading import read_measurements
+from crackfront.measured.spectrum.measured_surface import MeasuredSurface, read_surface
+from crackfront.measured.spectrum.stated import (
+    StatedSurface,
+    Surface,
+    density_surface,
+    self_affine_surface_of,
+)
+from crackfront.measured.tile import scan_surface
+from crackfront.surfaces.si_units import refuse_no_scales
+
+File = str | PathLike[str]
+
+
+def read_scan(path: File, sphere: Scales, **options: Any) -> DataArray:
+    """A measured map as a surface to press on, levelled and made periodic.
+
+    Parameters
+    ----------
+    path : str or path
+        File of an instrument, in any format that SurfaceTopography reads.
+    sphere : Scales
+        What is pressed on it; it says what a reduced length is.
+    **options
+        Fields of :class:`~crackfront.measured.options.ReadingOptions`, as
+        ``crop="2um:8um,0um:5um"`` or ``shortest=4e-7``: channel, crop, detrend, mask, surface,
+        unit, height_unit, size, tip_radius, shortest, longest. `crackfront surface --help`
+        says what each means.
+
+    Returns
+    -------
+    xarray.DataArray
+        `height(x, y)` in reduced units, the apex of the sphere at the centre of the scan. The
+        attributes `source`, `levelling`, `tile`, `waves` and `notes` say what was done and why.
+
+    Raises
+    ------
+    ValueError
+        If the file cannot be used, or is a line scan.
+    TypeError
+        If an argument is of another type.
+    OSError
+        If the file cannot be opened.
+    """
+    refuse_unknown("read_scan", options, ReadingOptions)
+    refuse_no_scales(sphere)
+    file = _path(path, "path")
+    [reading] = reading_options(options, 1)
+    surface_library()  # All of it, as the user's program may import it too.
+    measured, *others = read_measurements([file], reading)
+    if others:
+        raise ValueError(f"{file} holds {1 + len(others)} measurements; name the file of one")
+    return scan_surface(analysed_scan(measured, reading.shortest, reading.longest), sphere)
+
+
+def _path(given: File, name: str) -> Path:
+    """Path that an argument names, refused where it is none."""
+    refuse_other_type(name, given, (str, PathLike), "the path of a file")
+    return Path(given)
+
+
+def read_psd(path: File, **options: Any) -> StatedSurface:
+    """A surface by its spectral density, as another program has exported it.
+
+    Parameters
+    ----------
+    path : str or path
+        Text of two columns: exports of contact.engineering, Gwyddion, MountainsMap, or any other
+        whose heads say what the columns are.
+    **options
+        Fields of :class:`~crackfront.measured.options.PsdOptions`, as ``psd_units="1/um,um^3"``
+        or ``psd_sides="one"``: what the file does not say, or says wrongly, as they count in place
+        of its heads.
+
+    Returns
+    -------
+    StatedSurface
+        Isotropic spectrum in SI units, for :func:`predict`.
+
+    Raises
+    ------
+    ValueError
+        If the file holds no density, or its convention is not known.
+    TypeError
+        If an argument is of another type.
+    OSError
+        If the file cannot be opened.
+    """
+    refuse_unknown("read_psd", options, PsdOptions)
+    return density_surface(read_psd_file(_path(path, "path"), checked_options(PsdOptions, options)))
+
+
+def self_affine_surface(**numbers: Any) -> StatedSurface:
+    """A surface by the numbers of a self-affine spectrum, for :func:`predict`.
+
+    Parameters
+    ----------
+    **numbers
+        Fields of :class:`~crackfront.measured.options.SelfAffineOptions`: rms, hurst, and either
+        correlation_length (where the autocorrelation of the heights is 1/e) or roll_off; and
+        short_cutoff, which is needed for a Hurst exponent of 0.5 or less. Lengths are texts with a
+        unit, or numbers in metres.
+
+    Returns
+    -------
+    StatedSurface
+        Spectrum of :class:`~crackfront.core.spectrum.SelfAffineSpectrum`, in SI units.
+
+    Raises
+    ------
+    ValueError
+        If a number is missing, or they contradict each other.
+    TypeError
+        If an argument is of another type.
+
+    Examples
+    --------
+    >>> rough = self_affine_surface(rms="60nm", correlation_length="1um", hurst=0.8)
+    >>> f"{rough.measures[0].rms.value * 1e9:.4g} nm, {rough.longest * 1e6:.2g} um"
+    '60 nm, 4.1 um'
+    """
+    refuse_unknown("self_affine_surface", numbers, SelfAffineOptions)
+    return self_affine_surface_of(checked_options(SelfAffineOptions, numbers))
+
+
+def predict(
+    scans: File | Iterable[File] | StatedSurface,
+    sphere: Scales,
+    *,
+    strict: bool = False,
+    **options: Any,
+) -> Prediction:
+    """How strongly a sphere sticks to a measured surface, by the law of k.
+
+    Parameters
+    ----------
+    scans : path or list of paths, or StatedSurface
+        One measurement of the surface or several, maps or lines; or what :func:`read_psd` or
+        :func:`self_affine_surface` gives.
+    sphere : Scales
+        What is pressed on it.
+    strict : bool, optional
+        Raise where the theory applies with reservations as well.
+    **options
+        Those of :func:`read_scan`, and fields of
+        :class:`~crackfront.measured.options.PredictionOptions`, as ``range="0.3nm"``: pull_off,
+        range. A list gives every scan its own channel, crop, surface, unit, height_unit, size or
+        tip_radius.
+
+    Returns
+    -------
+    Prediction
+        e_el, k, w_appr, w_retr, pull-off forces and more, in SI units, with intervals; printed, it
+        is a page of those that matter most.
+
+    Raises
+    ------
+    ValueError
+        If a file cannot be used, or the theory does not apply.
+    TypeError
+        If an argument is of another type.
+    OSError
+        If a file cannot be opened.
+    """
+    is_stated = isinstance(scans, StatedSurface)
+    refuse_unknown("predict", options, PredictionOptions, *(() if is_stated else (ReadingOptions,)))
+    refuse_no_scales(sphere)
+    given = checked_options(PredictionOptions, options)
+    surface: Surface = scans if isinstance(scans, StatedSurface) else _measured(scans, options)
+    verdict, prediction = check_and_predict(surface, sphere, given)
+    if prediction is None:
+        failing = map(remark_text, verdict.of("fails", "undecided"))
+        raise ValueError(f"the theory does not apply: {' '.join(failing)}")
+    if strict and (found := verdict.of("undecided", "reservation")):
+        sentences = " ".join(map(remark_text, found))
+        raise ValueError(f"the theory applies with reservations: {sentences}")
+    return prediction
+
+
+def _measured(scans: File | Iterable[File], options: dict[str, Any]) -> MeasuredSurface:
+    """Surface of one scan or several."""
+    paths = [scans] if isinstance(scans, (str, PathLike)) else scans
+    refuse_other_type("scans", paths, Iterable, "the path of a file, or a list of such")
+    files = [_path(path, "scan") for path in paths]
+    surface_library()  # All of it, as the user's program may import it too.
+    return read_surface(files, reading_options(options, len(files)))

@@ -1,0 +1,300 @@
+"""Conditions of the theory for a sphere on a surface, each with what would meet it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator
+from typing import Literal
+
+from scipy.special import ndtr, ndtri
+
+from crackfront.analysis.validity import shipped_validity
+from crackfront.core import jkr
+from crackfront.core.units import Scales
+from crackfront.measured.density.bands import MOST_PERIODIC
+from crackfront.measured.prediction.remarks import LimitCheck, Remark, Verdict
+from crackfront.measured.prediction.surface_remarks import (
+    channel_remarks,
+    measure_next,
+    scan_remarks,
+    spectrum_remarks,
+)
+from crackfront.measured.spectrum.measured_surface import RmsMeasure
+from crackfront.measured.spectrum.stated import Surface
+from crackfront.surfaces.written_units import prefixed
+
+ASSUMED_RANGE = 0.5e-9
+"""Range of van der Waals attraction, where no other is named (Units: m)."""
+
+_CONTACT = (0.3, 0.7)
+"""Contact radius over that of the sphere, whose profile a paraboloid misses by 3% and by 24%."""
+
+_TABOR = (5.0, 1.0)
+"""Tabor parameter down to which adhesion is that of cracks, and to which there are cracks."""
+
+_SLOPES = (0.3, 1.0)
+"""Rms slope, whose square linear elasticity leaves out."""
+
+_MOST_PERIODIC = 0.5
+"""Part of e_el in one wave from which on the law of k is that of another surface."""
+
+_MOST_NEGATIVE = 0.25
+"""Part of the surface where w_loc is negative at the strongest disorder of the law."""
+
+_DEVIATE = float(ndtri(_MOST_NEGATIVE))
+
+LARGEST_ENERGY = (_DEVIATE + math.sqrt(_DEVIATE**2 + 1)) ** 2
+"""The e_el at which w_loc is negative on the largest part of the surface. (Units: w_int)"""
+
+_FAR = 1000.0
+"""Factor to a limit above which the text says "far inside" and no number."""
+
+_MOST_UNSURE = 2.0
+"""Ratio of the ends of the interval of e_el above which a reservation states it."""
+
+
+def zero_load_radius(scales: Scales) -> float:
+    """Radius of the smooth contact at zero load (Units: m)."""
+    return scales.lateral * jkr.radius_at_force(0.0)
+
+
+def theory_verdict(
+    surface: Surface,
+    scales: Scales,
+    attraction_range: float | None = None,
+    further: Iterable[Remark] = (),
+) -> Verdict:
+    """Whether the theory applies to a surface under a sphere, of scales in SI units.
+
+    The range of attraction (Units: m) is :data:`ASSUMED_RANGE` where none is given. Further
+    remarks, as those on the law of k, count as well.
+    """
+    assumed_range = ASSUMED_RANGE if attraction_range is None else attraction_range
+    return Verdict(
+        (
+            *channel_remarks(surface),
+            *condition_remarks(surface, scales, assumed_range),
+            *_energy_remarks(surface, scales),
+            *spectrum_remarks(surface),
+            *further,
+            *scan_remarks(surface.scans, zero_load_radius(scales)),
+            measure_next(surface),
+            *([_ASSUMPTION] if attraction_range is None else []),
+        )
+    )
+
+
+def condition_remarks(
+    surface: Surface, scales: Scales, attraction_range: float
+) -> Iterator[Remark]:
+    """A remark on every condition of the theory, met or not."""
+    yield from _energy_conditions(surface, scales)
+    yield from _contact_conditions(surface, scales)
+    yield from _range_conditions(surface, scales, attraction_range)
+    yield from _roughness_conditions(surface)
+
+
+def _condition(
+    name: str,
+    found: str,
+    reason: str,
+    comparison: LimitCheck,
+    remedies: tuple[str, ...],
+    *,
+    is_share: bool = False,
+) -> Remark:
+    """Remark on a condition.
+
+    It says what was found, what is wrong beyond the limit, and what would bring the value there.
+    A share is written in per cent.
+    """
+    severity = comparison.severity
+    if severity == "holds":
+        margin = comparison.margin
+        factor = f"inside by a factor of {float(f'{margin:.2g}'):g}"
+        sentence = f"{name}: {found}, {factor if margin < _FAR else 'far inside'}."
+        return Remark(name, severity, sentence, comparison=comparison)
+    beyond = "below" if comparison.rising else "above"
+    if severity == "reservation":
+        doubtful = _shown(comparison.doubtful, comparison.units, is_share=is_share)
+        sentence = f"{name}: {found}, in doubt {beyond} {doubtful}; {reason}."
+        return Remark(name, severity, sentence, comparison=comparison)
+    limit = _shown(comparison.limit, comparison.units, is_share=is_share)
+    sentence = f"{name} fails: {found}, {beyond} the limit of {limit}; {reason}."
+    if severity == "undecided":
+        sentence = (
+            f"{name} cannot be decided: {found}, and the limit of {limit} lies within the "
+            f"uncertainty; beyond it {reason}."
+        )
+    return Remark(name, severity, sentence, remedies, comparison)
+
+
+def _shown(number: float, units: str, *, is_share: bool) -> str:
+    """A value or limit of a condition as a text."""
+    if units != "1":
+        return prefixed(units, number)
+    return f"{number:.2%}" if is_share else f"{number:.3g}"
+
+
+def _energy_conditions(surface: Surface, scales: Scales) -> Iterator[Remark]:
+    """Conditions on e_el against w_int."""
+    w_int = scales.work_of_adhesion
+    energy = surface.conformity_energy(scales.contact_modulus)
+    e_el = energy.value
+    yield _condition(
+        "full conformity",
+        f"e_el of {prefixed('J/m2', e_el)} against w_int of {prefixed('J/m2', w_int)}",
+        "the contact does not conform to the roughness",
+        LimitCheck(e_el, w_int, w_int, "J/m2", best_case=e_el / energy.low),
+        _lower_energy(scales, e_el / w_int),
+    )
+    share, least = (_negative_share(one / w_int) for one in (e_el, energy.low))
+    yield _condition(
+        "attraction nearly everywhere",
+        f"w_loc negative on {share:.2%} of the surface",
+        "the linearisation of the roughness cannot be trusted where w_loc is negative, and "
+        "the comparison with boundary elements ends there",
+        LimitCheck(
+            share,
+            _negative_share(max(row.elastic_energy for row in shipped_validity())),
+            _MOST_NEGATIVE,
+            "1",
+            best_case=share / least if least > 0 else math.inf,
+        ),
+        _lower_energy(scales, e_el / w_int / LARGEST_ENERGY),
+        is_share=True,
+    )
+
+
+def _contact_conditions(surface: Surface, scales: Scales) -> Iterator[Remark]:
+    """Conditions on the contact at zero load, against the sphere and against the roughness."""
+    modulus, radius, contact = scales.contact_modulus, scales.radius, zero_load_radius(scales)
+    part = contact / radius / _CONTACT[1]
+    yield _condition(
+        "contact small against the sphere",
+        f"contact of {prefixed('m', contact)} on a sphere of {prefixed('m', radius)}",
+        "the paraboloid that approximates the sphere deviates from it",
+        LimitCheck(contact, _CONTACT[0] * radius, _CONTACT[1] * radius, "m"),
+        # a / R goes as the cube root of w_int / (E' R).
+        (_modulus("above", modulus, part**3), _radius_above(radius * part**3)),
+    )
+    half, waves = _dominant_waves(surface)
+    part = half.shortest / contact
+    yield _condition(
+        "roughness fine against the contact",
+        f"waves that matter to e_el of {waves} under a contact of {prefixed('m', contact)}",
+        "the contact has too few of them for an average",
+        LimitCheck(half.longest, contact, contact * half.longest / half.shortest, "m"),
+        (
+            _radius_above(radius * part**1.5),
+            _modulus("below", modulus, part**-3.0),
+            "a finer roughness",
+        ),
+    )
+
+
+def _range_conditions(
+    surface: Surface, scales: Scales, attraction_range: float
+) -> Iterator[Remark]:
+    """Conditions on the range of attraction (Units: m)."""
+    w_int, modulus, radius = scales.work_of_adhesion, scales.contact_modulus, scales.radius
+    half, waves = _dominant_waves(surface)
+    tabor = (radius * w_int**2 / (modulus**2 * attraction_range**3)) ** (1 / 3)
+    part = _TABOR[1] / tabor
+    yield _condition(
+        "attraction short against the sphere",
+        f"Tabor parameter of {tabor:.3g}",
+        "adhesion is not that of a crack at the edge of the contact",
+        LimitCheck(tabor, *_TABOR, "1", rising=True),
+        (_modulus("below", modulus, part**-1.5), _radius_above(radius * part**3)),
+    )
+    # Dugdale's zone of a stress w/z over a range z: (pi/8) (K z/w)^2 with K^2 = 2 E' w.
+    zone = math.pi / 4 * modulus * attraction_range**2 / w_int
+    yield _condition(
+        "attraction short against the roughness",
+        f"cohesive zone of {prefixed('m', zone)} under waves of {waves}",
+        "the edge does not see waves that are shorter than its cohesive zone",
+        LimitCheck(zone, half.shortest, half.longest, "m"),
+        (_modulus("below", modulus, half.longest / zone), "a coarser roughness"),
+    )
+
+
+def _dominant_waves(surface: Surface) -> tuple[RmsMeasure, str]:
+    """Measure of the half-derivative, and the waves that dominate it as a text."""
+    half = surface.measures[1]
+    return half, f"{prefixed('m', half.shortest)} to {prefixed('m', half.longest)}"
+
+
+def _roughness_conditions(surface: Surface) -> Iterator[Remark]:
+    """Conditions on the rms slope, and on waves that stand out, as grooves do."""
+    rms = surface.measures[2].rms
+    slope = rms.value
+    yield _condition(
+        "small slopes",
+        f"rms slope of {slope:.3g}",
+        "linear elasticity neglects the square of slopes",
+        LimitCheck(slope, *_SLOPES, "1", best_case=slope / rms.low),
+        (f"slopes lower by a factor of {slope / _SLOPES[1]:.3g}",),
+    )
+    if not surface.scans:
+        return
+    part, wavelength = max(one.band.periodic for one in surface.scans)
+    found = f"the wave of {prefixed('m', wavelength)} alone has {part:.0%} of e_el"
+    yield _condition(
+        "random roughness",
+        found if part else "no wave stands out",
+        "k is that of random surfaces, and grooves pin a front differently",
+        LimitCheck(part, MOST_PERIODIC, _MOST_PERIODIC, "1"),
+        ("another place or direction without the grooves",),
+        is_share=True,
+    )
+
+
+def _lower_energy(scales: Scales, excess: float) -> tuple[str, ...]:
+    """Changes each of which lowers e_el over w_int by a factor."""
+    return (
+        _modulus("below", scales.contact_modulus, 1 / excess),
+        f"a roughness lower by a factor of {math.sqrt(excess):.3g}",
+        f"w_int above {prefixed('J/m2', scales.work_of_adhesion * excess)}",
+    )
+
+
+def _modulus(side: Literal["above", "below"], known: float, factor: float) -> str:
+    """A contact modulus that is the known one times a factor, or beyond (Units: Pa)."""
+    return (
+        f"a contact modulus E / (1 - nu^2) {side} {prefixed('Pa', known * factor)}, not "
+        f"{prefixed('Pa', known)}"
+    )
+
+
+def _radius_above(radius: float) -> str:
+    """A radius of the sphere or a larger one (Units: m)."""
+    return f"a radius above {prefixed('m', radius)}"
+
+
+def _negative_share(energy: float) -> float:
+    """Part of the surface where a Gaussian w_loc is negative, by e_el over w_int."""
+    return float(ndtr((energy - 1) / (2 * math.sqrt(energy))))
+
+
+def _energy_remarks(surface: Surface, scales: Scales) -> Iterator[Remark]:
+    """Reservation on a wide interval of e_el."""
+    energy = surface.conformity_energy(scales.contact_modulus)
+    shown = prefixed("J/m2", energy.value, energy.low, energy.high)
+    if energy.value < scales.work_of_adhesion <= energy.high:
+        sentence = (
+            f"The interval of e_el reaches w_int, where the contact does not conform: {shown}."
+        )
+        yield Remark("e_el", "reservation", sentence)
+    elif energy.high > _MOST_UNSURE * energy.low:
+        sentence = f"e_el is not known to a factor of {_MOST_UNSURE:g}: {shown}."
+        yield Remark("e_el", "reservation", sentence)
+
+
+_ASSUMPTION = Remark(
+    "range of attraction",
+    "note",
+    f"The range of attraction is unknown and assumed to be {1e9 * ASSUMED_RANGE:g} nm, that of van "
+    "der Waals forces; --range gives another.",
+)
+"""What is said where no range of attraction is given."""

@@ -1,0 +1,110 @@
+"""Grids in netCDF files that state their units in `units`, unlike the library's convention."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from crackfront.measured.scan.points import Points, even_line
+from crackfront.surfaces.written_units import unit_value
+
+_BEGINS = (b"CDF\x01", b"CDF\x02", b"CDF\x05", b"\x89HDF\r\n\x1a\n")
+_SUFFIXES = {".nc", ".nc4", ".cdf", ".netcdf"}
+
+
+@dataclass(frozen=True, slots=True)
+class Grid:
+    """A variable on two coordinates, or one."""
+
+    name: str
+    points: Points
+    """Sides in metres; heights too, where their unit is a length."""
+    unit: str | None
+    """Unit of the heights as the file has it, where it is no length."""
+
+
+def netcdf_grids(path: Path) -> list[Grid]:
+    """Grids of a netCDF file with units; none where it follows the library's convention.
+
+    ValueError, of one sentence, where coordinates are not evenly spaced or have no unit of length.
+    """
+    with path.open("rb") as file:
+        begin = file.read(8)
+    if path.suffix.lower() not in _SUFFIXES or not begin.startswith(_BEGINS):
+        return []
+    import netCDF4
+
+    try:
+        dataset = netCDF4.Dataset(path)
+    except OSError:
+        return []  # Damaged; the library says how.
+    with dataset:
+        if _is_conventional(dataset):
+            return []
+        variables = dataset.variables
+        return [
+            _grid(path, dataset, name)
+            for name, variable in variables.items()
+            if name not in dataset.dimensions
+            and variable.dimensions
+            and len(variable.dimensions) < 3
+            and np.issubdtype(variable.dtype, np.number)
+            and all(one in variables for one in variable.dimensions)
+            and _unit(variable) is not None
+        ]
+
+
+def _is_conventional(dataset: Any) -> bool:
+    """Whether the library reads all that a file says: x, y and heights with one `unit`."""
+    variables = dataset.variables
+    if "heights" not in variables or dataset.data_model.startswith("NETCDF4"):
+        return False
+    known = [variables[one] for one in ("x", "y", "heights") if one in variables]
+    units = {getattr(one, "unit", None) for one in known}
+    return len(units) == 1 and not (
+        variables["heights"].dimensions == ("y", "x") or any(hasattr(one, "units") for one in known)
+    )
+
+
+def _unit(variable: Any) -> str | None:
+    """Unit that a variable states."""
+    found = getattr(variable, "units", None) or getattr(variable, "unit", None)
+    return str(found).strip() or None if found is not None else None
+
+
+def _grid(path: Path, dataset: Any, name: str) -> Grid:
+    """A variable on its coordinates."""
+    variable = dataset.variables[name]
+    values: np.ma.MaskedArray[Any, Any] = np.ma.masked_invalid(
+        np.ma.asarray(variable[...], dtype=float)
+    )
+    if "mask" in dataset.variables and dataset["mask"].shape == values.shape:
+        values = np.ma.masked_where(np.ma.filled(dataset["mask"][...], 1) != 0, values)
+    size = []
+    for axis, one in enumerate(variable.dimensions):
+        coordinate = dataset.variables[one]
+        unit = _unit(coordinate)
+        try:
+            factor = unit_value(unit or "", "m")
+        except ValueError as error:
+            stated = f"states {one} in {unit}" if unit else f"states no unit of {one}"
+            raise ValueError(
+                f"{path} {stated}, and {name} in {_unit(variable)}; write both in units of length"
+            ) from error
+        places = np.asarray(np.ma.filled(coordinate[...], np.nan), dtype=float)
+        if hasattr(coordinate, "length"):
+            size.append(factor * float(coordinate.length))
+        else:
+            size.append(factor * even_line(path, places, places).size[0])
+        if places[0] > places[-1]:
+            values = np.flip(values, axis)
+    if [one[:1].lower() for one in variable.dimensions] == ["y", "x"]:
+        values, size = values.T, size[::-1]
+    unit = _unit(variable)
+    try:
+        return Grid(name, Points(values * unit_value(unit or "", "m"), tuple(size)), None)
+    except ValueError:
+        return Grid(name, Points(values, tuple(size)), unit)

@@ -1,0 +1,280 @@
+"""Points in two or three columns of a text: lines, and maps on a regular grid."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crackfront.core.arrays import Array
+from crackfront.measured.scan.text import NumberText
+
+_UNEVEN = 0.05
+"""Distance of a point from its place, in spacings, that positions may have beyond their digits."""
+
+_ROUNDING = 0.6
+"""Distance of a number from the one that was printed, in units of the last digit."""
+
+_MOST_ROUNDING = 0.25
+"""Rounding of positions, in spacings, up to which places without a point are found."""
+
+_SAME_PLACE = 0.1
+"""Distance of neighbours on the grid, in the largest one, that is scatter at one place."""
+
+_FEWEST_POSITIONS = 9
+"""Numbers of a column or row from which equal steps are no chance."""
+
+_FEWEST_ALONG = 0.5
+"""Least part of the places along one direction at which there is any point."""
+
+_FEWEST_FILLED = 0.05
+"""Least part of the places of a grid that have a point; with fewer it is no grid."""
+
+
+_NAMES = {
+    "x": r"(x|position|distance)",
+    "y": r"y",
+    "z": r"(z|heights?|elevation|topography)",
+}
+"""What heads call the columns of points, with or without the words below."""
+
+_WORDS = r"([ _-]?(position|coordinate|axis|height)s?)?"
+
+
+@dataclass(frozen=True, slots=True)
+class Points:
+    """Heights of a map or a line, on the grid of its positions, in the units of the file."""
+
+    heights: np.ndarray[Any, Any]
+    """Masked where the file has no point."""
+    size: tuple[float, ...]
+
+
+def point_columns(path: Path, names: Sequence[str]) -> list[int]:
+    """Places of the columns that heads name x, y and z, in this order; none if not both are named.
+
+    ValueError where the order of the columns contradicts the only name.
+    """
+    found = {
+        key: [
+            place
+            for place, name in enumerate(names)
+            if re.fullmatch(pattern + _WORDS, name.strip(), re.IGNORECASE)
+        ]
+        for key, pattern in _NAMES.items()
+    }
+    places = [place for key in "xy" for place in found[key]]
+    if max(map(len, found.values())) == 1 and places and found["z"]:
+        return [*places, *found["z"]]
+    if found["z"] and len(names) - 1 not in found["z"]:
+        raise ValueError(
+            f"{path}: its columns are {', '.join(map(repr, names))}; name those of the points x, y "
+            "and z, once each, or write the heights in the last one"
+        )
+    return []
+
+
+def read_points(path: Path, text: NumberText, kind: str | None) -> Points:
+    """Points of a text, whose head is of a kind (Dektak, HFM or neither).
+
+    ValueError, of one sentence, where the points lie on no line and no regular grid.
+    """
+    _refuse_parts(path, text)
+    rows = [text.lines[row].split() for row in text.rows]
+    columns = list(zip(*(cells for cells in rows if len(cells) == text.n_column), strict=True))
+    if kind == "dektak":
+        columns = columns[:2]
+    elif kind == "hfm" and len(columns) == 3:
+        x, z, valid = columns
+        is_known = np.array(valid, dtype=float) != 0
+        columns = [x, tuple(np.where(is_known, z, "nan").tolist())]
+    elif len(columns) == 4:
+        del columns[0]
+    if len(columns) == 3:
+        columns = _line_columns(columns) or columns
+    *places, last = columns
+    heights = np.ma.masked_invalid(np.array(last, dtype=float))
+    if not heights.count():
+        raise ValueError(f"{path} holds no heights: the last column has no number; export it again")
+    return Points(*_on_grid(path, places, heights))
+
+
+def even_line(path: Path, positions: Array, heights: Array) -> Points:
+    """Line of points that another reader found; refused if they are not equally spaced."""
+    cells = tuple(map(repr, np.asarray(positions, dtype=float).tolist()))
+    return Points(*_on_grid(path, [cells], np.ma.masked_invalid(heights)))
+
+
+def refuse_positions(path: Path, text: NumberText) -> None:
+    """Raise where the first column, or the first row, of a matrix has positions for heights."""
+    rows = [text.lines[row].split() for row in text.rows]
+    if len(rows) < _FEWEST_POSITIONS or len({len(cells) for cells in rows}) > 1:
+        return
+    columns = list(zip(*rows, strict=True))
+    for name, cells in (("column", columns), ("row", rows)):
+        if len(cells[0]) < _FEWEST_POSITIONS:
+            continue
+        if _are_positions(cells[0][1:]) and not _are_positions(cells[1][1:]):
+            raise ValueError(
+                f"{path}: the first {name} is equally spaced, {cells[0][1]} to {cells[0][-1]}, as "
+                "positions are; export the heights alone, and name the sides with --size"
+            )
+
+
+def _are_positions(cells: Sequence[str]) -> bool:
+    """Whether numbers ascend or descend by equal steps."""
+    numbers = np.array(cells, dtype=float)
+    steps = np.diff(numbers)
+    if not np.isfinite(numbers).all() or not (np.all(steps > 0) or np.all(steps < 0)):
+        return False
+    try:
+        index, _ = _axis(Path(), "", cells)
+    except ValueError:
+        return False
+    return len(set(index.tolist())) == len(cells) == np.ptp(index) + 1
+
+
+def are_points(text: NumberText) -> bool:
+    """Whether rows are points, of two or three numbers that a fourth may count."""
+    if text.n_column != 4:
+        return text.n_column in (2, 3)
+    return _is_index([text.lines[row].split()[0] for row in text.rows])
+
+
+def _refuse_parts(path: Path, text: NumberText) -> None:
+    """Raise where text stands between rows of points."""
+    first, last = len(text.head), text.rows[-1]
+    known = set(text.rows)
+    for number in range(first, last):
+        if number not in known and text.lines[number].strip().lstrip("#"):
+            raise ValueError(
+                f"{path}, line {number + 1}: {text.lines[number].strip()[:40]!r} stands between "
+                "points; export one scan into one file"
+            )
+
+
+def _line_columns(columns: Sequence[tuple[str, ...]]) -> list[tuple[str, ...]] | None:
+    """Positions and heights of a line in three columns; None where they are a map."""
+    first, second, heights = columns
+    if _is_index(first) and len(set(second)) > 1:
+        return [second, heights]
+    x, y = (np.array(column, dtype=float) for column in (first, second))
+    if not np.ptp(y) > 0 or not np.ptp(x) > 0:
+        return [first if np.ptp(x) > 0 else second, heights]
+    ends = x[[0, -1]], y[[0, -1]]
+    off = (x - x[0]) * np.ptp(ends[1]) - np.abs(y - y[0]) * np.ptp(ends[0])
+    if np.any(np.abs(off) > 1e-3 * np.ptp(x) * np.ptp(y) / len(x)):
+        return None
+    along = np.sign(x - x[0]) * np.hypot(x - x[0], y - y[0])
+    return [tuple(map(repr, along.tolist())), heights]
+
+
+def _is_index(cells: Sequence[str]) -> bool:
+    """Whether cells are whole numbers, each one more than that above."""
+    numbers = np.array(cells, dtype=float)
+    whole = np.all(numbers == np.rint(numbers))
+    return bool(whole and len(numbers) > 2 and np.all(np.diff(numbers) == 1))
+
+
+def _on_grid(
+    path: Path, places: Sequence[Sequence[str]], heights: np.ma.MaskedArray[Any, Any]
+) -> tuple[np.ma.MaskedArray[Any, Any], tuple[float, ...]]:
+    """Heights on the grid of their positions, masked where it has no point, and its sides."""
+    axes = [_axis(path, name, cells) for name, cells in zip("xy", places, strict=False)]
+    counts = tuple(int(index.max()) + 1 for index, _ in axes)
+    if len(heights) < _FEWEST_FILLED * math.prod(counts):
+        raise ValueError(
+            f"{path} has {len(heights)} points for {' x '.join(map(str, counts))} places: they lie "
+            "on no regular grid; interpolate them on one"
+        )
+    flat = np.ravel_multi_index([index for index, _ in axes], counts)
+    if len(np.unique(flat)) < len(flat):
+        order = np.argsort(flat, kind="stable")
+        twice = order[1:][np.diff(flat[order]) == 0][0]
+        where = ", ".join(cells[twice] for cells in places)
+        raise ValueError(
+            f"{path} names the position {where} twice, or with too few digits; export each point "
+            "once, with more digits"
+        )
+    grid: np.ma.MaskedArray[Any, Any] = np.ma.array(np.zeros(math.prod(counts)), mask=True)
+    grid[flat] = heights
+    if not np.ma.getmaskarray(grid).any():
+        grid = np.ma.array(np.ma.getdata(grid))
+    size = tuple(step * count for (_, step), count in zip(axes, counts, strict=True))
+    return grid.reshape(counts), size
+
+
+def _axis(path: Path, name: str, cells: Sequence[str]) -> tuple[NDArray[np.int64], float]:
+    """Places of positions on equal spacings, and the spacing; refused where there is none.
+
+    Positions may depart from their places by their last digit, and by a small part of the spacing.
+    """
+    texts, inverse = np.unique(np.array(cells), return_inverse=True)
+    known, rounding = np.array(texts, dtype=float), _last_digits(texts.tolist())
+    if not np.isfinite(known).all():
+        raise ValueError(f"{path}: a position along {name} is no number; export the points again")
+    order = np.argsort(known, kind="stable")
+    positions, rounding = known[order], rounding[order]
+    gaps = np.diff(positions)
+    cluster = np.concatenate([[0], np.cumsum(gaps > _SAME_PLACE * gaps.max(initial=0.0))])
+    centres = np.bincount(cluster, positions) / np.bincount(cluster)
+    if len(centres) < 2:
+        return np.zeros(len(cells), dtype=np.int64), 0.0
+    counted = np.arange(len(centres))
+    slope, off = _line_through(counted, centres, positions, cluster)
+    allowed = _ROUNDING * rounding + _UNEVEN * slope
+    index = counted
+    if np.any(off > allowed):
+        index = _places_with_gaps(centres)
+        step, off_places = _line_through(index, centres, positions, cluster)
+        if (
+            index[-1] + 1 > len(index) / _FEWEST_ALONG
+            or rounding.max() > _MOST_ROUNDING * step
+            or np.any(off_places > _ROUNDING * rounding + _UNEVEN * step)
+        ):
+            worst = int(np.argmax(off - allowed))
+            raise ValueError(
+                f"{path}: the points are not equally spaced: {texts[order][worst]} along {name} is "
+                f"{off[worst] / slope:.2g} spacings from its place; resample them on a uniform "
+                "grid, or export more digits"
+            )
+        slope = step
+    places = np.empty(len(texts), dtype=np.int64)
+    places[order] = index[cluster]
+    return places[inverse], slope
+
+
+def _line_through(
+    index: NDArray[np.int64], centres: Array, positions: Array, cluster: NDArray[np.int64]
+) -> tuple[float, Array]:
+    """Spacing of places that have been numbered, and distances of the positions from them."""
+    slope, start = np.polyfit(index, centres, 1)
+    return float(slope), np.abs(positions - start - slope * index[cluster])
+
+
+def _places_with_gaps(centres: Array) -> NDArray[np.int64]:
+    """Numbers of places on a grid of which some have no point."""
+    gaps = np.diff(centres)
+    step = float(np.quantile(gaps, 0.25))
+    for _ in range(3):
+        index = np.concatenate([[0], np.cumsum(np.maximum(np.rint(gaps / step), 1))])
+        step = float(np.polyfit(index, centres, 1)[0])
+    return index.astype(np.int64)
+
+
+def _last_digits(cells: Sequence[str]) -> Array:
+    """Unit of the last digit of numbers as printed with so many decimals, or digits in all."""
+    mantissas = [cell.lower().partition("e")[0].lstrip("+-") for cell in cells]
+    is_fixed = not any("e" in cell.lower() for cell in cells)
+    decimals = max(len(text.partition(".")[2]) for text in mantissas)
+    digits = max(len(text.replace(".", "").lstrip("0")) for text in mantissas)
+    values = np.abs(np.array(cells, dtype=float))
+    scale = np.floor(np.log10(np.where(values > 0, values, np.inf)))
+    by_digits = np.where(values > 0, 10.0 ** np.where(values > 0, scale + 1 - digits, 0), 0.0)
+    return np.maximum(by_digits, 10.0**-decimals if is_fixed else 0.0)

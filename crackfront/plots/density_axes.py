@@ -1,0 +1,141 @@
+"""Spectral densities of surfaces, with the scales that dominate their rms measures."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from crackfront.core.arrays import Array
+from crackfront.core.variables import LATERAL, VERTICAL
+from crackfront.plots.axis_units import REDUCED, AxisUnits
+from crackfront.plots.style import BLACK, BLUE
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+WAVEVECTOR_LABEL = r"wavevector $q$ (m$^{-1}$)"
+PROFILE_LABEL = r"$C^\mathrm{1D}$ (m$^3$)"
+ISOTROPIC_LABEL = r"$C^\mathrm{iso}$ (m$^4$)"
+_REDUCED_LABEL = r"$C^\mathrm{iso}$ / $(3\pi w_\mathrm{int}R/4E')^2$"
+
+_NAME = 0.4
+"""Part of the axis that the name of a bar covers."""
+
+
+def draw_spectrum(
+    axes: Axes,
+    wavevector: Array,
+    density: Array,
+    rms: Array,
+    shortest: Array,
+    longest: Array,
+    ideal: Array | None = None,
+    units: AxisUnits = REDUCED,
+) -> None:
+    """Isotropic density of a surface, with bars of the scales that dominate its rms measures.
+
+    Reduced are the n_wave wavevectors and densities, the three rms measures (height,
+    half-derivative, slope) and the wavelengths between which 80% of their squares lie. `ideal` is
+    the density of the spectrum that the surface was made from, zero where it has none.
+    """
+    axes.set(xscale="log", yscale="log")
+    lateral, vertical = units.scale(LATERAL), units.scale(VERTICAL)
+    wave, power = wavevector / lateral, (vertical * lateral) ** 2
+    axes.plot(wave, power * density, color=BLUE, label="surface")
+    axes.set_xlim(0.7 * wave[0], 1.4 * wave[-1])
+    if units.is_si:
+        measured = vertical * rms / lateral ** np.array([0.0, 0.5, 1.0])
+        names, labels = _measured_names(measured**2), (WAVEVECTOR_LABEL, ISOTROPIC_LABEL)
+    else:
+        orders = zip(("0", "1/2", "1"), rms, strict=True)
+        names = [rf"$h_\mathrm{{rms}}^{{({order})}} = {value:.3g}$" for order, value in orders]
+        labels = rf"wavevector $q$ $\times$ ${LATERAL.tex}$", _REDUCED_LABEL
+    _add_bars(axes, names, *(2 * np.pi / (lateral * ends) for ends in (longest, shortest)))
+    axes.set(xlabel=labels[0], ylabel=labels[1])
+    if ideal is not None:
+        kept = ideal > 0
+        curve = wave[kept], power * ideal[kept]
+        axes.plot(*curve, color=BLACK, dashes=(4, 2), label="spectrum", zorder=3)
+    axes.set_ylim(bottom=0.1 * power * float(density.min()))
+    axes.legend(loc="lower left")
+
+
+def draw_dominant_scales(axes: Axes, mean_square: Array, shortest: Array, longest: Array) -> None:
+    """Bars of the scales that carry 80% of the mean squares, above what is drawn.
+
+    The axes are of an isotropic density, and their wavevectors have their limits. Mean squares are
+    those of heights, half-derivatives and slopes (units: m^(2 - 2 order)), ends of scales in m.
+    """
+    _add_bars(axes, _measured_names(mean_square), 2 * np.pi / longest, 2 * np.pi / shortest)
+
+
+def _measured_names(mean_square: Array) -> list[str]:
+    """Names of the bars over wavevectors in 1/m; arguments as of :func:`draw_dominant_scales`."""
+    height, half, slope = mean_square**0.5
+    power = math.floor(math.log10(half))
+    return [
+        rf"$h_\mathrm{{rms}}^{{(0)}} = {_two_digits(1e9 * height)}$ nm",
+        rf"$h_\mathrm{{rms}}^{{(1/2)}} = {half / 10.0**power:.1f}"
+        rf"\times10^{{{power}}}$ m$^{{1/2}}$",
+        rf"$h_\mathrm{{rms}}^{{(1)}} = {_two_digits(slope)}$",
+    ]
+
+
+def _two_digits(value: float) -> str:
+    """A number with at least two digits, without a power of ten where it is large."""
+    return f"{value:.0f}" if value >= 10 else f"{value:.2g}"
+
+
+def _add_bars(axes: Axes, names: Sequence[str], lowest: Array, highest: Array) -> None:
+    """Bars between wavevectors with their names beside or on them, above what is drawn."""
+    left, right = np.log(axes.get_xlim())
+    top = max(float(np.max(line.get_ydata())) for line in axes.get_lines())
+    name_room = _NAME * (right - left)
+    bars = np.clip(np.log([lowest, highest]).T, left, right)
+    are_beside = all(max(low - left, right - high) > name_room for low, high in bars)
+    # Heights are in decades; densities of more than ten make each decade shorter.
+    stretch = max(1.0, 0.1 * math.log10(top / axes.get_ylim()[0]))
+    for level, (name, (low, high)) in enumerate(zip(names, bars, strict=True)):
+        height = top * 10.0 ** (stretch * (5.4 - 1.9 * level))
+        ends = lowest[level], highest[level]
+        axes.plot(ends, [height, height], color=BLACK, linewidth=2.5, solid_capstyle="butt")
+        on_right = bool(right - high > low - left)
+        middle = np.clip((low + high) / 2, left + name_room / 2, right - name_room / 2)
+        axes.annotate(
+            name,
+            (ends[on_right] if are_beside else math.exp(middle), height),
+            xytext=((4 if on_right else -4) if are_beside else 0, 0 if are_beside else 2),
+            textcoords="offset points",
+            ha=("left" if on_right else "right") if are_beside else "center",
+            va="center" if are_beside else "bottom",
+            bbox={"facecolor": "white", "linewidth": 0, "pad": 1},
+        )
+    axes.set_ylim(top=top * 10.0 ** (stretch * (6.6 if are_beside else 7.4)))
+
+
+def set_density_scales(axes: Axes, wavevector: Array) -> None:
+    """Logarithmic axes, over these wavevectors."""
+    from matplotlib.ticker import NullFormatter
+
+    axes.set(xscale="log", yscale="log", xlim=(wavevector[0], wavevector[-1]))
+    axes.xaxis.set_minor_formatter(NullFormatter())
+
+
+def add_wavelengths(axes: Axes) -> None:
+    """Wavelengths on the upper edge."""
+    from matplotlib.ticker import LogLocator, NullFormatter
+
+    axes.tick_params(which="both", top=False)
+    above = axes.secondary_xaxis("top", functions=(_micrometres, _micrometres))
+    above.xaxis.set_major_locator(LogLocator())
+    above.xaxis.set_minor_formatter(NullFormatter())
+    above.set_xlabel(r"wavelength $2\pi/q$ (µm)")
+
+
+def _micrometres(wavevector: ArrayLike) -> Array:
+    """Wavelength in micrometres of a wavevector in 1/m, and back."""
+    return np.asarray(2e6 * np.pi / np.maximum(wavevector, 1e-100))

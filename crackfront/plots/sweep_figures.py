@@ -1,0 +1,332 @@
+"""Figures of a sweep: hysteresis, and how k depends on disorder and on size, beside the law of k.
+
+Error bars are 95% intervals of the mean over realisations. Filled symbols lie in the range of the
+fit, open ones outside it; an arrow at the lower edge stands for a mean below the axes. Straight
+fronts of one spectrum share a colour, their springs differ by the marker.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+from matplotlib import colormaps
+from matplotlib.axes import Axes
+from matplotlib.colors import to_hex
+from matplotlib.figure import Figure
+from matplotlib.ticker import LogLocator, NullFormatter
+from numpy.typing import NDArray
+
+from crackfront.analysis.finding import PAPER_FACTOR, PERTURBATION_FACTOR
+from crackfront.analysis.fit_text import pooled_limits
+from crackfront.analysis.law import (
+    WEAKEST,
+    law_value,
+    pinning_factors,
+    shipped_law,
+    spectral_breadth,
+)
+from crackfront.analysis.result import SweepFit
+from crackfront.analysis.sweep_law import LARGE
+from crackfront.core.arrays import Array
+from crackfront.plots.parts import (
+    PointStyle,
+    draw_below,
+    draw_estimates,
+    draw_fit,
+    draw_law,
+    draw_theory,
+    label_decimals,
+    legend_entries,
+    spectrum_colour,
+    spectrum_families,
+    spectrum_label,
+    spectrum_marker,
+    spectrum_styles,
+    spring_label,
+    springs_explained,
+)
+from crackfront.plots.style import BLACK, PAGE, blank_figure, explain, house_style
+
+SHIFTS_EXPLAINED = "points of one amplitude are set off sideways by up to 6%"
+"""What figures of k against disorder say of their points below themselves."""
+
+
+def points_explained(fit: SweepFit) -> list[str]:
+    """What bars and open symbols are, where the points of a sweep have them."""
+    hysteresis, found = fit.cells.hysteresis, []
+    if np.any(np.isfinite(hysteresis.high)):
+        found.append("bars: 95% intervals over realisations")
+    if np.any(np.isfinite(hysteresis.value[:, ~fit.in_range])):
+        found.append("open symbols: amplitudes outside the range of the fit")
+    return found
+
+
+def arrows_explained(fit: SweepFit) -> list[str]:
+    """What the arrows of :func:`draw_hysteresis` are, where it draws any."""
+    return ["arrows: means below the lower edge"] if np.any(_below(fit)) else []
+
+
+def pooled_explained(fit: SweepFit) -> list[str]:
+    """What the interval of the pooled k leaves out."""
+    limits = pooled_limits(fit, fit.spectra.factor)
+    return [f"pooled $k$: {', '.join(limits)}"] if limits else []
+
+
+def shapes_explained(fit: SweepFit) -> list[str]:
+    """What the lines of :func:`draw_factor_by_length` are, where spectra share a shape."""
+    shared = np.unique(fit.table.shape).size < fit.table.shape.size
+    return ["grey line: spectra of one shape"] if shared else []
+
+
+def hysteresis_figure(fit: SweepFit) -> Figure:
+    """Hysteresis against the variance of w_loc, beside the spectra (SI Fig. S-5)."""
+    with house_style():
+        figure = blank_figure(PAGE, 0.5 * PAGE)
+        left, right = figure.subplots(1, 2, width_ratios=(1.5, 1))
+        draw_hysteresis(left, fit)
+        draw_spectra(right, fit)
+        figure.legend(*legend_entries(left), loc="outside upper center", ncols=4)
+        for axes, letter in ((left, "a"), (right, "b")):
+            axes.set_title(letter, loc="left", fontweight="bold")
+        texts = [*points_explained(fit), *arrows_explained(fit)]
+        if fit.table.on_springs:
+            texts.append(springs_explained(fit))
+        explain(figure, "; ".join(texts))
+        return figure
+
+
+def factor_figure(fit: SweepFit) -> Figure:
+    """Dependence of k on disorder and, averaged over the range, on correlation length.
+
+    Of straight fronts it is that on size at every amplitude, and that of the infinite contact on
+    disorder.
+    """
+    with house_style():
+        figure = blank_figure(PAGE, 0.45 * PAGE)
+        left, right = figure.subplots(1, 2, sharey=True, width_ratios=(1.35, 1))
+        texts = points_explained(fit)
+        if fit.table.on_springs:
+            _draw_line_factors(left, right, fit)
+            texts += ["colours: amplitudes (a), spectra (b, with the symbols of a)"]
+        else:
+            draw_factor_by_disorder(left, fit)
+            draw_factor_by_length(right, fit)
+            set_factor_limits(left, fit)
+            figure.legend(*legend_entries(left), loc="outside upper center", ncols=3)
+            texts += [f"{SHIFTS_EXPLAINED} (a)", *pooled_explained(fit)]
+            texts += [f"{text} (b)" for text in shapes_explained(fit)]
+        for axes, letter in ((left, "a"), (right, "b")):
+            axes.set_title(letter, loc="left", fontweight="bold")
+        explain(figure, "; ".join(texts))
+        return figure
+
+
+def _draw_line_factors(left: Axes, right: Axes, fit: SweepFit) -> None:
+    """Draw k of straight fronts against size, and its limit against disorder.
+
+    Markers, which both panels share, are named in the first one alone.
+    """
+    draw_factor_by_size(left, fit)
+    draw_infinite_law(right)
+    table, cells = fit.table, fit.cells
+    families = spectrum_families(table)
+    for index, family in enumerate(families):
+        style = PointStyle(spectrum_colour(family), spectrum_marker(family), "")
+        s = np.zeros_like(cells.w_rms[index]) if fit.uncorrelated else cells.w_rms[index]
+        shown = np.nan_to_num(cells.size[index]) > LARGE
+        row = cells.infinite_factor.at(index).only(shown)
+        draw_estimates(right, style, s, row, fit.in_range)
+    right.legend(*legend_entries(right), loc="lower left")
+    right.set_ylabel(r"$k$, infinite contact (points: $g>1$)")
+    left.set_ylim(0.0, 1.1 * PERTURBATION_FACTOR)
+
+
+def draw_factor_by_size(axes: Axes, fit: SweepFit) -> None:
+    """Draw mean k of straight fronts against g, a colour an amplitude, a marker a spectrum."""
+    table, size, law = fit.table, fit.cells.size, shipped_law()
+    families = spectrum_families(table)
+    spectra = (table.shape_of(index) for index in range(table.spectrum.size))
+    breadth = float(np.mean([spectral_breadth(fit.kind, spectrum) for spectrum in spectra]))
+    ends = _ends(size, 1.5)
+    abscissa = np.geomspace(max(law.size[0], ends[0]), ends[1], 100)
+    shades = colormaps["viridis"](np.linspace(0, 0.88, table.amplitude.size))
+
+    def draw_curve(s: float, colour: str) -> None:
+        curve, label = law_value(law.coefficients, s, abscissa, breadth), rf"law, $s={s:.3g}$"
+        axes.plot(abscissa, curve, color=colour, linewidth=0.8, label=label)
+
+    for amplitude, energy in enumerate(table.amplitude):
+        colour = to_hex(shades[amplitude])
+        for index, family in enumerate(families):
+            style = PointStyle(colour, spectrum_marker(family), "")
+            cell = fit.cells.factor.at(([index], amplitude))
+            here = fit.in_range[[amplitude]]
+            draw_estimates(axes, style, size[[index], amplitude], cell, here)
+        if fit.uncorrelated:
+            label = rf"$e_\mathrm{{el}}={energy:.3g}\,w_\mathrm{{int}}$"
+            axes.plot([], [], color=colour, linewidth=3.0, label=label)
+        else:
+            draw_curve(2 * math.sqrt(energy), colour)
+    if fit.uncorrelated:
+        # The law of weak disorder is the same at all amplitudes.
+        draw_curve(0.0, BLACK)
+    for family in dict.fromkeys(families):
+        label = spectrum_label(table, families.index(family))
+        axes.plot([], [], spectrum_marker(family), color="0.4", label=label)
+    axes.set(xscale="log", xlim=ends, ylabel=_FACTOR_LABEL)
+    label_decimals(axes.xaxis)
+    axes.set_xlabel(r"size $g=L_\kappa/\ell$, springs over Larkin length")
+    axes.legend(loc="upper left", ncols=2)
+
+
+def set_factor_limits(axes: Axes, fit: SweepFit) -> None:
+    """Limits of an ordinate that shows all k of a sweep and those of the theories."""
+    factor = fit.cells.factor.value
+    highest = max(PERTURBATION_FACTOR, float(np.nanmax(factor)))
+    axes.set_ylim(min(0.0, float(np.nanmin(factor))) - 0.05 * highest, 1.1 * highest)
+
+
+_DECIMALS = 100.0
+"""Ratio of the ends of a logarithmic axis up to which its labels are decimal numbers."""
+
+_VARIANCE = r"(w_\mathrm{rms}/w_\mathrm{int})^2"
+_FACTOR_LABEL = r"$k = (w_\mathrm{retr}-w_\mathrm{appr})\,/\,2e_\mathrm{el}$"
+
+
+def _ends(values: Array, margin: float) -> Array:
+    """Ends of a logarithmic axis around some values."""
+    return np.array([np.nanmin(values) / margin, np.nanmax(values) * margin])
+
+
+def draw_hysteresis(axes: Axes, fit: SweepFit) -> None:
+    """Draw mean hysteresis against (w_rms / w_int)^2 on log-log axes, the law and the theory."""
+    variance, hysteresis, below = _variance(fit), fit.cells.hysteresis, _below(fit)
+    ends = _ends(variance, 1.8)
+    # Without an interval, that of one realisation, a point reaches down to its mean.
+    lows = np.fmax(np.fmin(hysteresis.low, hysteresis.value), _floor(variance))
+    least = float(np.min(lows, where=~below, initial=np.inf))
+    lowest = min(least, PAPER_FACTOR / 2 * float(ends[0])) / 1.6
+    for index, style in enumerate(spectrum_styles(fit.table)):
+        draw_below(axes, index, style.colour, variance[index, below[index]])
+        shown = hysteresis.at(index).only(~below[index])
+        draw_estimates(axes, style, variance[index], shown, fit.in_range)
+    draw_law(axes, fit, lambda energy, factor: (4 * energy, 2 * factor * energy))
+    draw_theory(axes, ends, ends / 2)
+    axes.set(xscale="log", yscale="log", xlim=ends)
+    highest = PERTURBATION_FACTOR / 2 * float(ends[1])
+    axes.set_ylim(lowest, highest)
+    for axis, low, high in ((axes.xaxis, *ends), (axes.yaxis, lowest, highest)):
+        if high < _DECIMALS * low:
+            label_decimals(axis)
+    disorder = r"4e_\mathrm{el}/w_\mathrm{int}" if fit.uncorrelated else _VARIANCE
+    axes.set_xlabel(f"disorder ${disorder}$")
+    axes.set_ylabel(r"hysteresis $(w_\mathrm{retr}-w_\mathrm{appr})/w_\mathrm{int}$")
+    for index, family in enumerate(spectrum_families(fit.table)):
+        if family == 0 and np.all(np.isfinite(fit.table.spring[index])):
+            marker = spectrum_styles(fit.table)[index].marker
+            axes.plot([], [], marker, color="0.4", label=spring_label(fit, index))
+
+
+def _variance(fit: SweepFit) -> Array:
+    """Variance of w_loc at every spectrum and amplitude (Units: w_int^2)."""
+    # The rms of uncorrelated sites is that of their pixels; the law and the theory have e_el.
+    return 4 * fit.cells.e_el if fit.uncorrelated else fit.cells.w_rms**2
+
+
+def _floor(variance: Array) -> float:
+    """Hysteresis down to which points are drawn (Units: w_int)."""
+    # Below its onset hysteresis falls to nothing; such points must not stretch the axes.
+    return 0.05 * PAPER_FACTOR / 2 * float(_ends(variance, 1.8)[0])
+
+
+def _below(fit: SweepFit) -> NDArray[np.bool_]:
+    """Spectra and amplitudes whose mean hysteresis is too small for a point."""
+    return np.nan_to_num(fit.cells.hysteresis.value, nan=np.inf) <= _floor(_variance(fit))
+
+
+def draw_spectra(axes: Axes, fit: SweepFit) -> None:
+    """Draw the spectra (of heights or of w_loc), all scaled to one variance of w_loc."""
+    table, kind, densities = fit.table, fit.kind, []
+    lowest, families = np.pi / np.max(table.roll_off), spectrum_families(table)
+    for index in (families.index(family) for family in dict.fromkeys(families)):
+        spectrum = table.shape_of(index)
+        scale = spectrum.elastic_energy if kind == "roughness" else spectrum.mean_square(0)
+        cutoff = 2 * np.pi / spectrum.short_cutoff
+        wavevector = np.geomspace(lowest, cutoff, 200)
+        density = spectrum.density(wavevector) / scale
+        densities.append(density)
+        points = np.append(wavevector, cutoff), np.append(density, np.finfo(float).tiny)
+        axes.plot(*points, color=spectrum_colour(families[index]), linewidth=0.8)
+    axes.set(xscale="log", yscale="log")
+    axes.set_xlim(lowest, 2.5 * 2 * np.pi / np.min(table.short_cutoff))
+    axes.set_ylim(np.min(densities) / 10, np.max(densities) * 5)
+    axes.set_xlabel("wavevector $q$ (reduced)")
+    unit = r"w_\mathrm{int}/e_\mathrm{el}" if kind == "roughness" else r"/ w_\mathrm{rms}^2"
+    axes.set_ylabel(rf"$C(q)\,{unit}$")
+    for axis in (axes.xaxis, axes.yaxis):
+        axis.set_major_locator(LogLocator(numticks=4))
+        axis.set_minor_formatter(NullFormatter())
+
+
+def draw_factor_by_disorder(axes: Axes, fit: SweepFit) -> None:
+    """Draw mean k against measured e_el, the law, the pooled mean over the range and the theory.
+
+    Points of different spectra are set off sideways by up to 6% so that their bars do not hide
+    each other.
+    """
+    energy, n_spectrum = fit.cells.e_el, fit.table.spectrum.size
+    aside = 1 + 0.12 * (np.arange(n_spectrum) - (n_spectrum - 1) / 2) / max(n_spectrum - 1, 1)
+    for index, style in enumerate(spectrum_styles(fit.table)):
+        abscissa = energy[index] * aside[index]
+        draw_estimates(axes, style, abscissa, fit.cells.factor.at(index), fit.in_range)
+    draw_law(axes, fit, lambda energy, factor: (energy, factor))
+    ends = _ends(energy, 1.4)
+    draw_fit(axes, fit)
+    draw_theory(axes, ends)
+    axes.set(xscale="log", xlim=ends, ylabel=_FACTOR_LABEL)
+    label_decimals(axes.xaxis)
+    axes.set_xlabel(r"energy of full conformity $e_\mathrm{el}/w_\mathrm{int}$")
+
+
+def draw_factor_by_length(axes: Axes, fit: SweepFit) -> None:
+    """Draw k, averaged over the range, against the correlation length.
+
+    Spectra of one shape are joined by a line.
+    """
+    length, factor, shapes = fit.table.correlation_length, fit.spectra.factor, fit.table.shape
+    for shape in np.unique(shapes):
+        family = np.flatnonzero(shapes == shape)
+        family = family[np.argsort(length[family])]
+        axes.plot(length[family], factor.value[family], color="0.6", linewidth=0.6, zorder=1)
+    for index, style in enumerate(spectrum_styles(fit.table)):
+        here = factor.at([index])
+        draw_estimates(axes, replace(style, label=""), length[[index]], here, np.array([True]))
+    ends = _ends(length, 1.6)
+    draw_theory(axes, ends)
+    axes.set(xscale="log", xlim=ends)
+    label_decimals(axes.xaxis)
+    axes.set_xlabel("correlation length of $w_\\mathrm{loc}$ (reduced length)")
+    axes.set_title(
+        rf"mean over ${fit.lowest_elastic_energy:g}\leq e_\mathrm{{el}}/w_\mathrm{{int}}"
+        rf"\leq {fit.highest_elastic_energy:g}$",
+        fontsize=7,
+    )
+
+
+def draw_infinite_law(axes: Axes) -> None:
+    """Draw k of the infinite contact against disorder with its 95% band, and the theories."""
+    strongest = shipped_law().disorder[1]
+    disorder = np.linspace(WEAKEST, strongest, 100)
+    factor, label = pinning_factors(disorder, math.inf).factor, "95% interval, all breadths"
+    axes.fill_between(
+        disorder, factor.low, factor.high, color="0.85", lw=0, label=label, zorder=0.5
+    )
+    axes.plot(
+        disorder, factor.value, color=BLACK, linewidth=1.0, label=r"law, $g\to\infty$", zorder=2
+    )
+    ends = strongest * np.array([-0.05, 1.10])
+    draw_theory(axes, ends)
+    axes.set(xlim=ends, ylabel=r"$k$ of the infinite contact")
+    axes.set_xlabel(r"disorder $s=w_\mathrm{rms}/w_\mathrm{int}$")

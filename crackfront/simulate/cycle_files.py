@@ -1,0 +1,125 @@
+"""Files of single cycles: their curves and costs, and the checkpoints of runs."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+
+from crackfront.core.cycle.record import Checkpoint, CycleRecord
+from crackfront.core.geometry.base import Geometry, State
+from crackfront.core.geometry.line import LineState
+from crackfront.core.geometry.sphere import ContactState, sphere
+from crackfront.core.outcome import Status
+from crackfront.core.variables import STEP, Variable, variables
+from crackfront.core.versions import PHYSICS_VERSION
+from crackfront.simulate.labels import labelled, labelled_fields
+from crackfront.simulate.provenance import Provenance
+from crackfront.simulate.run_simulation import PartialRun
+from crackfront.simulate.simulation import Simulation
+from crackfront.simulate.storage import (
+    UnreadableFileError,
+    read_dataset,
+    write_named_by_digest,
+)
+
+_FRONTS = {
+    "front": ("last_front", "front of the last state"),
+    "turn": ("turning_front", "front at which its branch began"),
+}
+"""Names and meanings of the fronts of a checkpoint, by their fields."""
+
+_STATES: tuple[type[State], ...] = (ContactState, LineState)
+"""Records of the states of all geometries; the load of one of them is in a file of curves."""
+
+_STEP = Variable(STEP, (STEP,), "1", "number of the state")
+
+
+def write_checkpoint(folder: Path, name: str, partial: PartialRun, origin: Provenance) -> Path:
+    """Write the checkpoint of a simulation, from which it goes on later; its name has a digest."""
+    simulation = partial.simulation
+    dataset = checkpoint_dataset(partial.checkpoint, simulation.key, simulation.geometry)
+    costs = {"seconds": partial.seconds, "cpu_seconds": partial.cpu_seconds}
+    about = {"simulation": simulation.label} | costs
+    return write_named_by_digest(folder, name, dataset.assign_attrs(about), origin)
+
+
+def checkpoint_dataset(
+    checkpoint: Checkpoint, key: str, geometry: Geometry | None = None
+) -> xr.Dataset:
+    """Dataset of the checkpoint of a key; the geometry as of :func:`cycle_dataset`."""
+    front, _ = (geometry or sphere(checkpoint.front.size)).variables
+    fronts = {
+        name: labelled(replace(front, name=name, long_name=text), getattr(checkpoint, field))
+        for field, (name, text) in _FRONTS.items()
+    }
+    return cycle_dataset(checkpoint.record, geometry).assign(fronts).assign_attrs(key=key)
+
+
+def read_checkpoint(path: Path, simulation: Simulation) -> PartialRun:
+    """Stored checkpoint of a simulation; UnreadableFileError if it is of another one."""
+    dataset = read_dataset(path)
+    checkpoint = known_checkpoint(dataset, simulation.key, path)
+    if checkpoint is None or dataset.attrs["physics_version"] != PHYSICS_VERSION:
+        raise UnreadableFileError(f"{path} is no checkpoint of {simulation.label}; move it away")
+    costs = (float(dataset.attrs[name]) for name in ("seconds", "cpu_seconds"))
+    return PartialRun(simulation, checkpoint, *costs)
+
+
+def known_checkpoint(dataset: xr.Dataset, key: str, place: Path) -> Checkpoint | None:
+    """Checkpoint that :func:`checkpoint_dataset` made a dataset of; None where its key differs."""
+    names = {field: name for field, (name, _) in _FRONTS.items()}
+    if dataset.attrs.get("key") != key or not dataset.variables.keys() >= {*names.values()}:
+        return None
+    fronts = {field: np.asarray(dataset[name]) for field, name in names.items()}
+    return Checkpoint(cycle_record(dataset, place), **fronts)
+
+
+def cycle_dataset(record: CycleRecord, geometry: Geometry | None = None) -> xr.Dataset:
+    """Labelled curves of a record, of the contact of a sphere by default."""
+    curves = labelled_fields(record.states, STEP) | labelled_fields(record)
+    curves[STEP] = labelled(_STEP, np.arange(record.states.direction.size))
+    if record.fronts is not None:
+        contact = geometry or sphere(record.fronts.shape[1])
+        front, site = contact.variables
+        curves[front.name] = labelled(replace(front, dims=(STEP, *front.dims)), record.fronts)
+        curves[site.name] = labelled(site, contact.sites)
+    load = variables(type(record.states))[0].name
+    attributes: dict[str, str | float] = {
+        "title": "states of a crack front from load to load",
+        "status": record.status.name.lower(),
+        "status_sentence": record.status.value,
+        f"end_{load}": record.end_load,
+    }
+    if record.pull_off_energy is not None:
+        attributes["pull_off_energy"] = record.pull_off_energy
+    return xr.Dataset(curves, attrs=attributes)
+
+
+def cycle_record(dataset: xr.Dataset, place: Path | str = "the dataset") -> CycleRecord:
+    """Record that a dataset of :func:`cycle_dataset` holds, or `UnreadableFileError`."""
+    known = (kind for kind in _STATES if variables(kind)[0].name in dataset)
+    states = next(known, ContactState)
+    names = [item.name for item in variables(states)]
+    missing = [name for name in names if name not in dataset]
+    name = str(dataset.attrs.get("status", "")).upper()
+    end = f"end_{names[0]}"
+    if missing or name not in Status.__members__ or end not in dataset.attrs:
+        what = ", ".join(missing) or "a known status"
+        raise UnreadableFileError(
+            f"{place} is no loop: it lacks {what}; give what run_loop returned or crackfront cycle "
+            "wrote"
+        )
+    pull_off = dataset.attrs.get("pull_off_energy")
+    fronts = dataset.get(states.front_name)
+    lost = dataset.get("dissipated_energy")
+    return CycleRecord(
+        status=Status[name],
+        end_load=float(dataset.attrs[end]),
+        states=states(**{name: np.asarray(dataset[name]) for name in names}),
+        dissipated_energy=None if lost is None else np.asarray(lost),
+        pull_off_energy=None if pull_off is None else float(pull_off),
+        fronts=None if fronts is None else np.asarray(fronts),
+    )

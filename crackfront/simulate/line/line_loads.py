@@ -1,0 +1,269 @@
+"""Loads of straight fronts, over a whole period of their tile, and how a sweep chooses them.
+
+By no passing, the state after one period is the same state shifted as soon as the start is
+forgotten: a mean over the next period is the exact mean over the tile.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, ClassVar, Literal
+
+import numpy as np
+from scipy.fft import next_fast_len
+
+from crackfront.core.adhesion import (
+    AdhesionMap,
+    FieldKind,
+    correlation_length,
+    force_correlation_length,
+    larkin_length,
+)
+from crackfront.core.arrays import Array
+from crackfront.core.cycle.follow import Load
+from crackfront.core.cycle.record import CycleRecord, Recorder
+from crackfront.core.field.fields import Interpolation, TileField, first_place, last_place
+from crackfront.core.geometry.base import Geometry, fast_site_count
+from crackfront.core.geometry.line import Line, line_field
+from crackfront.core.outcome import Direction, Status
+from crackfront.core.resources import refuse_beyond_memory
+from crackfront.core.solver.relax import Solver
+from crackfront.core.spectrum import Spectrum
+from crackfront.core.units import WORK_OF_ADHESION
+from crackfront.simulate.contact import ExpectedMotion, Schedule
+from crackfront.simulate.laws import LAW_SIZE
+from crackfront.simulate.numerics import Numerics
+from crackfront.simulate.tiles import RandomSurface, gaussian_adhesion, uncorrelated_adhesion
+
+if TYPE_CHECKING:
+    from crackfront.analysis.steady_adhesion import SteadyAdhesion
+
+_BEHIND = 1.3
+"""Pinning force of the first front over that of second-order theory; none is larger."""
+
+
+SpringUnit = Literal["correlation_length", "larkin_length"]
+
+LAW_LENGTH = 10.0
+"""Length of a front over that of its springs on which the law of k was measured.
+
+On a shorter front k is larger: the front is pinned as a whole.
+"""
+
+_DEPTH, _ROUGHNESS = 1.43, 0.4
+"""Rms of a front over the force's correlation length, 1.43 (L_kappa / Larkin length)^0.4: measured
+over all spectra, amplitudes and springs of `config/line.yaml`, within a fifth."""
+
+_LEAD_IN = 3.0
+"""Correlation lengths after which a front has forgotten its start, beside multiples of its rms."""
+
+
+@dataclass(frozen=True, slots=True)
+class LineSchedule(Schedule):
+    """Loads of a straight front on a tile, first forward, then back over the same places.
+
+    ValueError if a length is not positive and finite.
+    """
+
+    spring: float
+    """Length of the springs, L_kappa. (Units: length)"""
+    length: float
+    """Period of the front. (Units: length)"""
+    period: float
+    """Period of the tile along the motion, over which each branch is averaged. (Units: length)"""
+    lead_in: float
+    """Travel before that, after which the start is forgotten. (Units: length)"""
+    step: float
+    """Largest load step. (Units: length)"""
+    uncorrelated: bool = False
+    """Whether sites are independent of each other, the limit of weak disorder."""
+
+    load_name = "straight front"
+    max_penetration = 0.0
+
+    def __post_init__(self) -> None:
+        for name in ("spring", "length", "period", "lead_in", "step"):
+            if not 0 < getattr(self, name) < math.inf:
+                what = name.replace("_", "-")
+                raise ValueError(f"{what} is {getattr(self, name)}; it must be positive and finite")
+
+    @property
+    def n_period(self) -> int:
+        """Steps of one period, at the end of which each branch is averaged."""
+        return math.ceil(self.period / self.step)
+
+    @property
+    def loads(self) -> Array:
+        """Places of the springs' other end, in the order of the advance (Units: length)."""
+        step = self.period / self.n_period
+        n_step = math.ceil(self.lead_in / step) + self.n_period
+        return step * np.arange(n_step + 1, dtype=float)
+
+    @property
+    def front_length(self) -> float:
+        """Period of the front (Units: length)."""
+        return self.length
+
+    def usual_size(self, spectrum: Spectrum) -> float:
+        """Size of a front for which settings are chosen, whatever its spectrum."""
+        return LAW_SIZE
+
+    def site_count(self, requested: int | None, least: float, n_point: int) -> int:
+        """As many sites as are needed, or one a point where they are independent."""
+        return n_point if self.uncorrelated else requested or fast_site_count(least)
+
+    def fitted(self, side: float, spacing: float) -> tuple[float, float]:
+        """Period of the front, and whole samples, so that a period further on all is the same."""
+        return self.length, self.period / math.ceil(self.period / spacing)
+
+    def tile(self, n_point: int, side: float) -> tuple[tuple[int, int], tuple[float, float]]:
+        """One period along the motion and one of the front."""
+        return (round(self.period * n_point / side), n_point), (self.period, side)
+
+    def geometry(self, n_site: int) -> Geometry:
+        """Line on springs that do not pull at w_int."""
+        return Line(n_site, self.length, WORK_OF_ADHESION / self.spring, WORK_OF_ADHESION)
+
+    def adhesion(self, surface: RandomSurface) -> AdhesionMap:
+        """Work of adhesion of a Gaussian surface, or of independent rows for weak disorder."""
+        if self.uncorrelated:
+            return uncorrelated_adhesion(surface)
+        return gaussian_adhesion(surface)
+
+    def field(
+        self, adhesion: AdhesionMap, n_site: int, spacing: float, interpolation: Interpolation
+    ) -> TileField:
+        """Field of a tile over all loads."""
+        return line_field(
+            adhesion,
+            self.spring,
+            (0.0, float(self.loads[-1])),
+            n_site=n_site,
+            spacing=spacing,
+            interpolation=interpolation,
+            band_limited=not self.uncorrelated,
+        )
+
+    def run(
+        self,
+        field: TileField,
+        solver: Solver | None,
+        recorder: Recorder,
+        *,
+        correlation_length: float = math.nan,
+        elastic_energy: float,
+    ) -> CycleRecord:
+        """Both branches over the lead-in and a period, `STEADY` where both are whole.
+
+        Parameters are those of :meth:`crackfront.simulate.contact.Schedule.run`; e_el decides
+        how far behind the load a branch begins, and the correlation length has no effect.
+        """
+        pinned = _BEHIND * 4 * elastic_energy * self.spring
+        # As far behind as the field allows, never less than pinning may hold the front.
+        inside = min(-first_place(field), last_place(field) - float(self.loads[-1]))
+        behind = min(pinned + self.step, max(inside, pinned))
+        directions: tuple[Direction, Direction] = (1, -1)
+        loads: list[Load] = []
+        for direction in directions:
+            first, *others = self.loads[::direction].tolist()
+            start = np.full(field.geometry.n_site, first - direction * behind)
+            loads += [Load(first, direction, start), *(Load(one, direction) for one in others)]
+        recorder.run(field, np.full(field.geometry.n_site, -behind), loads, solver)
+        return recorder.record(Status.STEADY if recorder.status is Status.CONVERGED else None)
+
+    @classmethod
+    def smallest(cls) -> Schedule:
+        """A front of one spring over a tile of one point."""
+        return cls(spring=1.0, length=4.0, period=1.0, lead_in=1.0, step=1.0)
+
+    def expected_motion(self, surface: RandomSurface) -> ExpectedMotion:
+        """States of the lead-in and of the period, in both directions."""
+        return ExpectedMotion(2.0 * self.loads.size, self.step / surface.correlation_length)
+
+    def spring_at(self, work_of_adhesion: float) -> float:
+        """Length of the springs, whatever the work of adhesion."""
+        return self.spring
+
+    def steady_load(self, *_: object) -> float:
+        """Minus infinity: the lead-in is long enough."""
+        return -math.inf
+
+    def refuse_few_sites(self, name: str, larkin_length: float, site: float) -> None:
+        """Raise ValueError if the Larkin length has fewer than two sites."""
+        if larkin_length < 2 * site:
+            raise ValueError(
+                f"numerics: the Larkin length of {name} is {larkin_length:.3g}, below two sites "
+                f"({2 * site:.3g}); lower the amplitude or use more sites"
+            )
+
+    def averaged_sizes(
+        self, steady: SteadyAdhesion, correlation_length: float, short_cutoff: float
+    ) -> tuple[float, float, float]:
+        """Sizes of the fronts of one period of the tile, equal for both branches."""
+        size = self.length / short_cutoff * (1 + self.period / correlation_length)
+        return size, size, self.length
+
+
+@dataclass(frozen=True, slots=True)
+class LineLoad:
+    """How the straight fronts of a sweep are held and pulled."""
+
+    spring_unit: SpringUnit
+    """Unit in which the spectra state the length of their springs."""
+    length: float
+    """Period of the front over the length of its springs."""
+    period: float
+    """Period of the tile along the motion over the expected rms of the front."""
+    transient: float
+    """Travel before a branch is averaged, over the same rms."""
+    step: float
+    """Largest load step, in correlation lengths."""
+    uncorrelated: bool = False
+    """Whether sites are independent of each other, the limit of weak disorder."""
+
+    max_penetration: ClassVar[float] = 0.0
+
+    def usual_size(self, spectrum: Spectrum) -> float:
+        """Size of a front for which settings are chosen, whatever its spectrum."""
+        return LAW_SIZE
+
+    def for_surface(
+        self,
+        kind: FieldKind,
+        spectrum: Spectrum,
+        elastic_energy: float,
+        spring: float,
+        numerics: Numerics,
+    ) -> LineSchedule:
+        """Loads of one spectrum and amplitude on springs of so many units; whole pixels.
+
+        Along both axes the tile has the roll-offs and short cutoffs of the numerics or more.
+        """
+        larkin = larkin_length(kind, spectrum, 2 * math.sqrt(elastic_energy))
+        length = correlation_length(kind, spectrum)
+        spring *= length if self.spring_unit == "correlation_length" else larkin
+        settings = numerics.settings_of(kind, spectrum, elastic_energy, self.usual_size(spectrum))
+        pixel = spectrum.short_cutoff / settings.pixels_per_cutoff
+        least = numerics.tile_side(spectrum)
+        rms = front_rms(force_correlation_length(kind, spectrum), spring / larkin)
+        return LineSchedule(
+            spring=spring,
+            length=pixel * _points(max(self.length * spring, least) / pixel),
+            period=pixel * _points(max(self.period * rms, least) / pixel),
+            lead_in=_LEAD_IN * length + self.transient * rms,
+            step=self.step * length,
+            uncorrelated=self.uncorrelated,
+        )
+
+
+def front_rms(force_correlation_length: float, size: float) -> float:
+    """Rms deviation of a front from its mean on springs of a size g (Units: length)."""
+    return _DEPTH * force_correlation_length * max(size, 0.1) ** _ROUGHNESS
+
+
+def _points(least: float) -> int:
+    """Points of a side, an even product of small primes; refused where no machine holds them."""
+    remedy = "lower length, period, springs or pixels_per_cutoff"
+    refuse_beyond_memory(f"sides of {least:.2g} points", 32.0 * least, remedy, anywhere=True)
+    return 2 * int(next_fast_len(math.ceil(least / 2 * (1 - 1e-12)), real=True))

@@ -1,0 +1,97 @@
+"""One simulation from its parameters to its result, and what it cost."""
+
+from __future__ import annotations
+
+import functools
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from crackfront.analysis.run_measures import RunMeasures
+from crackfront.core.adhesion import chemical_adhesion
+from crackfront.core.cycle.record import Checkpoint, CycleRecord, Recorder
+from crackfront.core.resources import peak_memory
+from crackfront.core.solver.relax import SOLVERS
+from crackfront.core.solver.window import HALF_BAND
+from crackfront.simulate.contact import Schedule
+from crackfront.simulate.simulation import Simulation, simulation_adhesion, simulation_field
+from crackfront.simulate.sphere.full_cycle import FullCycle
+
+
+@dataclass(frozen=True, slots=True)
+class SimulationResult:
+    """Record of one simulation, and measures of its tile and its costs."""
+
+    simulation: Simulation
+    record: CycleRecord
+    measures: RunMeasures
+
+
+@dataclass(frozen=True, slots=True)
+class PartialRun:
+    """A simulation that has not ended yet, with its costs so far, as in `RunMeasures`."""
+
+    simulation: Simulation
+    checkpoint: Checkpoint
+    seconds: float
+    cpu_seconds: float
+
+
+def run_simulation(
+    simulation: Simulation,
+    *,
+    resume: PartialRun | None = None,
+    keep: Callable[[Callable[[], PartialRun]], None] | None = None,
+) -> SimulationResult:
+    """Synthesise the surface of a simulation and run its cycle.
+
+    With `resume`, an earlier run goes on, to the same record bit for bit. `keep` is called at every
+    new state with a function that makes what a later run goes on from. ValueError if the realised
+    surface does not allow full conformity, e_el >= w_int.
+    """
+    compile_solver(simulation.solver.name, type(simulation.schedule))
+    before = (0.0, 0.0) if resume is None else (resume.seconds, resume.cpu_seconds)
+    wall, cpu = time.perf_counter() - before[0], time.process_time() - before[1]
+
+    def costs() -> tuple[float, float]:
+        return time.perf_counter() - wall, time.process_time() - cpu
+
+    def observe(recorder: Recorder) -> None:
+        if keep is not None:
+            keep(lambda: PartialRun(simulation, recorder.checkpoint(), *costs()))
+
+    adhesion = simulation_adhesion(simulation)
+    field = simulation_field(simulation, adhesion)
+    measured = adhesion.e_el, adhesion.w_rms, float(np.mean(adhesion.work_of_adhesion < 0))
+    # The run holds the splines alone, not the tile as well.
+    del adhesion
+    recorder = Recorder(
+        fronts=simulation.record_fronts,
+        energy=simulation.record_energy,
+        observers=[observe],
+        resume=None if resume is None else resume.checkpoint,
+    )
+    record = simulation.schedule.run(
+        field,
+        simulation.solver,
+        recorder,
+        correlation_length=simulation.correlation_length,
+        elastic_energy=simulation.elastic_energy,
+    )
+    measures = RunMeasures(*measured, *costs(), peak_memory())
+    return SimulationResult(simulation, record, measures)
+
+
+@functools.cache
+def compile_solver(name: str, kind: type[Schedule] = FullCycle) -> None:
+    """Compile what a simulation of a kind calls, or load it, once a process, on a smooth tile.
+
+    The front is longer than those that are left to the reference.
+    """
+    schedule = kind.smallest()
+    smooth = chemical_adhesion(np.zeros((4, 4)), pixel=1.0)
+    field = schedule.field(smooth, 4 * HALF_BAND, 0.1, "cubic")
+    solver, recorder = SOLVERS[name](1e-3), Recorder(energy=True)
+    schedule.run(field, solver, recorder, correlation_length=1.0, elastic_energy=0.0)

@@ -1,0 +1,243 @@
+"""The steady parts of both branches alone, without the cycle around them.
+
+A branch begins at a circle that moves forward, not at first contact or far outside. By no passing,
+a front that starts at a circle is the same as one that comes from further behind as soon as that
+one has passed the circle everywhere: the start is forgotten exactly.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from crackfront.analysis.standard_error import standard_error
+from crackfront.core import jkr
+from crackfront.core.adhesion import FieldKind
+from crackfront.core.arrays import Array
+from crackfront.core.cycle.follow import Load
+from crackfront.core.cycle.record import CycleRecord, Recorder, columns
+from crackfront.core.cycle.touch import first_touch, refuse_outgrown
+from crackfront.core.field.fields import Field, first_place, last_place
+from crackfront.core.field.rays import front_adhesion
+from crackfront.core.geometry.sphere import ContactState
+from crackfront.core.outcome import Direction, Status
+from crackfront.core.solver.relax import Solver
+from crackfront.core.spectrum import SelfAffineSpectrum, Spectrum
+from crackfront.core.units import WORK_OF_ADHESION
+from crackfront.simulate.contact import ExpectedMotion
+from crackfront.simulate.sphere.full_cycle import SphereSchedule
+from crackfront.simulate.tiles import RandomSurface
+
+_FEWEST_TO_TURN = 8
+"""Steady states before the approach may turn."""
+
+_N_CIRCLE = 64
+"""Number of circles that are tried as a start."""
+
+_LEAST_DRIVE = 1.5
+"""Drive of a circle that may be a start, in units of the rms of w_loc on it; see docs/model.md.
+
+Single sites may move back: where some repel, no circle with an open edge drives all forward.
+"""
+
+_LARGEST_FACTOR, _FAR_BEHIND = 2.6, 20.0
+"""A circle may also be a start this many correlation lengths behind where the largest k holds one:
+on fine spectra the drive above needs hundreds; fronts deviate by 7 at most."""
+
+_FEWEST_STATES = 9.0
+"""States of an approach that turns as early as it may: one before it is steady."""
+
+_VARIANCE = 0.6
+"""Variance of k from state to state, times e_el and the independent pieces of the front."""
+
+
+@dataclass(frozen=True, slots=True)
+class SteadySchedule(SphereSchedule):
+    """Approach from a penetration until k is known well enough, and back over the same radii.
+
+    ValueError if a number is not positive, or the start negative or not below the largest
+    penetration.
+    """
+
+    load_name = "steady branches"
+
+    start: float
+    """Penetration at which the approach begins. (Units: reduced vertical length)"""
+    max_penetration: float
+    """Largest penetration. (Units: reduced vertical length)"""
+    travel: float
+    """Way of a smooth front from state to state, in correlation lengths of w_loc."""
+    standard_error: float
+    """Standard error of k, of (w_retr - w_appr) / (2 e_el), at which the approach turns: the
+    retraction is taken to scatter as much."""
+
+    def __post_init__(self) -> None:
+        for name in ("travel", "standard_error"):
+            if not 0 < getattr(self, name) < math.inf:
+                what = f"steady {name.replace('_', ' ')}"
+                raise ValueError(f"{what} is {getattr(self, name)}; it must be positive")
+        if not 0 <= self.start < self.max_penetration < math.inf:
+            raise ValueError(
+                f"steady start is {self.start}; it must be 0 or more, and below the largest "
+                f"penetration {self.max_penetration}: lower it or penetrate deeper"
+            )
+
+    def run(
+        self,
+        field: Field,
+        solver: Solver | None,
+        recorder: Recorder,
+        *,
+        correlation_length: float,
+        elastic_energy: float,
+    ) -> CycleRecord:
+        """Approach and retraction over the radii that an estimate of the hysteresis needs.
+
+        Each branch begins at the circle of `forward_circle`. The approach goes on until k has the
+        requested standard error or the largest penetration is reached; the retraction from about
+        its largest radius until it has left the radii over which the approach was steady, which a
+        branch is once every site has travelled a correlation length. The status is `STEADY` where
+        both branches were measured. The energy that the first step of a branch dissipates has no
+        meaning and is NaN. Parameters are those of
+        :meth:`crackfront.simulate.contact.Schedule.run`. ValueError if a smooth sphere would
+        outgrow the field.
+        """
+        refuse_outgrown(field, self.max_penetration)
+        loads = self._loads(field, recorder, correlation_length, elastic_energy)
+        recorder.run(field, first_touch(field), loads, solver)
+        return recorder.record(Status.STEADY if recorder.status is Status.CONVERGED else None)
+
+    def _loads(
+        self, field: Field, recorder: Recorder, correlation_length: float, elastic_energy: float
+    ) -> Iterator[Load]:
+        """Loads of both branches, each chosen by the states recorded before it."""
+        step = self.travel * correlation_length * jkr.penetration_slope(self.start)
+        n_step = math.floor((self.max_penetration - self.start) / step)
+        near = jkr.equilibrium_radius(self.start) - correlation_length
+        circle = forward_circle(field, self.start, 1, near, correlation_length)
+        steady, shared = [], []
+        for k in range(n_step + 1):
+            yield Load(self.start + k * step, 1, circle if k == 0 else None)
+            if recorder.status is not Status.CONVERGED:
+                return
+            if recorder.states[-1].least_travel < correlation_length:
+                continue
+            steady.append(recorder.states[-1])
+            shared.append(_circle_adhesion(field, recorder.states[-1].mean_radius))
+            known = columns(steady, ContactState)
+            own = own_part(known.apparent_work_of_adhesion, np.array(shared))
+            spread = standard_error(own, known.mean_radius, known.rms_radius, correlation_length)
+            wanted = self.standard_error * elastic_energy
+            if len(steady) >= _FEWEST_TO_TURN and spread / math.sqrt(2) <= wanted:
+                break
+        lowest = min((item.mean_radius for item in steady), default=math.inf)
+        last = recorder.states[-1]
+        penetration = _retraction_start(field, last)
+        near = last.mean_radius + correlation_length
+        circle = forward_circle(field, penetration, -1, near, correlation_length)
+        yield Load(penetration, -1, circle)
+        while recorder.status is Status.CONVERGED and recorder.states[-1].mean_radius >= lowest:
+            penetration -= step
+            yield Load(penetration, -1)
+
+    def expected_motion(self, surface: RandomSurface) -> ExpectedMotion:
+        """States of both branches until k has the requested standard error."""
+        length = surface.correlation_length
+        step = self.travel * length * jkr.penetration_slope(self.start)
+        n_most = 1 + math.floor((self.max_penetration - self.start) / step)
+        alike = length * integral_breadth(surface.kind, surface.spectrum)
+        n_independent = 2 * math.pi * jkr.equilibrium_radius(self.start) / alike
+        variance = _VARIANCE / (surface.elastic_energy * n_independent)
+        n_state = max(_FEWEST_STATES, 1 + variance / self.standard_error**2)
+        return ExpectedMotion(2 * min(n_most, n_state), self.travel)
+
+    def steady_load(
+        self, surface: RandomSurface, works: tuple[float, float], travel: float, n_state: int
+    ) -> float:
+        """Penetration that leaves the approach so many steady states."""
+        low, _ = works
+        length = surface.correlation_length
+        # It begins a correlation length behind, and the retraction behind the end.
+        begin = jkr.equilibrium_radius(self.start, low) - length
+        needed = travel + n_state * self.travel * length
+        return float(jkr.equilibrium_penetration(begin + needed, low))
+
+
+def integral_breadth(kind: FieldKind, spectrum: Spectrum) -> float:
+    """Mean of q times mean of 1/q in the variance of w_loc, relative to those of a flat surface.
+
+    The mean of w_loc along a front varies by its longest waves, the mean of 1/q, and the
+    correlation length is that of the mean of q.
+    """
+    order = 0.5 if kind == "roughness" else 0.0
+    flat = SelfAffineSpectrum(1.0, 1.0, hurst=1.0)
+    means = [
+        shape.mean_square(order + 0.5)
+        * shape.mean_square(order - 0.5)
+        / shape.mean_square(order) ** 2
+        for shape in (spectrum, flat)
+    ]
+    return means[0] / means[1]
+
+
+def _retraction_start(field: Field, last: ContactState[float]) -> float:
+    """Penetration at which a retraction comes to the radius of the last state of the approach."""
+    # The mean of w_loc lies about in the middle between the branches: rather begin outside.
+    mean = _circle_adhesion(field, last.mean_radius)
+    expected = max(mean + 0.8 * (mean - last.apparent_work_of_adhesion), 0.0)
+    return min(float(jkr.equilibrium_penetration(last.mean_radius, expected)), last.penetration)
+
+
+def _circle_adhesion(field: Field, radius: float) -> float:
+    """Mean of w_loc on a circle (Units: w_int)."""
+    circle = np.full(field.geometry.n_site, radius)
+    return float(np.mean(front_adhesion(circle, field))) / WORK_OF_ADHESION
+
+
+def own_part(values: Array, shared: Array) -> Array:
+    """Apparent work of adhesion without what both branches share over the same radii.
+
+    The mean of w_loc on the circles raises and lowers both branches alike and adds noise to each,
+    but not to the hysteresis. `shared` is that mean on the circles of the mean radii of the steady
+    states; what follows it, by least squares, is taken away. All have the shape (n_state,). (Units:
+    w_int)
+    """
+    deviation = shared - np.mean(shared)
+    variance = np.mean(deviation**2)
+    if variance == 0:
+        return values
+    return np.asarray(values - deviation * (np.mean(deviation * values) / variance))
+
+
+def forward_circle(
+    field: Field, penetration: float, direction: Direction, near: float, correlation_length: float
+) -> Array:
+    """The first circle behind a radius that moves forward even against 1.5 times the rms of w_loc.
+
+    Nearer, where that is 20 correlation lengths behind a front that is pinned by k = 2.6: its drive
+    is k e_el, and the rms of w_loc 2 (e_el w_int)^(1/2). Behind is inside in approach (direction
+    +1), outside in retraction (-1); `near` is the radius of the first circle that is tried. Where
+    none is found, the front (n_angle,) is, in approach, that within which the edge is in
+    compression, so that no front can rest inside; in retraction the end of the field. (Units:
+    reduced lateral length, the penetration reduced vertical length)
+    """
+    furthest = last_place(field)
+    if direction > 0:
+        furthest = max(math.sqrt(max(penetration, 0.0)), first_place(field))
+    if direction * (furthest - near) > 0:
+        return np.full(field.geometry.n_site, furthest)
+    resting = None
+    for radius in np.linspace(near, furthest, _N_CIRCLE):
+        circle = np.full(field.geometry.n_site, radius)
+        adhesion = front_adhesion(circle, field)
+        drive = direction * (np.mean(adhesion) - jkr.energy_release_rate(radius, penetration))
+        if drive > _LEAST_DRIVE * np.std(adhesion):
+            return circle
+        if resting is None and drive > _LARGEST_FACTOR * np.var(adhesion) / (4 * WORK_OF_ADHESION):
+            resting = radius
+        if resting is not None and abs(radius - resting) > _FAR_BEHIND * correlation_length:
+            return circle
+    return np.full(field.geometry.n_site, furthest)

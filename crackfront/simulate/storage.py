@@ -1,0 +1,289 @@
+"""Files: written whole or not at all, with origin and checksums; read as written, or refused."""
+
+from __future__ import annotations
+
+import contextlib
+import errno
+import fcntl
+import os
+import secrets
+import tempfile
+import time
+from collections.abc import Callable, Collection, Iterator
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from crackfront.core.resources import TooLargeError, refuse_beyond_memory
+from crackfront.simulate.checksums import (
+    DAMAGED_SUFFIX,
+    DIGITS_IN_NAME,
+    digest_path,
+    file_digest,
+    is_whole,
+    sums_text,
+)
+from crackfront.simulate.provenance import Provenance, utc_now
+
+PACKED: dict[str, Any] = {"zlib": True, "shuffle": True, "complevel": 1}
+"""How arrays are compressed."""
+
+_WRITER_SECONDS = 0.2
+"""Time in which a writer has replaced both a file and its checksum. (Units: s)"""
+
+NO_ROOM = (errno.ENOSPC, errno.EDQUOT)
+"""Numbers of the errors of a full disk and of a used-up quota."""
+
+
+class UnreadableFileError(ValueError):
+    """A file that is missing, damaged, or not what its reader needs."""
+
+
+class FileSystemError(OSError):
+    """An operation that the file system does not allow; the message states the remedy."""
+
+
+_LOCKING = "HDF5_USE_FILE_LOCKING"
+"""Environment variable by which HDF5 opens files without a lock, as the command sets it."""
+
+
+def refuse_failing_system(path: Path, error: Exception) -> None:
+    """Raise an OSError if a file, which HDF5 refused, cannot be read or locked by the system."""
+    with path.open("rb", buffering=0) as file:
+        _refuse_without_locks(path, file.fileno(), error)
+        while file.read(2**24):
+            pass
+
+
+def _refuse_without_locks(path: Path, number: int, error: Exception) -> None:
+    """Raise if HDF5 could not lock an open file, with the path in the message."""
+    if os.environ.get(_LOCKING, "").upper() in ("FALSE", "0"):
+        return
+    try:
+        fcntl.flock(number, fcntl.LOCK_SH | fcntl.LOCK_NB)
+    except BlockingIOError:
+        raise FileSystemError(
+            f"{path} is locked by another process that writes it; wait until that has closed it"
+        ) from error
+    except OSError as failed:
+        raise FileSystemError(
+            f"{path} cannot be locked: {failed.strerror}; set {_LOCKING}=FALSE in the environment "
+            "before the program starts"
+        ) from error
+    fcntl.flock(number, fcntl.LOCK_UN)
+
+
+def write_dataset(path: Path, dataset: xr.Dataset, origin: Provenance) -> None:
+    """Write a dataset as netCDF with its origin and checksums of its arrays, atomically.
+
+    The folder is created.
+    """
+    replace_atomically(path, lambda part: _write_netcdf(part, dataset, origin))
+
+
+def write_derived(path: Path, dataset: xr.Dataset, origin: Provenance) -> None:
+    """Write a dataset as :func:`write_dataset`, and its checksum into `<path>.sha256` beside it.
+
+    HDF5 does not check the metadata of a file: a flipped bit there may change what is read, and
+    from some damage it never returns. The checksum comes first, so that a new file never appears
+    without it; after a kill in between, an earlier file counts as damaged and is derived again.
+    """
+
+    def state_digest(part: Path) -> None:
+        write_text(digest_path(path), sums_text({path.name: file_digest(part)}))
+
+    replace_atomically(path, lambda part: _write_netcdf(part, dataset, origin), state_digest)
+
+
+def write_named_by_digest(folder: Path, name: str, dataset: xr.Dataset, origin: Provenance) -> Path:
+    """Write a dataset into `<name>-<digest>.nc`, the digest that of its content; return the path.
+
+    So the file and its checksum are renamed into place at once.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    unnamed = folder / f".{name}-{secrets.token_hex(8)}.nc"
+    try:
+        write_dataset(unnamed, dataset, origin)
+        digest = file_digest(unnamed)[:DIGITS_IN_NAME]
+        return unnamed.replace(folder / f"{name}-{digest}.nc")
+    finally:
+        unnamed.unlink(missing_ok=True)
+
+
+def _write_netcdf(path: Path, dataset: xr.Dataset, origin: Provenance) -> None:
+    """Write a dataset as netCDF with its origin."""
+    stamped = _stamped(dataset, origin)
+    encoding = {str(name): _encoding(values) for name, values in stamped.variables.items()}
+    with utf8_path(path) as named:
+        stamped.to_netcdf(named, engine="netcdf4", encoding=encoding)
+
+
+@contextlib.contextmanager
+def utf8_path(path: Path) -> Iterator[Path]:
+    """Path of a file for netCDF4, which reads UTF-8 alone, also in a folder of another encoding."""
+    try:
+        str(path).encode()
+    except UnicodeEncodeError:
+        folder = os.open(path.parent, os.O_RDONLY)
+        try:
+            yield Path(f"/proc/self/fd/{folder}", path.name)
+        finally:
+            os.close(folder)
+    else:
+        yield path
+
+
+def _stamped(dataset: xr.Dataset, origin: Provenance) -> xr.Dataset:
+    """A dataset with its origin."""
+    date = utc_now()
+    stamped = dataset.assign_attrs({"title": "results of crackfront"} | dataset.attrs)
+    stamped.attrs |= {"Conventions": "CF-1.11", "history": f"{date}: {origin.command}"}
+    stamped.attrs |= asdict(origin) | {"date": date}
+    return stamped
+
+
+def _encoding(values: xr.Variable) -> dict[str, Any]:
+    """How a variable is stored: HDF5 has checksums for arrays of numbers or letters alone."""
+    encoding: dict[str, Any] = {"fletcher32": True} if values.ndim else {}
+    if values.dtype.kind in "OU":
+        return encoding | ({"dtype": "S1"} | PACKED if values.ndim else {})
+    if np.issubdtype(values.dtype, np.floating):
+        encoding |= {"_FillValue": None} | (PACKED if values.ndim > 1 else {})
+    return encoding
+
+
+def write_text(path: Path, text: str) -> None:
+    """Write a text file atomically; names of files in the text stay the bytes that they are."""
+    content = text.encode("utf-8", "surrogateescape")
+    replace_atomically(path, lambda part: part.write_bytes(content))
+
+
+def replace_atomically(
+    path: Path, write: Callable[[Path], Any], before_renaming: Callable[[Path], Any] | None = None
+) -> None:
+    """Let a function write a file beside the final one, and rename it once it is on disk.
+
+    The folder of the final file is created. Another function may be called with the written file
+    just before it is renamed. OSError if the place is none for a file, or the disk is
+    full; what was there before stays.
+    """
+    refuse_no_file(path)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    # A name of its own: after a killed controller two writers of one file do happen.
+    part = path.with_name(f".{path.stem}-{secrets.token_hex(8)}.part")
+    try:
+        write(part)
+        with part.open("rb+") as file:
+            os.fsync(file.fileno())
+        if before_renaming is not None:
+            before_renaming(part)
+        part.replace(path)
+    except Exception as error:
+        # What netCDF says of a full disk or of locks names anything but these.
+        _refuse_failing_folder(path, error)
+        raise
+    finally:
+        part.unlink(missing_ok=True)
+
+
+def refuse_no_file(path: Path) -> None:
+    """Raise an OSError if something stands at a path that is no ordinary file."""
+    if path.is_dir():
+        raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(path))
+    if path.exists() and not path.is_file():
+        raise OSError(errno.EINVAL, "it is a device or pipe, which is not replaced", str(path))
+
+
+def _refuse_failing_folder(path: Path, error: Exception) -> None:
+    """Raise if not a mebibyte can be written in the folder of a path, or no file locked there."""
+    try:
+        with tempfile.TemporaryFile(dir=path.parent) as probe:
+            probe.write(bytes(2**20))
+            probe.flush()
+            os.fsync(probe.fileno())
+            if not _is_of_system(error):
+                _refuse_without_locks(path, probe.fileno(), error)
+    except FileSystemError:
+        raise
+    except OSError as full:
+        if full.errno in NO_ROOM:
+            raise OSError(full.errno, os.strerror(full.errno), str(path)) from error
+
+
+def _is_of_system(error: Exception) -> bool:
+    """Whether an error has a number of the system; those of netCDF are negative."""
+    return isinstance(error, OSError) and (error.errno or 0) > 0
+
+
+def read_dataset(
+    path: Path, names: Collection[str] | None = None, *, copies: float = 1.0
+) -> xr.Dataset:
+    """Dataset of a netCDF file, in memory.
+
+    Variables to read beside the coordinates are those of the names that are there; by default all.
+    `copies` is the memory that is needed at once, relative to that of the variables. TooLargeError
+    if they need more than there is, whatever the file holds of them; UnreadableFileError if there
+    is no such file, it is damaged, or it is no complete netCDF file.
+    """
+    if not path.is_file():
+        what = "is no file" if path.exists() else "does not exist"
+        raise UnreadableFileError(f"{path} {what}; check the name")
+    try:
+        with (
+            utf8_path(path) as named,
+            xr.open_dataset(named, engine="netcdf4", decode_times=False) as dataset,
+        ):
+            others = [] if names is None else [name for name in dataset if name not in names]
+            chosen = dataset.drop_vars(others)
+            refuse_beyond_memory(
+                f"the variables of {path}", copies * chosen.nbytes, "use smaller ones"
+            )
+            return chosen.load()
+    except (TooLargeError, MemoryError):
+        raise
+    except Exception as error:  # a damaged file may be wrong in any way
+        if _is_of_system(error):
+            raise
+        refuse_failing_system(path, error)
+        raise UnreadableFileError(
+            f"{path} is no complete netCDF file; write it again, or name another"
+        ) from error
+
+
+def set_aside_if_damaged(path: Path) -> str:
+    """Rename a file that does not agree with its stated checksum; a sentence, or nothing if whole.
+
+    The checksum is in the name of the file, or in `<path>.sha256` beside it.
+    """
+    if is_whole(path):
+        return ""
+    time.sleep(_WRITER_SECONDS)
+    if is_whole(path):
+        return ""
+    aside = set_aside(path)
+    return f"{path} is damaged and was set aside as {aside.name}"
+
+
+def set_aside(path: Path) -> Path:
+    """Rename a file that is of no use, and return its new path."""
+    return path.replace(path.with_name(path.name + DAMAGED_SUFFIX))
+
+
+def read_derived(path: Path, names: Collection[str] | None = None) -> xr.Dataset:
+    """Dataset of a file that :func:`write_derived` wrote, after a look at its checksum.
+
+    UnreadableFileError if it is missing; if it is damaged, when it is set aside.
+    """
+    if not path.is_file():
+        raise UnreadableFileError(f"{path} does not exist; run the workflow")
+    if sentence := set_aside_if_damaged(path):
+        raise UnreadableFileError(f"{sentence}; run the workflow, which makes it again")
+    return read_dataset(path, names)
+
+
+def read_attributes(path: Path) -> dict[str, Any]:
+    """What a file says of itself; refused as by :func:`read_dataset`."""
+    return {str(name): value for name, value in read_dataset(path, ()).attrs.items()}

@@ -1,0 +1,186 @@
+"""What a run on a user's surface begins with, whatever the kind of contact."""
+
+from __future__ import annotations
+
+import math
+from abc import ABC, abstractmethod
+from collections.abc import Iterable
+from dataclasses import dataclass
+from itertools import pairwise
+from numbers import Integral
+
+from crackfront.core.arguments import refuse_no_numbers, refuse_other_type
+from crackfront.core.arrays import Array
+from crackfront.core.bounds import (
+    DENSITY,
+    NUMBER,
+    SITES,
+    Range,
+    refuse_outside,
+)
+from crackfront.core.cycle.follow import Load
+from crackfront.core.field.fields import TileField
+from crackfront.simulate.contact import Schedule
+from crackfront.simulate.simulation import Simulation
+from crackfront.surfaces.random_surface import TileMeasures, refuse_no_fraction
+
+
+@dataclass(frozen=True, slots=True)
+class LoopSetup:
+    """Field, first front and loads of a run, with what is known of it beforehand."""
+
+    kind: type[Schedule]
+    """Loads whose kernels serve this run."""
+    field: TileField
+    front: Array
+    """First front, (n_site,). (Units: reduced lateral length)"""
+    loads: Iterable[Load]
+    """As of :func:`crackfront.core.cycle.follow.follow`."""
+    expected: int
+    """States that it will have, roughly."""
+    seconds: float
+    """Processor time that they will take, roughly."""
+    tolerance: float
+    """Tolerance of the solver."""
+    measures: TileMeasures
+    """Measures of the tile."""
+    period: float | None = None
+    """Period of the tile over which the branches are averaged at most; None for steady parts."""
+    simulation: Simulation | None = None
+    """One of the same sizes, whose numerical errors are known; where the spectrum is stated."""
+    load_stiffness: float | None = None
+    """Stiffness of the load against a front that is held, where a load step loses half of it times
+    the square of the step. (Units: reduced energy / length**2)"""
+    remark: str = ""
+    """A reservation about the result, as a sentence; empty if there is none."""
+
+
+@dataclass(frozen=True, slots=True)
+class LoopNumerics:
+    """How a run on a user's surface is resolved.
+
+    ValueError if an error is given beside sites or samples, or a number is out of range; TypeError
+    if it is none.
+    """
+
+    error: float | None = None
+    """Standard error of the factor k that the numerics may leave, by the laws of its spectrum."""
+    sites: int | None = None
+    """Sites of the front."""
+    samples: float | None = None
+    """Samples a pixel along a ray."""
+    usual_error: float = 0.03
+    """Error where neither is given and the surface states its spectrum."""
+
+    def __post_init__(self) -> None:
+        if self.error is not None:
+            refuse_no_fraction("error", self.error)
+        for name, value in (("sites", self.sites), ("samples", self.samples)):
+            if value is not None and self.error is not None:
+                raise ValueError(
+                    f"error is {self.error:g}, which decides sites and samples; leave out {name}, "
+                    "or the error"
+                )
+        if self.sites is not None:
+            refuse_other_type("sites", self.sites, Integral, "a whole number")
+            refuse_outside("sites", self.sites, SITES)
+        if self.samples is not None:
+            refuse_no_numbers(samples=self.samples)
+            refuse_outside("samples", self.samples, DENSITY)
+
+    @property
+    def by_pixels(self) -> bool:
+        """Whether sites or samples are given, so that no law of errors decides them."""
+        return self.sites is not None or self.samples is not None
+
+
+class LoopContact(ABC):
+    """A contact of some kind with a user's surface, which `run_loop` and `crackfront cycle` run."""
+
+    @abstractmethod
+    def setup(
+        self,
+        loads: tuple[float, ...] | None,
+        max_penetration: float | None,
+        step: float,
+        numerics: LoopNumerics,
+    ) -> LoopSetup:
+        """What a run begins with; arguments as of :func:`crackfront.run_loop`.
+
+        Loads that are None lead up to the largest penetration and to pull-off. The step is the
+        largest difference of loads; infinity leaves them as they are.
+        """
+
+
+_SITES = 3.0
+"""Sites per correlation length of w_loc from which on hysteresis departs by less than a tenth; with
+2 it is a third too large, with 1 two to four times, on straight fronts at w_rms 0.6 and 0.8."""
+
+
+def remark_on_sites(n_site: int, length: float, measures: TileMeasures) -> str:
+    """Sentence on a front of a length whose sites are too few for a tile; else empty."""
+    density = n_site * measures.correlation_length / length
+    if measures.w_rms == 0 or density >= _SITES:
+        return ""
+    return (
+        f"the front has {n_site} sites, {density:.2g} per correlation length of w_loc, with which "
+        f"the hysteresis comes out too large; use {math.ceil(_SITES * n_site / density)} or more"
+    )
+
+
+_LARGEST_MEAN = 0.05
+"""Difference of the mean work of adhesion from that of the theory, beyond which the stiffness of
+the line, which is that at w_int, makes hysteresis wrong. (Units: w_int)"""
+
+
+def remark_on_mean(measures: TileMeasures) -> str:
+    """Sentence on a tile whose mean work of adhesion is not w_int; else empty."""
+    expected = 1 - measures.e_el if measures.kind == "roughness" else 1.0
+    if abs(measures.mean - expected) <= _LARGEST_MEAN:
+        return ""
+    return (
+        f"the mean work of adhesion is {measures.mean:.3g} w_int, but the line is as stiff as at "
+        "w_int, so that the hysteresis is wrong; divide the values by their mean, and take the "
+        "mean for the work of adhesion of the sphere"
+    )
+
+
+_SAMPLES = 2.0
+"""Samples per correlation length of w_loc below which they miss its waves."""
+
+
+def refuse_few_samples(
+    numerics: LoopNumerics, pixel: float, measures: TileMeasures, least: float = 0.0
+) -> None:
+    """Raise if the given samples a pixel miss waves of a tile, or are below the least.
+
+    The pixel is that of the tile. (Units: reduced lateral length)
+    """
+    waves = 0.0 if measures.w_rms == 0 else _SAMPLES * pixel / measures.correlation_length
+    needed = math.ceil(1000 * max(waves, least)) / 1000
+    if numerics.samples is not None and numerics.samples < needed:
+        raise ValueError(
+            f"samples is {numerics.samples:g} a pixel along a ray, too few for this surface; use "
+            f"{needed:g} or more"
+        )
+
+
+def load_values(loads: Iterable[float | str]) -> tuple[float, ...]:
+    """Loads of a protocol as numbers; a ValueError where there is none, or one is no number."""
+    if isinstance(loads, str) or not isinstance(loads, Iterable):
+        raise TypeError(f"loads is {loads!r}; give the loads to visit, as in [0, 1, 0.5]")
+    found = []
+    for given in loads:
+        try:
+            found.append(float(given))
+        except (TypeError, ValueError):
+            raise ValueError(f"a load is {given!r}; write numbers alone") from None
+        refuse_outside("a load", found[-1], Range(-NUMBER.most, NUMBER.most))
+    if not found:
+        raise ValueError("there are no loads; give one or more")
+    return tuple(found)
+
+
+def state_count(loads: tuple[float, ...], step: float) -> float:
+    """Loads of a protocol, about."""
+    return len(loads) + sum(abs(one - other) for one, other in pairwise(loads)) / step

@@ -1,0 +1,349 @@
+"""Loops on a surface under any loads, and the single instabilities of a branch."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable
+from dataclasses import replace
+from typing import get_args
+
+import numpy as np
+from xarray import DataArray, Dataset
+
+from crackfront.analysis.estimate import with_error
+from crackfront.analysis.steady_adhesion import (
+    SteadyAdhesion,
+    SteadyMeasures,
+    passing_adhesion,
+    steady_adhesion,
+)
+from crackfront.analysis.table import SweepAxes, SweepRow
+from crackfront.core.arguments import refuse_no_numbers, refuse_other_type
+from crackfront.core.arrays import Array
+from crackfront.core.cycle.follow import Load, front_at
+from crackfront.core.cycle.load_schedule import LoadSchedule
+from crackfront.core.cycle.record import CycleRecord, Recorder
+from crackfront.core.cycle.touch import first_touch
+from crackfront.core.geometry.base import State
+from crackfront.core.geometry.sphere import ContactState
+from crackfront.core.outcome import Direction
+from crackfront.core.resources import refuse_beyond_memory
+from crackfront.core.solver import DEFAULT_TOLERANCE
+from crackfront.core.solver.relax import Newton, named_solver
+from crackfront.core.variables import variables
+from crackfront.core.versions import PHYSICS_VERSION
+from crackfront.simulate.cycle_files import cycle_dataset
+from crackfront.simulate.labels import labelled, labelled_fields
+from crackfront.simulate.numerical_errors import stated_error
+from crackfront.simulate.provenance import __version__
+from crackfront.simulate.run_simulation import compile_solver
+from crackfront.surfaces.instabilities import measured_instabilities, resolved_motion
+from crackfront.surfaces.loop_setup import (
+    LoopContact,
+    LoopNumerics,
+    LoopSetup,
+    load_values,
+)
+from crackfront.surfaces.pressed_sphere import PressedSphere
+
+_KNOWN = {item.name: item for kind in (SweepAxes, SweepRow) for item in variables(kind)}
+
+
+def run_loop(
+    surface: DataArray | LoopContact,
+    *,
+    loads: Iterable[float] | None = None,
+    max_penetration: float | None = None,
+    step: float | None = None,
+    error: float | None = None,
+    sites: int | None = None,
+    samples: float | None = None,
+    solver: str = "newton",
+    fronts: bool = True,
+    energy: bool = False,
+    progress: Callable[[ContactState[float]], None] | None = None,
+) -> Dataset:
+    """States of a sphere on a surface, or of a straight front, under any loads.
+
+    Parameters
+    ----------
+    surface : xarray.DataArray or StraightFront
+        Surface of :func:`crackfront.surface`, `random_surface` or `read_scan`, the apex of the
+        sphere at the centre of the tile, wherever the zero of its coordinates is; or what
+        :func:`crackfront.straight_front` makes of one.
+    loads : iterable of float, optional
+        Loads to visit in their order, down and up as often as they say; one that stands twice is
+        a hold. The loop ends where contact is lost. By default, for a sphere, from first contact
+        to the largest penetration, and to pull-off. (Units: reduced vertical length; of a straight
+        front that of its tile)
+    max_penetration : float, optional
+        Largest penetration in place of loads, by default 1. (Units: reduced vertical length)
+    step : float, optional
+        Largest difference of loads: equal steps lead from one to the next. By default 0.02 in place
+        of loads; those that are given are visited as they are. The fronts do not depend on it.
+        (Units: that of loads)
+    error : float, optional
+        Standard error of the factor k of either branch that the numerics may leave; measured
+        laws choose sites, samples and tolerance. They need a sphere and the attributes
+        `short_cutoff`, `roll_off` and `hurst`, as :func:`crackfront.random_surface` sets them;
+        with these it is 0.03 by default, or what the finest numerics on the pixels leave, and the
+        result states it; without them an error is refused.
+    sites : int, optional
+        Sites of the front, in place of an error. By default those that the error needs; where
+        there is none, one a pixel or more.
+    samples : float, optional
+        Samples a pixel along a ray, in place of an error. By default those that the error needs;
+        where there is none 2, of a straight front 1.
+    solver : {"newton", "reference"}, optional
+        Solver; both find the same fronts.
+    fronts, energy : bool, optional
+        Whether to keep the fronts, and to compute the energy that each load step dissipates. A load
+        step loses energy even where a front would follow a slow load without loss; the comment of
+        the variable says how much of the energies of a straight front this is.
+    progress : callable, optional
+        Called with every state as it is found, a `ContactState` of a sphere or a `LineState` of a
+        straight front.
+
+    Returns
+    -------
+    xarray.Dataset
+        The curves over `step` (`penetration`, `force`, `mean_radius`, ..., each with its units),
+        the fronts `radius(step, angle)` or `position(step, y)`, and
+        measures of the whole: `e_el`, `w_rms`, `correlation_length`, `w_appr`, `w_retr` and what
+        else the table of a sweep has of them, of a straight front over the last period of its tile
+        or less; NaN where the loop has no steady part. The attribute `result` states them, the
+        forces of jump-in and pull-off or the pinning force, `steady_sentence` why they are NaN.
+
+    Raises
+    ------
+    ValueError
+        If the surface, a length or the solver cannot be used, the pixels are too coarse for an
+        error that is asked for, or there is no memory for the fronts.
+    TypeError
+        If an argument is of another type.
+
+    Examples
+    --------
+    >>> from crackfront import random_surface, straight_front
+    >>> surface = random_surface(short_cutoff=0.4, elastic_energy=0.02, side=4, seed=1)
+    >>> loop = run_loop(surface, step=0.25)
+    >>> loop.attrs["status"], loop.radius.dims
+    ('lost_contact', ('step', 'angle'))
+    >>> minor = run_loop(surface, loads=[0, 0.5, 0.2, 0.5], step=0.1)
+    >>> bool(abs(minor.force[5] - minor.force[11]) < 1e-6)
+    True
+    >>> pulled = run_loop(straight_front(surface, spring=2), loads=[0, 2, 0], step=0.5)
+    >>> pulled.position.dims
+    ('step', 'y')
+    """
+    numbers = {"max_penetration": max_penetration, "step": step}
+    refuse_no_numbers(**{name: one for name, one in numbers.items() if one is not None})
+    for name, value in (("fronts", fronts), ("energy", energy)):
+        refuse_other_type(name, value, bool, "True or False")
+    if not callable(progress):
+        refuse_other_type("progress", progress, type(None), "a function of a state")
+    visited = None if loads is None else load_values(loads)
+    if visited is None and max_penetration is None:
+        max_penetration = 1.0
+    if step is None:
+        step = 0.02 if visited is None else math.inf
+    solution = named_solver(solver, DEFAULT_TOLERANCE)
+    contact = surface if isinstance(surface, LoopContact) else PressedSphere(surface)
+    setup = contact.setup(visited, max_penetration, step, LoopNumerics(error, sites, samples))
+    if fronts:
+        refuse_beyond_memory(
+            f"{setup.expected} fronts of {setup.front.size} sites",
+            8.0 * setup.expected * setup.front.size,
+            "set fronts=False, or take larger steps or a smaller max_penetration",
+        )
+    compile_solver(solver, setup.kind)
+    observers = [] if progress is None else [lambda recorder: progress(recorder.states[-1])]
+    recorder = Recorder(fronts=fronts, energy=energy, observers=observers)
+    solution = replace(solution, tolerance=setup.tolerance)
+    recorder.run(setup.field, setup.front, setup.loads, solution)
+    return loop_dataset(recorder.record(), setup).assign_attrs(
+        solver=solver,
+        tolerance=setup.tolerance,
+        crackfront_version=__version__,
+        physics_version=PHYSICS_VERSION,
+    )
+
+
+def loop_dataset(record: CycleRecord, setup: LoopSetup) -> Dataset:
+    """Labelled curves of a run, and measures of the whole."""
+    measures, simulation = setup.measures, setup.simulation
+    curves = cycle_dataset(record, setup.field.geometry)
+    lost = record.dissipated_energy
+    if lost is not None and setup.load_stiffness is not None and np.nansum(lost) > 0:
+        comment = _comment_on_steps(record.states, lost, setup.load_stiffness)
+        curves["dissipated_energy"] = curves.dissipated_energy.assign_attrs(comment=comment)
+    values = {name: getattr(measures, name) for name in ("e_el", "w_rms", "correlation_length")}
+    length = measures.correlation_length
+    if setup.period is None:
+        steady = steady_adhesion(record, length)
+    else:
+        steady = passing_adhesion(record, length, measures.mean, setup.period)
+    numerical = (math.nan, math.nan)
+    if simulation is not None and not steady.sentence:
+        numerical = stated_error(simulation, steady, length)
+    values["w_appr_numerical_error"], values["w_retr_numerical_error"] = numerical
+    values |= {item.name: getattr(steady, item.name) for item in variables(SteadyMeasures)}
+    result = _result_sentence(record, steady, setup.remark)
+    sentences = {"result": result, "steady_sentence": steady.sentence}
+    whole = curves.assign(
+        {name: labelled(replace(_KNOWN[name], dims=()), value) for name, value in values.items()}
+    )
+    return whole.drop_attrs(deep=False).assign_attrs(sentences | curves.attrs, kind=measures.kind)
+
+
+def _comment_on_steps(states: State, dissipated: Array, stiffness: float) -> str:
+    """How much of the dissipated energies is due to the size of the load steps, in words."""
+    loads = getattr(states, variables(type(states))[0].name)
+    added = stiffness / 2 * np.sum(np.diff(loads) ** 2)
+    return (
+        f"load steps add {added / np.nansum(dissipated):.2g} of the sum: half of the stiffness of "
+        "the springs times the square of each step, which smaller steps lower"
+    )
+
+
+def _result_sentence(record: CycleRecord, steady: SteadyAdhesion, remark: str) -> str:
+    """Result of a cycle in one line, with a remark on its works of adhesion."""
+    states = record.states
+    if states.direction.size == 0:
+        return "no state was found"
+    forces = states.forces_summary(record.status)
+    if steady.sentence:
+        unknown = "no steady part: w_appr and w_retr are unknown"
+        return "; ".join(filter(None, (unknown, remark, forces)))
+    works = []
+    for name in ("w_appr", "w_retr", "hysteresis"):
+        value, error = getattr(steady, name), getattr(steady, f"{name}_error")
+        works.append(f"{name} {with_error(value, error) if error > 0 else format(value, '.4g')}")
+    return "; ".join(filter(None, (f"{', '.join(works)} (w_int)", remark, forces)))
+
+
+def find_instabilities(
+    surface: DataArray,
+    *,
+    direction: Direction = -1,
+    max_penetration: float = 1.0,
+    step: float = 0.02,
+    travel: float = 0.05,
+    precision: float | None = None,
+    error: float | None = None,
+    sites: int | None = None,
+    samples: float | None = None,
+) -> Dataset:
+    """The single instabilities of a branch, from first contact or to pull-off.
+
+    Load steps are halved until the front moves smoothly, or until the step is too small to
+    matter, which is an instability.
+
+    Parameters
+    ----------
+    surface : xarray.DataArray
+        As in :func:`run_loop`.
+    direction : {1, -1}, optional
+        Approach or retraction.
+    max_penetration, step : float, optional
+        As in :func:`run_loop`.
+    travel : float, optional
+        Largest motion of a site in a smooth step, in correlation lengths of w_loc; at least a
+        quarter of the root of the precision, by which a front moves smoothly before it jumps.
+    precision : float, optional
+        Penetration to which an instability is located, at most a tenth of the step: a smooth step
+        that is not divided further would count as one. By default 2e-5, or less where the step or
+        the `travel` is small: before pull-off the whole front moves with the root of the
+        penetration. (Units: reduced vertical length)
+    error : float, optional
+        As in :func:`run_loop`, by default 0.05 where the surface states its spectrum.
+    sites, samples : optional
+        As in :func:`run_loop`.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over `instability` the `penetration` (Units: reduced vertical length), the
+        `dissipated_energy` (Units: pi w_int R times that), the whole `area` between the fronts
+        before and after (Units: reduced lateral length**2), and the `extent` of the largest patch
+        of sites that moved by more than the attribute `travel`; these fronts, `before` and `after`,
+        over `angle` as well. (Units: reduced lateral length)
+
+    Raises
+    ------
+    ValueError
+        If an argument cannot be used, a front is not found, or the surface is that of a straight
+        front, which has no first contact and no pull-off to end a branch.
+    TypeError
+        If an argument is of another type.
+    """
+    if isinstance(surface, LoopContact):
+        raise ValueError(
+            "the instabilities are those of a sphere between first contact and pull-off, which a "
+            "straight front has not; give the surface itself"
+        )
+    if direction not in get_args(Direction):
+        raise ValueError(f"direction is {direction!r}; give 1 for approach or -1 for retraction")
+    refuse_no_numbers(max_penetration=max_penetration, step=step, travel=travel)
+    schedule = LoadSchedule(max_penetration, step)
+    if not 0 < travel < math.inf:
+        raise ValueError(f"travel is {travel:g}; it must be positive and finite")
+    numerics = LoopNumerics(error, sites, samples, usual_error=0.05)
+    contact = PressedSphere(surface).setup(None, max_penetration, step, numerics)
+    reach = travel * contact.measures.correlation_length
+    if precision is None:
+        precision = min(2e-5, step / 10, max(reach**2, _round_off(contact)))
+    refuse_no_numbers(precision=precision)
+    if not 0 < precision <= step / 10:
+        raise ValueError(
+            f"precision is {precision:g}; it must be positive, and at most a tenth of the step, "
+            f"{step / 10:g}"
+        )
+    _refuse_unresolved_motion(contact, travel, precision, direction)
+    compile_solver("newton")
+    field, solver = contact.field, Newton(min(contact.tolerance, precision / 10))
+    start = 0.0 if direction > 0 else max_penetration
+    touched = front_at(field, first_touch(field), Load(start, 1), solver)
+    loads = schedule.approach() if direction > 0 else schedule.retraction()
+    steps = resolved_motion(
+        field, touched, start, loads, direction, travel=reach, precision=precision, solver=solver
+    )
+    jumps = [motion for motion in steps if motion.unstable]
+    found = labelled_fields(measured_instabilities(jumps, field, reach))
+    angle = field.geometry.variables[1]
+    return Dataset(found, {angle.name: labelled(angle, field.geometry.sites)}, {"travel": reach})
+
+
+_SMOOTH = 0.25
+"""Motion of a smooth front within a step before a fold, over the root of the step, in correlation
+lengths: where a site is about to jump, it moves with that root."""
+
+
+def _round_off(contact: LoopSetup) -> float:
+    """Penetration below which steps are round-off, in reduced units."""
+    return 10 * float(np.finfo(float).eps) * contact.front.size
+
+
+_PULL_OFF = 1.5
+"""Penetration from pull-off over the square of the motion of the smooth sphere there: half of the
+curvature of the penetration in the radius. (Units: reduced lengths)"""
+
+
+def _refuse_unresolved_motion(
+    contact: LoopSetup, travel: float, precision: float, direction: Direction
+) -> None:
+    """Raise if round-off hides steps of a precision, or if smooth motion counts as a jump."""
+    if precision < (least := _round_off(contact)):
+        raise ValueError(
+            f"precision is {precision:g}, below the round-off of a front of {contact.front.size} "
+            f"sites ({least:.1e}); raise it"
+        )
+    length = contact.measures.correlation_length
+    least = max(_SMOOTH * math.sqrt(precision), precision / length)
+    if direction < 0:
+        least = max(least, math.sqrt(precision / _PULL_OFF) / length)
+    if travel < least:
+        raise ValueError(
+            f"travel is {travel:g} correlation lengths, but within a precision of {precision:g} a "
+            f"front moves smoothly by up to {least:.2g} of them; raise travel or lower precision"
+        )

@@ -1,0 +1,123 @@
+"""A sphere on a user's surface."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+from xarray import DataArray
+
+from crackfront.core import jkr
+from crackfront.core.cycle.follow import Load
+from crackfront.core.cycle.load_schedule import LoadSchedule, protocol
+from crackfront.core.cycle.touch import checked_touch
+from crackfront.core.geometry.sphere import contact_field
+from crackfront.core.solver import DEFAULT_TOLERANCE
+from crackfront.simulate.costs import affordable_seconds
+from crackfront.simulate.numerical_errors import missed_error
+from crackfront.simulate.simulation import simulation_field
+from crackfront.simulate.sphere.full_cycle import FullCycle
+from crackfront.surfaces.given_surface import surface_adhesion
+from crackfront.surfaces.loop_setup import (
+    LoopContact,
+    LoopNumerics,
+    LoopSetup,
+    refuse_few_samples,
+    remark_on_mean,
+    remark_on_sites,
+    state_count,
+)
+from crackfront.surfaces.random_surface import chosen_simulation, stated_spectrum, tile_measures
+
+_SAMPLES = 2.0
+"""Samples a pixel along a ray where no spectrum is stated."""
+
+
+@dataclass(frozen=True, slots=True)
+class PressedSphere(LoopContact):
+    """A sphere, its apex above the centre of the periodic surface."""
+
+    surface: DataArray
+    """The surface, in reduced units."""
+
+    def setup(
+        self,
+        loads: tuple[float, ...] | None,
+        max_penetration: float | None,
+        step: float,
+        numerics: LoopNumerics,
+    ) -> LoopSetup:
+        """As :meth:`crackfront.surfaces.loop_setup.LoopContact.setup`."""
+        if (loads is None) == (max_penetration is None):
+            raise ValueError("a sphere needs max_penetration or loads; give one of the two")
+        if max_penetration is not None:
+            way = LoadSchedule(max_penetration, step).loads()
+            # A smooth sphere comes off there; a rough one goes somewhat further.
+            n_state = 3 + (2 * max_penetration - jkr.pull_off_penetration()) / step
+            return self._setup(max_penetration, way, n_state, numerics)
+        if loads is None or loads[0] < 0:
+            raise ValueError(
+                f"loads begin with {(loads or (0.0,))[0]:g}; a sphere touches at penetration 0, so "
+                "begin there or deeper"
+            )
+        return self._setup(max(loads), protocol(loads, step), state_count(loads, step), numerics)
+
+    def _setup(
+        self, deepest: float, way: Iterator[Load], n_state: float, numerics: LoopNumerics
+    ) -> LoopSetup:
+        """Resolve the contact by the measured laws of errors, or else by the pixels of the tile."""
+        adhesion = surface_adhesion(self.surface)
+        radius, samples = jkr.equilibrium_radius(deepest), numerics.samples or _SAMPLES
+        seconds = affordable_seconds(
+            n_angle=numerics.sites or 2 * math.pi * radius / adhesion.pixel,
+            n_point=adhesion.work_of_adhesion.size,
+            n_state=n_state,
+            n_sample=4 * samples * radius / adhesion.pixel,
+        )
+        measures, simulation = tile_measures(adhesion), None
+        refuse_few_samples(numerics, adhesion.pixel, measures)
+        spectrum = stated_spectrum(self.surface)
+        if spectrum is None and numerics.error is not None:
+            raise ValueError(
+                f"error is {numerics.error:g}, but the surface does not state the spectrum whose "
+                "errors were measured; give sites and samples instead"
+            )
+        if spectrum is None or adhesion.e_el == 0 or numerics.by_pixels:
+            spacing = adhesion.pixel / samples
+            field = contact_field(adhesion, deepest, numerics.sites, spacing)
+            tolerance = DEFAULT_TOLERANCE
+        else:
+            error = numerics.usual_error if numerics.error is None else numerics.error
+            schedule = FullCycle(deepest, 1.0)  # whose step has no effect on sizes
+            chosen = chosen_simulation(
+                measures.kind, spectrum, adhesion.e_el, schedule, error=error
+            )
+            n_point = min(adhesion.work_of_adhesion.shape)
+            sizes = replace(chosen.resolution, tile_side=n_point * adhesion.pixel, n_point=n_point)
+            simulation = replace(chosen, resolution=sizes)
+            # Where no error is asked for, the result states the one that is left.
+            if numerics.error is not None and (left := missed_error(simulation, error)):
+                pixels = spectrum.short_cutoff / adhesion.pixel
+                raise ValueError(
+                    f"error is {error:g}, but the finest numerics on {pixels:.3g} pixels per short "
+                    f"cutoff leave {left:.2g}; ask for that, or leave error out"
+                )
+            field = simulation_field(simulation, adhesion)
+            tolerance = chosen.solver.tolerance
+        remarks = [remark_on_mean(measures)]
+        if simulation is None:
+            length = 2 * math.pi * radius
+            remarks.append(remark_on_sites(field.geometry.n_site, length, measures))
+        return LoopSetup(
+            kind=FullCycle,
+            field=field,
+            front=checked_touch(field, deepest),
+            loads=way,
+            expected=int(n_state),
+            seconds=seconds,
+            tolerance=tolerance,
+            measures=measures,
+            simulation=simulation,
+            remark="; ".join(filter(None, remarks)),
+        )

@@ -1,0 +1,173 @@
+"""A straight front on a user's surface."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from itertools import chain
+
+import numpy as np
+from xarray import DataArray
+
+from crackfront.core.adhesion import AdhesionMap
+from crackfront.core.arguments import refuse_no_numbers
+from crackfront.core.bounds import NUMBER, refuse_outside
+from crackfront.core.cycle.load_schedule import protocol
+from crackfront.core.geometry.line import initial_front, line_field
+from crackfront.core.solver import DEFAULT_TOLERANCE
+from crackfront.core.units import WORK_OF_ADHESION
+from crackfront.simulate.costs import affordable_seconds
+from crackfront.simulate.line.line_loads import LAW_LENGTH, LineSchedule
+from crackfront.surfaces.given_surface import surface_adhesion, surface_kind
+from crackfront.surfaces.loop_setup import (
+    LoopContact,
+    LoopNumerics,
+    LoopSetup,
+    refuse_few_samples,
+    remark_on_mean,
+    remark_on_sites,
+    state_count,
+)
+from crackfront.surfaces.random_surface import tile_measures
+
+_ROUND_OFF = 1e-9
+
+_FEWEST_SAMPLES = 0.5
+"""Samples a pixel: the field of a straight front begins two pixels behind its first front."""
+
+_LINE_ROUND_OFF = 10.0
+"""Round-off of forces of the line, by Fourier transforms, over that of its shortest mode alone."""
+
+
+@dataclass(frozen=True, slots=True)
+class StraightFront(LoopContact):
+    """A straight front on a surface, its contact at smaller x, pulled by springs along x."""
+
+    surface: DataArray
+    """The periodic surface, in reduced units."""
+    spring: float
+    """Length of the springs, w_int / kappa. (Units: reduced lateral length)"""
+
+    def setup(
+        self,
+        loads: tuple[float, ...] | None,
+        max_penetration: float | None,
+        step: float,
+        numerics: LoopNumerics,
+    ) -> LoopSetup:
+        """What a run begins with, as of :meth:`crackfront.surfaces.loop_setup.LoopContact.setup`.
+
+        By default the front has a site for every y, and a sample a pixel along a ray.
+        """
+        if loads is None:
+            raise ValueError("a straight front needs loads; give loads, and no max_penetration")
+        if max_penetration is not None:
+            raise ValueError(
+                f"max_penetration is {max_penetration:g}, but a straight front is at its loads; "
+                "leave max_penetration out"
+            )
+        if numerics.error is not None:
+            raise ValueError(
+                f"error is {numerics.error:g}, but errors of straight fronts on a given surface "
+                "were not measured; give sites and samples instead"
+            )
+        adhesion, way = surface_adhesion(self.surface), protocol(loads, step)
+        remark = self._remark(adhesion)
+        values, n_state = adhesion.work_of_adhesion, state_count(loads, step)
+        samples, measures = numerics.samples or 1.0, tile_measures(adhesion)
+        refuse_few_samples(numerics, adhesion.pixel, measures, _FEWEST_SAMPLES)
+        # The first front lies as far behind its load as pinning may pull the springs.
+        behind = 1.25 * self.spring * float(np.ptp(values)) / WORK_OF_ADHESION
+        furthest = max(abs(min(loads)), abs(max(loads))) + behind + 2 * adhesion.pixel
+        self._refuse_round_off(adhesion, furthest, numerics.sites or values.shape[1])
+        seconds = affordable_seconds(
+            n_angle=numerics.sites or values.shape[1],
+            n_point=values.size,
+            n_state=n_state,
+            n_sample=2 * samples * (float(np.ptp(loads)) + behind) / adhesion.pixel,
+        )
+        field = line_field(
+            adhesion,
+            self.spring,
+            (min(loads), max(loads)),
+            n_site=numerics.sites,
+            spacing=adhesion.pixel / samples,
+        )
+        front = initial_front(field, adhesion, loads[0])
+        few_sites = remark_on_sites(field.geometry.n_site, field.geometry.length, measures)
+        return LoopSetup(
+            kind=LineSchedule,
+            field=field,
+            front=front,
+            # A branch begins with a front of its own: making contact has no energy here.
+            loads=chain([next(way)._replace(start=front)], way),
+            expected=int(n_state),
+            seconds=seconds,
+            tolerance=DEFAULT_TOLERANCE,
+            measures=measures,
+            period=measures.period,
+            load_stiffness=field.geometry.length * field.geometry.stiffness,
+            remark="; ".join(filter(None, (remark, remark_on_mean(measures), few_sites))),
+        )
+
+    def _refuse_round_off(self, adhesion: AdhesionMap, furthest: float, n_site: int) -> None:
+        """Raise if digits of places so far from 0 do not hold forces to the tolerance."""
+        length, period = (adhesion.pixel * n for n in adhesion.work_of_adhesion.shape[::-1])
+        stiffness = 1 / self.spring + _LINE_ROUND_OFF * math.pi * n_site / length
+        force = float(np.finfo(float).eps) * furthest * stiffness
+        if force > DEFAULT_TOLERANCE:
+            raise ValueError(
+                f"the front is pulled as far as {furthest:.4g} by springs of length "
+                f"{self.spring:g}, where the round-off of places makes forces of {force:.1e} "
+                f"w_int, above the tolerance of {DEFAULT_TOLERANCE:g}; shift the loads by periods "
+                f"of the tile, {period:g}, to near 0, or use longer springs or fewer sites"
+            )
+
+    def _remark(self, adhesion: AdhesionMap) -> str:
+        """What a short front means for k; ValueError if it is shorter than its springs."""
+        length = adhesion.pixel * adhesion.work_of_adhesion.shape[1]
+        ratio = length / self.spring
+        if ratio < 1 - _ROUND_OFF:
+            raise ValueError(
+                f"spring is {self.spring:g}, longer than the front, {length:g}, which is pinned as "
+                "a whole; shorten the spring or lengthen the tile along y"
+            )
+        if ratio < LAW_LENGTH * (1 - _ROUND_OFF):
+            return (
+                f"the front is {ratio:.2g} L_kappa long, below the {LAW_LENGTH:g} of the law of k: "
+                "its hysteresis is too large"
+            )
+        return ""
+
+
+def straight_front(surface: DataArray, spring: float) -> StraightFront:
+    """A straight front for :func:`crackfront.run_loop`, whose loads are places of its springs.
+
+    The front is as long as the side of the surface along y. Where this is below ten times the
+    length of the springs, the factor k is larger than that of a long front, by which the law of k
+    was measured; the result of the loop says so.
+
+    Parameters
+    ----------
+    surface : xarray.DataArray
+        Surface, as of :func:`crackfront.surface`.
+    spring : float
+        Length of the springs, w_int over their stiffness per area. (Units: reduced lateral length)
+
+    Returns
+    -------
+    StraightFront
+        For :func:`crackfront.run_loop`.
+
+    Raises
+    ------
+    ValueError
+        If the spring has no such length, or the surface another name than that of one. The loop
+        refuses springs that are longer than the front.
+    TypeError
+        If an argument is of another type.
+    """
+    surface_kind(surface)
+    refuse_no_numbers(spring=spring)
+    refuse_outside("spring", spring, NUMBER)
+    return StraightFront(surface, float(spring))

@@ -1,0 +1,172 @@
+"""Units as people write them, read from texts such as 0.7MPa; the only importer of pint."""
+
+from __future__ import annotations
+
+import functools
+import math
+import re
+import unicodedata
+from typing import Any
+
+from crackfront.core.bounds import SI, refuse_outside
+
+_QUANTITY = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(\S.*?)?\s*")
+"""A number and what stands behind it."""
+
+_COMMA = re.compile(r"(?<=\d),(?=\d)")
+"""A comma in a number, which stands for a point in one country and for nothing in another."""
+
+_PIXELS = re.compile(r"[a-z_]*(px|pixels?|dots?)(?![a-z])", re.IGNORECASE)
+"""Pixels of a picture, of which pint has a length, that of a style sheet."""
+
+_NAMES = {
+    "m": "length",
+    "Pa": "pressure",
+    "J/m^2": "energy per area",
+    "N": "force",
+    "N/m": "stiffness",
+}
+_EXAMPLES = {"m": "1.25mm", "Pa": "0.7MPa", "J/m^2": "63mJ/m2", "N": "0.4mN", "N/m": "200N/m"}
+
+_POWER = re.compile(r"([A-Za-z]+)(-?[1-9](?:\.\d+)?)(?![\w.])")
+"""A power without a sign for it, as in J/m2, J m-2 or Pa m0.5."""
+
+_SIGNS = str.maketrans(
+    {"\u03bc": "u", "\u2212": "-", "\u2010": "-", "\u2013": "-", "\u00b7": "*", "\u22c5": "*"}
+)
+"""Signs that pint does not know, or knows by another letter: Greek mu, dashes, dots of products."""
+
+_PRODUCT = re.compile(r"(?<=[A-Za-z])\.(?=[A-Za-z])")
+"""A full stop between two units, as in mJ.m-2."""
+
+
+def si_value(text: str, unit: str, *, what: str) -> float:
+    """Value, in an SI unit, of a positive number and its unit, as in 0.7MPa or 63 mJ/m2.
+
+    Its unit may be any of the same dimension; a refusal says what the quantity is. ValueError if
+    there is no unit, an unknown one or one of another dimension, or the number is not positive and
+    finite.
+
+    Examples
+    --------
+    >>> round(si_value("63mJ/m2", "J/m^2", what="work of adhesion"), 12)
+    0.063
+    """
+    dimension = _NAMES[unit]
+    example = f"write a number and a unit of {dimension}, as in {_EXAMPLES[unit]}"
+    found = _QUANTITY.fullmatch(unicodedata.normalize("NFKC", text).translate(_SIGNS))
+    if _COMMA.search(text):
+        raise ValueError(
+            f"{what} is {text!r}, a number with a comma; write {_COMMA.sub('.', text)!r} if that "
+            "is meant"
+        )
+    if found is None:
+        raise ValueError(f"{what} is {text!r}, which is no number with a unit; {example}")
+    if found[2] is None:
+        raise ValueError(f"{what} is {text!r}, without a unit; {example}")
+    try:
+        value = _converted(float(found[1]), _plain(found[2]), unit)
+    except ValueError as error:
+        wrong = f"whose unit {found[2]} is unknown"
+        if isinstance(error, PixelError):
+            wrong = "in pixels, which have no length"
+        elif isinstance(error, DimensionError):
+            wrong = f"which is no {dimension}"
+        raise ValueError(f"{what} is {text!r}, {wrong}; {example}") from error
+    if not (math.isfinite(value) and value > 0):
+        raise ValueError(f"{what} is {text!r}; it must be positive and finite")
+    if found[2].startswith("mPa"):
+        meant = text.replace("mPa", "MPa")
+        raise ValueError(
+            f"{what} is {text!r}, {value:g} Pa, too soft to be solid; was {meant!r} meant?"
+        )
+    refuse_outside(what, value, SI[unit], unit)
+    return value
+
+
+def _plain(given: str) -> str:
+    """A unit as pint reads it, of one as people and the files of this package write it."""
+    signs = unicodedata.normalize("NFKC", given).translate(_SIGNS)
+    return _POWER.sub(r"\1^\2", _PRODUCT.sub("*", signs))
+
+
+def unit_value(given: str, unit: str) -> float:
+    """Value of one unit in another of the same dimension; a ValueError where there is none.
+
+    Examples
+    --------
+    >>> unit_value("mJ / m^2", "J / m^2")
+    0.001
+    """
+    try:
+        return _converted(1.0, _plain(given), unit)
+    except PixelError as error:
+        raise ValueError(
+            f"the unit {given} is one of pixels, which have no length; give a unit of length"
+        ) from error
+    except ValueError as error:
+        raise ValueError(f"the unit {given} cannot be converted to {unit}") from error
+
+
+def is_unit(given: str, unit: str) -> bool:
+    """Whether a text is a unit of the same dimension as another one."""
+    try:
+        unit_value(given, unit)
+    except ValueError:
+        return False
+    return True
+
+
+class DimensionError(ValueError):
+    """A unit that is of another dimension than the wanted one."""
+
+
+class PixelError(DimensionError):
+    """A unit of pixels, which say nothing of lengths."""
+
+
+def _converted(value: float, given: str, unit: str) -> float:
+    """Value in a unit of a number in another one; a ValueError where it has none."""
+    import pint
+
+    if _PIXELS.search(given):
+        raise PixelError(given)
+    registry = _registry()
+    try:
+        return float(registry.Quantity(value, given).to(unit).magnitude)
+    except pint.DimensionalityError as error:
+        raise DimensionError(str(error)) from error
+    # A unit that is no expression fails anywhere in pint, whose parser asserts and divides.
+    except Exception as error:
+        raise ValueError(str(error)) from error
+
+
+@functools.cache
+def _registry() -> Any:
+    """Registry of units, made once in a process."""
+    import pint
+
+    # Files of pint's cache name those of one environment, and fail in others once that is removed.
+    return pint.UnitRegistry()
+
+
+_PREFIXES = {-12: "p", -9: "n", -6: "u", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"}
+
+
+def prefixed(unit: str, *values: float, digits: int = 3) -> str:
+    """Values in a unit with the prefix that the first of them calls for.
+
+    They are a number, or a number and the ends of its interval, in an SI unit without a prefix, and
+    are written with so many significant digits.
+
+    Examples
+    --------
+    >>> prefixed("m", 2.1e-6), prefixed("J/m2", 0.0329, 0.0282, 0.0376)
+    ('2.1 um', '32.9 mJ/m2 (28.2 to 37.6)')
+    """
+    known = abs(values[0]) > 0 and math.isfinite(values[0])
+    power = 3 * math.floor(math.log10(abs(values[0]) * (1 + 1e-9)) / 3) if known else 0
+    power = min(max(power, min(_PREFIXES)), max(_PREFIXES))
+    first, *ends = (f"{float(f'{value / 10.0**power:.{digits}g}'):g}" for value in values)
+    interval = f" ({ends[0]} to {ends[1]})" if ends and math.isfinite(values[1]) else ""
+    return f"{first} {_PREFIXES[power]}{unit}{interval}"

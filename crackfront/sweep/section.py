@@ -1,0 +1,262 @@
+"""Strict YAML: sections of configurations, read from files, and sentences for what they refuse."""
+
+from __future__ import annotations
+
+import os
+import re
+import reprlib
+from collections.abc import Iterator
+from itertools import count
+from pathlib import Path
+from typing import Annotated, Any, TypeVar, get_args
+from urllib.parse import quote_from_bytes, unquote_to_bytes
+
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError, ValidationInfo
+from pydantic_core import ErrorDetails, PydanticCustomError
+from ruamel.yaml import YAML
+from ruamel.yaml.constructor import SafeConstructor
+from ruamel.yaml.error import MarkedYAMLError
+from ruamel.yaml.nodes import MappingNode, ScalarNode
+
+from crackfront.core.arguments import nearest_name, regular_file
+from crackfront.core.bounds import (
+    COUNT,
+    DENSITY,
+    NUMBER,
+    PLATEAU,
+    SEED,
+    Range,
+)
+
+
+def refusal(message: str) -> PydanticCustomError:
+    """A refusal that keeps its own sentence."""
+    return PydanticCustomError("section", "{message}", {"message": message})
+
+
+def bounds_validator(bounds: Range) -> AfterValidator:
+    """Validator that refuses numbers outside of bounds."""
+
+    def bounded(value: float) -> float:
+        if not bounds.least <= value <= bounds.most:
+            must = f"it must lie between {bounds.least:g} and {bounds.most:g}"
+            raise PydanticCustomError("range", "{must}", {"must": must})
+        return value
+
+    return AfterValidator(bounded)
+
+
+Positive = Annotated[float, Field(gt=0, allow_inf_nan=False), bounds_validator(NUMBER)]
+Plateau = Annotated[float, Field(gt=0, allow_inf_nan=False), bounds_validator(PLATEAU)]
+Density = Annotated[float, Field(gt=0, allow_inf_nan=False), bounds_validator(DENSITY)]
+Count = Annotated[int, Field(ge=1), bounds_validator(COUNT)]
+Seed = Annotated[int, Field(ge=0), bounds_validator(SEED)]
+Energy = Annotated[float, Field(gt=0, lt=1), bounds_validator(NUMBER)]
+
+_MOST_BYTES = 5e5
+"""Size of a file; that of a person has some thousands."""
+
+_MOST_VALUES = 200_000
+"""Values, those of repeated anchors included."""
+
+_MOST_SENTENCES = 20
+"""Refusals of one file that are printed."""
+
+
+def resolved_path(path: Path, info: ValidationInfo) -> Path:
+    """Path that a configuration names; a relative one begins in the folder of the configuration."""
+    return Path(info.context or "") / path
+
+
+InputFile = Annotated[Path, Field(strict=False), AfterValidator(resolved_path)]
+"""A file that a configuration names; a relative path begins in the folder of the configuration."""
+
+_HOME = "# Relative paths begin in "
+"""First line of a configuration that is stored in another folder than it was in."""
+
+_PRINTED = "".join(map(chr, range(32, 127))).replace("%", "")
+"""Letters that stand in it as they are."""
+
+
+def movable_text(path: Path) -> str:
+    """Text of a configuration, its relative paths kept valid in whatever folder it is stored."""
+    text = path.read_text(encoding="utf-8")
+    if text.startswith(_HOME) or not re.search(r"\bsurface\s*:", text):
+        return text
+    # Names of folders are bytes, of which texts hold what is printed.
+    home = quote_from_bytes(os.fsencode(path.resolve().parent), safe=_PRINTED)
+    return f"{_HOME}{home}\n{text}"
+
+
+class ConfigurationError(ValueError):
+    """A configuration that cannot be used; each line is a sentence on one fault."""
+
+
+class Section(BaseModel):
+    """A mapping of a file; unknown keys and conversions are refused."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
+
+
+Kind = TypeVar("Kind", bound=Section)
+
+
+def validated(path: Path, content: object, schema: type[Kind]) -> Kind:
+    """Section of a schema, filled with the content of a file that :func:`yaml_mapping` has read.
+
+    ConfigurationError, with a sentence that names the file for each key that is unknown, missing
+    or out of range.
+    """
+    try:
+        first, *_ = path.read_text(encoding="utf-8").splitlines() or [""]
+        folder = path.resolve().parent
+        if first.startswith(_HOME):
+            folder = Path(os.fsdecode(unquote_to_bytes(first.removeprefix(_HOME))))
+        return schema.model_validate(content, context=folder)
+    except ValidationError as error:
+        found = error.errors(include_url=False)
+        around = {item["loc"][:depth] for item in found for depth in range(len(item["loc"]))}
+        # A list whose entries are refused is also called too short.
+        found = [item for item in found if item["type"] != "too_short" or item["loc"] not in around]
+        lines = [f"{path}: {_sentence(item, schema)}" for item in found[:_MOST_SENTENCES]]
+        if len(found) > _MOST_SENTENCES:
+            lines.append(f"{path}: and {len(found) - _MOST_SENTENCES} more such keys and values")
+        raise ConfigurationError("\n".join(lines)) from error
+
+
+class _Constructor(SafeConstructor):
+    """Values of YAML 1.2, each key once; refuses integers that are octal in YAML 1.1."""
+
+    def construct_mapping(self, node: MappingNode, deep: bool = False) -> dict[Any, Any]:
+        """Mapping of a node, each key once."""
+        if self.resolver.processing_version != (1, 2):
+            raise MarkedYAMLError(problem="it is read as YAML 1.2; remove the line %YAML")
+        names = set()
+        for key, _ in node.value:
+            name = str(self.construct_object(key, deep=True))
+            if name in names:
+                raise MarkedYAMLError(
+                    problem=f"key {name!r} stands twice; remove one", problem_mark=key.start_mark
+                )
+            names.add(name)
+        mapping: dict[Any, Any] = super().construct_mapping(node, deep)
+        return mapping
+
+    def construct_yaml_int(self, node: ScalarNode) -> int:
+        """Integer of a node, without a leading 0."""
+        if re.fullmatch(r"[-+]?0[0-9_]+", node.value):
+            raise MarkedYAMLError(
+                problem=f"{node.value} begins with 0, as octal numbers do elsewhere; remove the 0",
+                problem_mark=node.start_mark,
+            )
+        return int(super().construct_yaml_int(node))
+
+
+_Constructor.add_constructor("tag:yaml.org,2002:int", _Constructor.construct_yaml_int)
+
+
+def yaml_mapping(path: Path) -> dict[str, Any]:
+    """Mapping that a YAML file holds, with tuples for lists.
+
+    ConfigurationError if the file cannot be read, holds no mapping, or is too large or deep for
+    what a person writes.
+    """
+    try:
+        text = regular_file(path, _MOST_BYTES).read_text(encoding="utf-8")
+    except OSError as error:
+        raise ConfigurationError(f"{path} cannot be read: {error.strerror}") from error
+    except UnicodeDecodeError as error:
+        raise ConfigurationError(f"{path} is no UTF-8 text; save it as UTF-8") from error
+    except ValueError as error:
+        raise ConfigurationError(str(error)) from error
+    try:
+        reader = YAML(typ="safe", pure=True)
+        reader.Constructor = _Constructor
+        content = _frozen(reader.load(text), count())
+    except MarkedYAMLError as error:
+        line = f" in line {error.problem_mark.line + 1}" if error.problem_mark else ""
+        raise ConfigurationError(f"{path} is no valid YAML{line}: {error.problem}") from error
+    except RecursionError as error:
+        raise ConfigurationError(
+            f"{path}: more than {_MOST_VALUES} values, or nested without end; write it shorter"
+        ) from error
+    except Exception as error:  # what constructors raise at dates and numbers that are none, too
+        raise ConfigurationError(f"{path} is no valid YAML: {error}") from error
+    if content is None:
+        raise ConfigurationError(f"{path} is empty; write a configuration like config/test.yaml")
+    if not isinstance(content, dict):
+        kind = "a list" if isinstance(content, tuple) else "a single value"
+        raise ConfigurationError(
+            f"{path} holds {kind}, not keys with values; write a configuration like "
+            "config/test.yaml"
+        )
+    return content
+
+
+def _frozen(value: Any, counted: Iterator[int]) -> Any:
+    """A YAML value with tuples for lists and text for keys."""
+    if next(counted) > _MOST_VALUES:
+        raise RecursionError
+    if isinstance(value, list):
+        return tuple(_frozen(item, counted) for item in value)
+    if isinstance(value, dict):
+        return {str(key): _frozen(item, counted) for key, item in value.items()}
+    return value
+
+
+def _sentence(error: ErrorDetails, schema: type[Section]) -> str:
+    """What one error of pydantic means."""
+    parts = (f"[{part}]" if isinstance(part, int) else f".{part}" for part in error["loc"])
+    place = "".join(parts).lstrip(".")
+    if error["type"] == "section":
+        return f"{place}: {error['msg']}" if place else error["msg"]
+    if error["type"] == "extra_forbidden":
+        return f"unknown key {place}; {_known_keys(error['loc'], schema)}"
+    if error["type"] == "missing":
+        return f"key {place} is missing; add it"
+    must = re.sub(r"^(Input|String|Tuple|Value) should", "it must", error["msg"])
+    must = _SHORT.get(error["type"], must)
+    if error["type"] == "too_short":
+        least = error["ctx"]["min_length"]
+        must = f"it must have at least {'one entry' if least == 1 else f'{least} entries'}"
+    value = list(error["input"]) if isinstance(error["input"], tuple) else error["input"]
+    key = next((part for part in reversed(error["loc"]) if isinstance(part, str)), "")
+    meaning = "" if error["type"] == "too_short" else _MEANING.get(key, "")
+    return f"{place} is {_SHOWN.repr(value)}; {must}{meaning}"
+
+
+_SHOWN = reprlib.Repr()
+_SHOWN.maxlist, _SHOWN.maxstring, _SHOWN.maxother = 8, 80, 80
+"""How a value is shown that may be long."""
+
+_SHORT = {
+    "model_type": "it must be a mapping of keys",
+    "model_attributes_type": "it must be a mapping of keys",
+    "tuple_type": "it must be a list",
+    "string_pattern_mismatch": "it must consist of letters, digits, _ and -",
+    "finite_number": "it must be finite",
+    "path_type": "it must be the name of a file",
+}
+
+_MEANING = {
+    "elastic_energy": " (in units of w_int: full conformity needs an energy below w_int)",
+    "work_of_adhesion_rms": " (in units of w_int: at 2 the energy of full conformity is w_int)",
+}
+
+
+def _known_keys(location: tuple[int | str, ...], schema: type[BaseModel]) -> str:
+    """The nearest key that would be right at an unknown one."""
+    section = schema
+    for part in location[:-1]:
+        if isinstance(part, str):
+            section = _section_of(section.model_fields[part].annotation)
+    return nearest_name(str(location[-1]), section.model_fields, "the keys here are")
+
+
+def _section_of(annotation: Any) -> type[BaseModel]:
+    """The section in the type of a field, as in `tuple[Section, ...]` or `Section | None`."""
+    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        return annotation
+    return next(
+        _section_of(part) for part in get_args(annotation) if part not in (Ellipsis, type(None))
+    )

@@ -1,0 +1,160 @@
+"""The file of a whole sweep: every simulation's apparent work of adhesion, status and cost."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import math
+from collections import Counter
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import asdict
+from operator import attrgetter
+from pathlib import Path
+from typing import Any
+
+import netCDF4
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from crackfront.analysis.steady_adhesion import STEADY_DEFINITION
+from crackfront.analysis.table import SweepAxes, SweepRow, SweepTable
+from crackfront.core.spectrum import SelfAffineSpectrum
+from crackfront.core.variables import variables
+from crackfront.simulate.labels import flag_words, labelled_fields
+from crackfront.simulate.provenance import Provenance
+from crackfront.simulate.storage import UnreadableFileError, read_derived, write_derived
+from crackfront.sweep.requests import table_request
+from crackfront.sweep.rows import labelled_columns
+from crackfront.sweep.sweep import Sweep
+
+TABLE_REQUEST = "request"
+"""Attribute that says what a table was asked for, by the digest of its request."""
+
+_WINDOW = ("lowest_radius", "highest_radius")
+"""Ends of the steady window."""
+
+
+def columns_dataset(
+    sweep: Sweep, columns: Mapping[str, NDArray[np.generic]], realisations: range
+) -> xr.Dataset:
+    """Dataset of rows: columns over all spectra, all amplitudes and some realisations."""
+    axes = labelled_fields(_axes(sweep, realisations))
+    return xr.Dataset(labelled_columns(columns), axes, _attributes(sweep))
+
+
+def write_hysteresis(
+    path: Path,
+    sweep: Sweep,
+    shards: Sequence[Sequence[dict[str, NDArray[np.generic]]]],
+    origin: Provenance,
+) -> None:
+    """Write the file of a sweep: for each spectrum the columns of its shards, in their order.
+
+    The shards of a spectrum have all its realisations. Their columns are taken out of them, so that
+    they need not be in memory twice.
+    """
+    columns = {}
+    for variable in variables(SweepRow):
+        spectra = [
+            np.concatenate([one.pop(variable.name) for one in parts], axis=2) for parts in shards
+        ]
+        columns[variable.name] = np.concatenate(spectra)
+    dataset = columns_dataset(sweep, columns, range(sweep.n_realisation))
+    request = {TABLE_REQUEST: table_request(sweep).digest}
+    with _small_chunk_caches():
+        write_derived(path, dataset.assign_attrs(request), origin)
+
+
+@contextlib.contextmanager
+def _small_chunk_caches() -> Iterator[None]:
+    """Let netCDF cache a megabyte of each variable that it writes instead of 64.
+
+    A column is written at once and never read, but its cache stays until the file is closed.
+    """
+    before = netCDF4.get_chunk_cache()
+    netCDF4.set_chunk_cache(10**6, *before[1:])
+    try:
+        yield
+    finally:
+        netCDF4.set_chunk_cache(*before)
+
+
+def read_table(path: Path) -> SweepTable:
+    """Arrays of a sweep that a fit needs, from a file that :func:`write_hysteresis` wrote.
+
+    UnreadableFileError if the file is missing, truncated or that of something else.
+    """
+    names = sorted(set(SweepTable.__dataclass_fields__) - {"contact_radius", "parameters"})
+    dataset = _read(path, (*names, *_WINDOW))
+    columns = {name: np.asarray(dataset[name]) for name in names}
+    if "parameters" in dataset:  # of spectra that are not self-affine
+        columns["parameters"] = np.asarray(dataset["parameters"])
+    columns["contact_radius"] = np.mean([dataset[name] for name in _WINDOW], axis=0)
+    columns["spectrum"] = columns["spectrum"].astype(np.str_)
+    return SweepTable(**columns)
+
+
+def read_statuses(path: Path) -> Counter[str]:
+    """Number of simulations of every status in the file of a sweep; as :func:`read_table`."""
+    return Counter(flag_words(_read(path, ("status",)).status).ravel().tolist())
+
+
+def _read(path: Path, names: Collection[str]) -> xr.Dataset:
+    """Dataset of a file with variables that it must have, `status` with the words of its flags."""
+    dataset = read_derived(path, names)
+    missing = [name for name in names if name not in dataset]
+    if "status" in dataset and "flag_meanings" not in dataset.status.attrs:
+        missing.append("the flags of status")
+    if missing:
+        raise UnreadableFileError(f"{path} lacks {', '.join(missing)}; aggregate the sweep again")
+    return dataset
+
+
+def _axes(sweep: Sweep, realisations: range) -> SweepAxes:
+    """Coordinates of a sweep, and of some of its realisations."""
+    spectra = [item.spectrum for item in sweep.spectra]
+    energies = np.array(sweep.elastic_energies)
+    one_per_amplitude = [sweep.one_per_amplitude(item) for item in sweep.spectra]
+    stated = all(isinstance(one, SelfAffineSpectrum) for one in spectra)
+    texts = [json.dumps(one.parameters, default=np.ndarray.tolist) for one in spectra]
+
+    def each(name: str) -> NDArray[Any]:
+        return np.array([[attrgetter(name)(one) for one in row] for row in one_per_amplitude])
+
+    return SweepAxes(
+        spectrum=np.array([item.name for item in sweep.spectra]),
+        short_cutoff=np.array([spectrum.short_cutoff for spectrum in spectra]),
+        roll_off=np.array([spectrum.longest_feature for spectrum in spectra]),
+        hurst=np.array([getattr(spectrum, "hurst", math.nan) for spectrum in spectra]),
+        correlation_length=each("correlation_length")[:, 0],
+        spring=each("schedule.spring"),
+        n_angle=each("resolution.n_angle"),
+        sample_spacing=each("resolution.spacing"),
+        tile_side=each("resolution.tile_side"),
+        n_point=each("resolution.n_point"),
+        tolerance=each("solver.tolerance"),
+        series=each("series"),
+        amplitude=energies,
+        w_rms_requested=2 * np.sqrt(energies),
+        realisation=np.array(realisations),
+        parameters=None if stated else np.array(texts),
+    )
+
+
+def _attributes(sweep: Sweep) -> dict[str, str | float]:
+    """Attributes of the file of a sweep."""
+    attributes: dict[str, str | float] = {
+        "title": f"adhesion hysteresis, {sweep.kind}",
+        "kind": sweep.kind,
+        "definition": STEADY_DEFINITION,
+        "sweep_seed": sweep.seed,
+    }
+    if sweep.scales is not None:
+        attributes |= {f"scale_{name}": value for name, value in asdict(sweep.scales).items()}
+        attributes |= {
+            "lateral_unit_in_metres": sweep.scales.lateral,
+            "vertical_unit_in_metres": sweep.scales.vertical,
+            "force_unit_in_newtons": sweep.scales.force,
+        }
+    return attributes

@@ -1,0 +1,240 @@
+"""Coverage of the intervals of measured loops: simulated rough spheres as rigs would record them.
+
+The truth of a loop is what the simulation of its sphere has, without an instrument between.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from xarray import Dataset
+
+from crackfront.core.arrays import Array
+from crackfront.core.spectrum import SelfAffineSpectrum
+from crackfront.measured.loops.loop import MeasuredLoop, Rig, analyse_loop
+from crackfront.measured.loops.recording import Recording
+from crackfront.measured.loops.simulated_loop import simulated_loop
+from crackfront.surfaces.loops import run_loop
+from crackfront.surfaces.random_surface import random_surface
+from crackfront.surfaces.si_units import Scales, in_si_units
+from studies.pages import markdown_table
+
+SPHERE = Scales(radius=1.25e-3, work_of_adhesion=63e-3, contact_modulus=0.7e6 / 0.75)
+
+SURFACES = tuple(
+    (spectrum, elastic_energy)
+    for elastic_energy in (0.02, 0.1)
+    for spectrum in (SelfAffineSpectrum(0.1, 0.1, 1.0), SelfAffineSpectrum(0.05, 0.2, 0.8))
+)
+"""Spectra of the spheres, in reduced lengths, and e_el in w_int."""
+
+WORKS = ("w_appr", "w_retr", "hysteresis")
+
+
+@dataclass(frozen=True, slots=True)
+class Press:
+    """How deep a sphere is pressed, in reduced units."""
+
+    deepest: float
+    """Largest penetration."""
+    side: float
+    """Side of the surface."""
+    step: float
+    """Step of the penetration."""
+
+
+SHALLOW = Press(deepest=2.5, side=5.0, step=0.02)
+"""To twice the pull-off force of the smooth sphere."""
+DEEP = Press(deepest=9.2, side=8.0, step=0.05)
+"""To 18 times the pull-off force of the smooth sphere."""
+
+
+@dataclass(frozen=True, slots=True)
+class Instrument:
+    """How a rig records a loop."""
+
+    force_noise: float = 0.002
+    """Standard deviation, relative to the largest force."""
+    radius_noise: float = 0.003
+    """Standard deviation, relative to the contact radius."""
+    drift: float = 0.0
+    """Drift of the force over the loop, relative to the largest force."""
+    wave: float = 0.0
+    """Amplitude of a wave of the force in time, relative to the largest force."""
+    stiffness: float = 1e3
+    """Stiffness of the machine. (Units: N/m)"""
+    recorded: float = 0.7
+    """Part of the states that is recorded, at random, so that steps are irregular."""
+    free_rows: int = 30
+    """Rows out of contact, before the contact and after it."""
+    retraction: float = 1.0
+    """Part of the way of the mount from the turn to pull-off that it goes back."""
+    knows_modulus: bool = True
+    """Whether the modulus is given, not fitted."""
+    sees_contact: bool = True
+    """Whether the contact radius is recorded; else the stiffness of the machine is known."""
+
+
+INSTRUMENTS: Mapping[str, Instrument] = {
+    "usual": Instrument(),
+    "modulus fitted": Instrument(knows_modulus=False),
+    "noise of 1%": Instrument(force_noise=0.01, radius_noise=0.01),
+    "noise of 1%, modulus fitted": Instrument(
+        force_noise=0.01, radius_noise=0.01, knows_modulus=False
+    ),
+    "drift of 5%": Instrument(drift=0.05),
+    "a quarter of the states": Instrument(recorded=0.25),
+    "60% of the retraction": Instrument(retraction=0.6),
+    "machine of 100 N/m": Instrument(stiffness=100.0),
+    "machine of 1 MN/m": Instrument(stiffness=1e6),
+    "no contact radius": Instrument(sees_contact=False),
+    "no contact radius, drift of 30%": Instrument(sees_contact=False, drift=0.3),
+    "no contact radius, wave of 1%": Instrument(sees_contact=False, wave=0.01),
+    "no contact radius, 8 rows outside": Instrument(sees_contact=False, free_rows=8),
+}
+"""What the loops are recorded with."""
+
+DEEP_INSTRUMENTS: Mapping[str, Instrument] = {
+    "18 pull-off forces": Instrument(),
+    "18 pull-off forces, no contact radius": Instrument(sees_contact=False),
+    "18 pull-off forces, no contact radius, drift of 30%": Instrument(
+        sees_contact=False, drift=0.3
+    ),
+}
+"""What the loops of spheres that are pressed deep are recorded with."""
+
+RECORDED = ((SHALLOW, INSTRUMENTS), (DEEP, DEEP_INSTRUMENTS))
+
+
+@dataclass(frozen=True, slots=True)
+class Coverage:
+    """How the intervals of an instrument hold the truth, a loop a row."""
+
+    inside: Array
+    """Whether w_appr, w_retr and hysteresis lie in their intervals. Shape (n_loop, 3)."""
+    offset: Array
+    """Found minus true work, over the true hysteresis. Shape (n_loop, 3)."""
+    reach: Array
+    """Half of each interval over the true hysteresis. Shape (n_loop, 3)."""
+    refused: int = 0
+    """Loops of too few rows for any number."""
+
+
+def cycles(count: int, press: Press = SHALLOW) -> Iterator[Dataset]:
+    """Simulated cycles of rough spheres in SI units, the spectra in turn."""
+    for number in range(count):
+        spectrum, energy = SURFACES[number % len(SURFACES)]
+        surface = random_surface(spectrum, energy, side=press.side, seed=number)
+        cycle = run_loop(surface, max_penetration=press.deepest, step=press.step, fronts=False)
+        yield in_si_units(cycle, SPHERE)
+
+
+def recording(cycle: Dataset, instrument: Instrument, rng: np.random.Generator) -> Recording:
+    """Rows of a rig whose mount goes forth and back: of the states those that a soft machine meets.
+
+    Where the force falls faster than the machine gives way the edge jumps on until the mount has to
+    move again.
+    """
+    force, penetration, radius, direction = (
+        np.asarray(cycle[name]) for name in ("force", "penetration", "mean_radius", "direction")
+    )
+    mount = penetration + force / instrument.stiffness
+    visited = np.flatnonzero(_first_visits(mount, direction))
+    turn = int(np.argmax(mount[visited]))
+    if instrument.retraction < 1:
+        way = mount[visited[turn]] - mount[visited]
+        visited = visited[
+            (np.arange(visited.size) <= turn) | (way <= instrument.retraction * way[-1])
+        ]
+    kept = rng.random(visited.size) < instrument.recorded
+    kept[turn] = True
+    rows = visited[kept]
+    largest = float(np.max(np.abs(force)))
+    before = np.zeros(instrument.free_rows)
+    after = before if instrument.retraction == 1 else np.zeros(0)
+    free = np.linspace(1e-6, 0, before.size)
+    columns = {
+        "force": np.concatenate([before, force[rows], after]),
+        "radius": np.concatenate([before, radius[rows], after]),
+        "displacement": np.concatenate(
+            [mount[rows[0]] - free, mount[rows], mount[rows[-1]] - free[::-1][: after.size]]
+        ),
+    }
+    count = columns["force"].size
+    noise = instrument.force_noise * rng.normal(size=count)
+    noise += instrument.drift * np.linspace(-0.3, 0.7, count)
+    noise += instrument.wave * np.sin(np.arange(count) / 7)
+    columns["force"] += largest * noise
+    columns["radius"] *= 1 + instrument.radius_noise * rng.normal(size=count)
+    seen = instrument.sees_contact
+    return Recording(columns["force"], columns["radius"] if seen else None, columns["displacement"])
+
+
+def _first_visits(mount: Array, direction: Array) -> Array:
+    """Whether the mount is at a state further than ever on its branch; contact is made at 0."""
+    found = np.zeros(mount.size, bool)
+    for sign, start in ((1, 0.0), (-1, -np.inf)):
+        branch = np.flatnonzero(direction == sign)
+        ahead = np.concatenate([[start], sign * mount[branch]])
+        found[branch] = ahead[1:] > np.maximum.accumulate(ahead)[:-1]
+    return found
+
+
+def coverage(
+    loops: Iterable[Dataset], instruments: Mapping[str, Instrument], seed: int = 0
+) -> dict[str, Coverage]:
+    """Coverage by the names of the instruments, each of which records every loop."""
+    found: dict[str, list[tuple[Array, Array]]] = {name: [] for name in instruments}
+    refused = Counter[str]()
+    for number, cycle in enumerate(loops):
+        truth = simulated_loop(cycle)
+        for place, (name, instrument) in enumerate(instruments.items()):
+            rng = np.random.default_rng((seed, number, place))
+            rig = Rig(
+                SPHERE.radius,
+                SPHERE.contact_modulus if instrument.knows_modulus else None,
+                stiffness=None if instrument.sees_contact else instrument.stiffness,
+            )
+            try:
+                measured = analyse_loop(recording(cycle, instrument, rng), rig)
+            except ValueError:
+                refused[name] += 1
+            else:
+                found[name].append(_departures(measured, truth))
+    return {name: _coverage(one, refused[name]) for name, one in found.items()}
+
+
+def _departures(measured: MeasuredLoop, truth: MeasuredLoop) -> tuple[Array, Array]:
+    """Departures of the works and halves of their intervals, over the true hysteresis."""
+    works = [(getattr(measured, name), getattr(truth, name).value) for name in WORKS]
+    unit = truth.hysteresis.value
+    offset = np.array([(one.value - value) / unit for one, value in works])
+    return offset, np.array([(one.high - one.low) / 2 / unit for one, _ in works])
+
+
+def _coverage(loops: list[tuple[Array, Array]], refused: int) -> Coverage:
+    """Coverage of an instrument from the departures of its loops."""
+    offset, reach = (np.array(column) for column in zip(*loops, strict=True))
+    return Coverage(np.abs(offset) <= reach, offset, reach, refused)
+
+
+def coverage_table(found: Mapping[str, Coverage]) -> str:
+    """Shares of intervals that hold the truth, in Markdown, an instrument a row, and of all."""
+    rows = []
+    for name, one in found.items():
+        shares = [f"{share:.0%}" for share in (*np.mean(one.inside, axis=0), np.mean(one.inside))]
+        error = f"{np.sqrt(np.mean(one.offset[:, 2] ** 2)):.0%}"
+        half = f"{np.median(one.reach[:, 2]):.0%}"
+        rows.append((name, str(len(one.inside)), str(one.refused), *shares, error, half))
+    inside = np.concatenate([one.inside for one in found.values()])
+    refused = sum(one.refused for one in found.values())
+    shares = [f"{share:.0%}" for share in (*np.mean(inside, axis=0), np.mean(inside))]
+    rows.append(("**all**", str(len(inside)), str(refused), *shares, "", ""))
+    return markdown_table(
+        "rig | loops | refused | w_appr | w_retr | hysteresis | all three | rms error of the "
+        "hysteresis | half of its interval",
+        rows,
+    )

@@ -1,0 +1,81 @@
+"""Files of records: dataclasses whose fields say what they are in a file."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import fields
+from pathlib import Path
+from typing import Any, TypeVar
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from crackfront.core.variables import Variable, variables
+from crackfront.simulate.labels import labelled, labelled_fields
+from crackfront.simulate.provenance import Provenance
+from crackfront.simulate.storage import UnreadableFileError, read_dataset, write_dataset
+
+Record = TypeVar("Record")
+
+
+def write_record(path: Path, record: Any, origin: Provenance, **attributes: str | float) -> None:
+    """Write a record to a netCDF file, one variable a field, and attributes of the file.
+
+    Its fields were made by :func:`crackfront.core.variables.variable`.
+    """
+    write_dataset(path, xr.Dataset(labelled_fields(record), attrs=attributes), origin)
+
+
+def write_records(
+    path: Path, rows: Sequence[Any], along: str, origin: Provenance, **attributes: str | float
+) -> None:
+    """Write one record or more of one kind, as :func:`write_record`, along a dimension."""
+    write_dataset(path, xr.Dataset(stacked(rows, along), attrs=attributes), origin)
+
+
+def stacked(rows: Sequence[Any], along: str) -> dict[str, tuple[Any, ...]]:
+    """Variables of one record or more of one kind, along a dimension that counts them."""
+    known = variables(type(rows[0]), along)
+    return {item.name: labelled(item, _column(item, rows)) for item in known}
+
+
+def _column(variable: Variable, rows: Sequence[Any]) -> NDArray[Any]:
+    """Values of a variable in all records."""
+    return np.array([getattr(row, variable.name) for row in rows])
+
+
+def read_record(path: Path, kind: type[Record]) -> Record:
+    """Record of a kind that :func:`write_record` wrote; fields left out of it are None.
+
+    UnreadableFileError if the file is missing, truncated, or holds no such record.
+    """
+    columns = _columns(path, read_dataset(path), kind)
+    return kind(**{name: values if values.ndim else values.item() for name, values in columns})
+
+
+def read_records(path: Path, kind: type[Record], along: str) -> tuple[Record, ...]:
+    """Records that :func:`write_records` wrote along a dimension; as :func:`read_record`."""
+    dataset = read_dataset(path)
+    columns = _columns(path, dataset, kind, along)
+    values = {name: one.tolist() if one.ndim == 1 else one for name, one in columns}
+    return tuple(
+        kind(**{name: one[row] for name, one in values.items()})
+        for row in range(dataset.sizes[along])
+    )
+
+
+def _columns(
+    path: Path, dataset: xr.Dataset, kind: type[Any], *along: str
+) -> list[tuple[str, NDArray[Any]]]:
+    """Values of all variables of records of a kind."""
+    dims = {name: values.dims for name, values in dataset.variables.items()}
+    absent = {item.name for item in fields(kind) if item.default is None} - dims.keys()
+    known = [item for item in variables(kind, *along) if item.name not in absent]
+    wrong = [item.name for item in known if dims.get(item.name) != item.dims]
+    if wrong:
+        raise UnreadableFileError(
+            f"{path} holds no {kind.__name__}: {', '.join(wrong)} is missing or of other "
+            "dimensions; compute it again"
+        )
+    return [(item.name, np.asarray(dataset[item.name])) for item in known]

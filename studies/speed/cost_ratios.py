@@ -1,0 +1,60 @@
+"""Expected against measured processor time of simulations of some configurations."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from crackfront.simulate.costs import expected_cost
+from crackfront.simulate.run_simulation import run_simulation
+from crackfront.sweep.configuration import load_configuration
+from studies.pages import markdown_table
+
+CONFIGURATIONS = ("default", "test", "line-quick", "line", "line-strong", "line-chemical")
+"""Of config/: steady branches and full cycles of spheres, and straight fronts."""
+
+_LONGEST_SECONDS = 10.0
+"""Simulations that are expected to take longer are left out. (Units: s)"""
+
+
+@dataclass(frozen=True, slots=True)
+class MeasuredCost:
+    """Expected over measured processor time of one simulation."""
+
+    configuration: str
+    ratio: float
+
+
+def measured_costs(
+    names: Sequence[str], folder: Path, progress: Callable[[str], None]
+) -> list[MeasuredCost]:
+    """Costs of the first realisation of each spectrum at its weakest and strongest amplitude."""
+    costs = []
+    for name in names:
+        sweep = load_configuration(folder / f"{name}.yaml")
+        for item in sweep.spectra:
+            for energy in sorted(sweep.elastic_energies)[:: len(sweep.elastic_energies) - 1 or 1]:
+                simulation = sweep.simulation(item, energy, 0)
+                expected = expected_cost(simulation).seconds
+                if expected < _LONGEST_SECONDS:
+                    seconds = run_simulation(simulation).measures.cpu_seconds
+                    costs.append(MeasuredCost(name, expected / seconds))
+                    progress(f"{name}, {simulation.label}: {expected:.3g} of {seconds:.3g} s")
+    return costs
+
+
+def ratio_table(costs: Sequence[MeasuredCost]) -> str:
+    """Least, median and largest ratio of each configuration and of all."""
+    ratios = {
+        name: [cost.ratio for cost in costs if cost.configuration == name]
+        for name in dict.fromkeys(cost.configuration for cost in costs)
+    }
+    ratios["all"] = [cost.ratio for cost in costs]
+    rows = [
+        [name, f"{len(values)}", *(f"{find(values):.2f}" for find in (min, np.median, max))]
+        for name, values in ratios.items()
+    ]
+    return markdown_table("configuration | simulations | least | median | largest", rows)

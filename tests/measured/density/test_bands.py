@@ -1,0 +1,209 @@
+"""What is found in the densities of scans, held against what was done to them."""
+
+import functools
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from crackfront.measured.density.bands import analysed_scan
+from crackfront.measured.prediction.surface_remarks import scan_remarks, spectrum_remarks
+from crackfront.measured.spectrum import draws
+from crackfront.measured.spectrum.joining import joint_spectrum
+from studies.accuracy.energies import (
+    HELD_OUT,
+    KINDS,
+    MEAN_SQUARE,
+    PIXEL,
+    SIDE,
+    energy_table,
+    found_scan,
+)
+
+
+def kind(name):
+    """Kind of scans of a name."""
+    return next(one for one in (*KINDS, *HELD_OUT) if one.name == name)
+
+
+@pytest.fixture(scope="module")
+def found():
+    """A scan of every kind that is asked for, made once, and e_el of one batch of draws."""
+
+    @functools.cache
+    def one(name):
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr(draws, "BATCHES", (1,))
+            return found_scan(kind(name), 0)
+
+    return one
+
+
+def ends(result):
+    """Causes of the ends of the first scan, and these in pixels and sides."""
+    low, high = result.surface.scans[0].band.ends
+    return low.cause, low.wavelength / PIXEL, high.cause, SIDE / high.wavelength
+
+
+def test_an_undistorted_scan_ends_by_its_pixels_and_by_levelling(found):
+    assert ends(found("H = 0.8, end at two points")) == ("pixels", pytest.approx(4), "levelling", 2)
+
+
+def test_the_resolution_of_an_optic_is_found_where_it_takes_a_fifth(found):
+    cause, pixels, *_ = ends(found("optic, Gaussian"))
+    assert cause == "resolution"
+    assert pixels == pytest.approx(2 * np.pi / np.sqrt(np.log(1.25)), rel=0.35)
+
+
+def test_waves_that_a_tip_shapes_are_not_trusted_and_continued(found):
+    result = found("tip of 10 um, H = 0.4")
+    cause, pixels, *_ = ends(result)
+    assert cause == "tip"
+    assert 4 < pixels < 60
+    assert result.covers
+    recorded, estimated = result.surface.recorded, result.surface.half_derivative
+    assert 0.1 * estimated.value < recorded.value < estimated.value
+    assert any("of e_el is measured" in one.sentence for one in spectrum_remarks(result.surface))
+
+
+def test_grooves_are_no_shifted_rows_and_told(found):
+    [one] = found("self-affine, H = 0.8").surface.scans
+    heights = one.measurement.heights
+    assert one.band.periodic[0] <= 0.5
+    grooves = 3 * heights.std() * np.sin(2 * np.pi * 12 * np.arange(len(heights)) / len(heights))
+    for added in (grooves, grooves[:, None]):
+        band = analysed_scan(replace(one.measurement, heights=heights + added)).band
+        share, wavelength = band.periodic
+        assert share > 0.5
+        assert wavelength == pytest.approx(SIDE / 12, rel=0.1)
+        assert band.stripes == ()
+
+
+def test_the_noise_of_a_scan_is_found_and_ends_its_band(found, rng):
+    [one] = found("self-affine, H = 0.8").surface.scans
+    heights = one.measurement.heights
+    noise = 0.6 * heights.std() * rng.standard_normal(heights.shape)
+    band = analysed_scan(replace(one.measurement, heights=heights + noise)).band
+    # The density of white noise is its variance times the area of a point.
+    assert band.instrument.noise == pytest.approx(np.var(noise) * PIXEL**2, rel=0.2)
+    assert band.shortest.cause == "noise"
+    assert one.band.instrument.noise == 0
+
+
+def test_shifted_rows_are_found_and_left_out(found, rng):
+    surface = found("self-affine, H = 0.8").surface
+    [one] = surface.scans
+    heights = one.measurement.heights
+    shifts = 0.5 * heights.std() * rng.standard_normal((1, heights.shape[1]))
+    shifted = analysed_scan(replace(one.measurement, heights=heights + shifts))
+    assert (one.band.stripes, shifted.band.stripes) == ((), (1,))
+    assert shifted.trusted.value == pytest.approx(one.trusted.value, rel=0.6)
+    assert shifted.waves.power.mean() > 1.2 * one.waves.power.mean()
+    notes = "\n".join(one.sentence for one in scan_remarks([shifted]))
+    assert "waves along y alone" in notes
+
+
+def test_form_that_levelling_leaves_is_found(found):
+    cause, _, reason, sides = ends(found("form that is left"))
+    assert (cause, reason) == ("pixels", "form")
+    assert 2.5 < sides < 6
+    assert found("form that is left").ratio.value == pytest.approx(1, abs=0.3)
+
+
+def test_a_density_that_ends_is_not_continued(found):
+    result = found("end at four pixels")
+    assert result.surface.joint.spectrum.short_cutoff == pytest.approx(4 * PIXEL, rel=0.15)
+
+
+def test_scans_that_agree_join_and_those_that_do_not_are_told(found):
+    [one] = found("self-affine, H = 0.8").surface.scans
+    path = one.measurement.path.with_name("other.al3d")
+    rough = replace(one.measurement, heights=3 * one.measurement.heights, path=path)
+    joint = joint_spectrum([one, analysed_scan(rough)], numbers=(1,))
+    assert joint.density.scatter > 0.5
+    assert joint.density.disagrees(0)
+    assert joint.density.disagrees(1)
+    assert joint.density.levels[1].value == pytest.approx(9, rel=1e-6)
+    energy = joint.draws.mean_square(0.5)
+    assert energy.high / energy.low > 3
+    again = replace(one, measurement=replace(one.measurement, path=path))
+    same = joint_spectrum([one, again], numbers=(1,))
+    assert not same.density.disagrees(0)
+    assert same.density.scatter == 0
+
+
+def test_limits_that_are_named_stand_in_place_of_those_that_are_found(found):
+    [one] = found("self-affine, H = 0.8").surface.scans
+    band = analysed_scan(one.measurement, shortest=8 * PIXEL, longest=SIDE / 3).band
+    assert [limit.cause for limit in band.ends] == ["named", "named"]
+    assert [limit.wavelength for limit in band.ends] == [8 * PIXEL, SIDE / 3]
+
+
+def test_a_shortest_wave_that_no_points_hold_is_refused(found):
+    [one] = found("self-affine, H = 0.8").surface.scans
+    assert analysed_scan(one.measurement, shortest=2 * PIXEL).band.shortest.cause == "named"
+    with pytest.raises(ValueError, match=r"--shortest is .* hold waves from .*; name that or more"):
+        analysed_scan(one.measurement, shortest=1.9 * PIXEL)
+
+
+def test_ends_that_are_named_for_several_scans_do_not_exceed_those_of_each(found):
+    """Of a fine and a coarse scan each has its own part of the named band."""
+    [one] = found("self-affine, H = 0.8").surface.scans
+    coarse, side = one.measurement, SIDE
+    named = {"shortest": PIXEL / 2, "longest": 2 * side, "among_others": True}
+    band = analysed_scan(coarse, **named).band
+    assert [limit.cause for limit in band.ends] == ["pixels", "levelling"]
+    assert band.wavelengths == (coarse.shortest, coarse.longest)
+    inner = analysed_scan(coarse, **named | {"shortest": 8 * PIXEL, "longest": side / 3}).band
+    assert inner.wavelengths == (8 * PIXEL, side / 3)
+
+
+def test_a_band_of_less_than_an_octave_is_refused(found):
+    [one] = found("self-affine, H = 0.8").surface.scans
+    with pytest.raises(ValueError, match=r"less than an octave; use a better scan, or name"):
+        analysed_scan(one.measurement, shortest=SIDE / 3)
+
+
+def test_intervals_of_distorted_scans_hold_the_truth(found):
+    names = (
+        *("self-affine, H = 0.8", "optic, Gaussian", "noise", "rows that are shifted"),
+        *("form that is left", "end at four pixels", "oblong pixels", "missing points"),
+    )
+    results = [found(name) for name in names]
+    assert all(one.ratio.low > 0 for one in results)
+    assert np.mean([one.covers for one in results]) > 0.85
+    assert np.median([abs(one.ratio.value - 1) for one in results]) < 0.2
+
+
+def test_surfaces_that_are_not_gaussian_are_told_and_known_less_well(found):
+    film, deep, scanned = (
+        found(name).surface.scans[0]
+        for name in ("self-affine, H = 0.8", "deep scratches", "deep scratches, tip of 1 um")
+    )
+    assert film.unevenness == 0.0
+    assert deep.unevenness > 0.03
+    assert [*scan_remarks([film])] == []
+    for one, sentence in (
+        (deep, "differ more than those of a Gaussian"),
+        (scanned, "into narrow ones; e_el may be 2 times as large"),
+    ):
+        assert any(sentence in remark.sentence for remark in scan_remarks([one]))
+
+
+def test_the_table_of_energies_has_a_row_for_each_kind(found):
+    one = kind("noise")
+    lines = energy_table({one: [found(one.name)] * 2}).splitlines()
+    assert lines[2].startswith("| noise | yes | ")
+    assert lines[-1].startswith("2 scans: median error ")
+    assert one.truth(np.random.default_rng(0)).mean_square(0.5) == pytest.approx(MEAN_SQUARE)
+
+
+@pytest.mark.slow
+def test_intervals_of_two_hundred_scans_hold_the_truth():
+    every = [(kind, found_scan(kind, number)) for kind in KINDS for number in range(12)]
+    assert len(every) > 200
+    assert np.median([abs(one.ratio.value - 1) for _, one in every]) < 0.2
+    assert np.mean([one.covers for _, one in every]) >= 0.9
+    assert np.median([one.factor for kind, one in every if kind.resolved]) < 1.5
+    tips = [one.covers for kind, one in every if kind.name == "tip of 1 um"]
+    assert np.mean(tips) >= 0.9

@@ -1,0 +1,404 @@
+"""Measured loops: works of adhesion within their intervals, the modulus and the machine."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from crackfront import measured_loop
+from crackfront.core import jkr
+from crackfront.core.units import Scales
+from crackfront.measured.loops.contact import penetration_at, radius_at
+from crackfront.measured.loops.loop import (
+    Rig,
+    _refuse_lost_rows,
+    _touches,
+    analyse_loop,
+)
+from crackfront.measured.loops.recording import Recording
+from tests.commands import slow
+from tests.measured.loops.made import MODULUS, RADIUS, W_APPR, W_RETR, loop
+
+TRUTH = {"w_appr": W_APPR, "w_retr": W_RETR, "hysteresis": W_RETR - W_APPR}
+
+
+@pytest.mark.parametrize(
+    ("made", "modulus"),
+    [
+        ({}, MODULUS),
+        ({}, None),
+        ({"drift": 0.05}, MODULUS),
+        ({"force_noise": 0.01, "radius_noise": 0.01}, MODULUS),
+        ({"force_noise": 0.01, "radius_noise": 0.01}, None),
+        ({"retraction": 0.6}, MODULUS),
+        ({"n_row": 20}, MODULUS),
+        ({"stiffness": 100.0}, MODULUS),
+        ({"stiffness": 1e6}, MODULUS),
+    ],
+)
+def test_intervals_hold_the_truth_of_loops_with_noise_drift_and_partial_retraction(made, modulus):
+    """In 90% of 40 loops and three works or more: 95% are claimed."""
+    held = []
+    for seed in range(40):
+        found = analyse_loop(loop(seed, **made), Rig(RADIUS, modulus))
+        for name, truth in TRUTH.items():
+            estimate = getattr(found, name)
+            held.append(estimate.low <= truth <= estimate.high)
+            assert estimate.value == pytest.approx(truth, rel=0.1)
+    assert np.mean(held) >= 0.9
+
+
+def test_the_modulus_and_the_stiffness_of_the_machine_are_found():
+    found = [analyse_loop(loop(seed, stiffness=500.0), Rig(RADIUS)) for seed in range(20)]
+    for name, truth in (("fitted_modulus", MODULUS), ("stiffness", 500.0)):
+        estimates = [getattr(one, name) for one in found]
+        assert np.mean([one.low <= truth <= one.high for one in estimates]) >= 0.8
+        assert np.median([one.value for one in estimates]) == pytest.approx(truth, rel=0.02)
+
+
+@pytest.mark.parametrize(("without", "stiffness"), [("radius", 1e3), ("force", 1e9)])
+def test_two_columns_suffice_with_a_displacement_of_unknown_zero(without, stiffness):
+    rig = Rig(RADIUS, MODULUS, stiffness=stiffness if without == "radius" else None)
+    for seed in range(3):
+        found = analyse_loop(loop(seed, stiffness=stiffness, without=without), rig)
+        assert found.hysteresis.low <= W_RETR - W_APPR <= found.hysteresis.high
+        assert found.hysteresis.value == pytest.approx(W_RETR - W_APPR, rel=0.05)
+
+
+def test_a_soft_machine_that_is_taken_as_stiff_is_told_or_refused():
+    soft = loop(0, without="force", stiffness=500.0)
+    told = "The machine is taken as infinitely stiff; give --stiffness"
+    assert any(told in one for one in analyse_loop(soft, Rig(RADIUS, MODULUS)).remarks)
+    given = analyse_loop(soft, Rig(RADIUS, MODULUS, stiffness=500.0))
+    assert not any(told in one for one in given.remarks)
+    softer = loop(0, without="force", stiffness=100.0)
+    with pytest.raises(ValueError, match="is not positive; give --stiffness if the machine"):
+        analyse_loop(softer, Rig(RADIUS, MODULUS))
+
+
+def test_a_branch_alone_is_refused():
+    whole = loop(0, force_noise=0.0, radius_noise=0.0)
+    approach = slice(0, int(np.argmax(whole.radius)) + 1)
+    alone = Recording(force=whole.force[approach], radius=whole.radius[approach], displacement=None)
+    with pytest.raises(ValueError, match="has no approach or no retraction in contact; record"):
+        analyse_loop(alone, Rig(RADIUS, MODULUS))
+
+
+@pytest.mark.parametrize(
+    ("made", "given"),
+    [
+        ({"without": "radius", "drift": 0.1}, 1e3),
+        ({"without": "radius", "preload": 2.0, "drift": 0.3}, 1e3),
+        ({"without": "radius", "preload": 3.0, "force_noise": 2e-4, "stiffness": 300.0}, 300.0),
+        slow({"without": "radius", "preload": 1.2, "force_noise": 0.02}, 1e3),
+        slow({"without": "radius", "n_away": 3000}, 1e3),
+        slow({"without": "radius", "n_away": 8, "force_noise": 0.001}, 1e3),
+        slow({"without": "radius", "drift": 0.5, "force_noise": 0.005}, 1e3),
+        ({"without": "radius", "n_away": 100, "wave": 0.01}, 1e3),
+        ({"without": "force", "stiffness": 300.0}, 300.0),
+        ({"without": "force", "stiffness": 300.0, "preload": 3.0}, 300.0),
+    ],
+)
+def test_two_columns_hold_the_truth_at_any_preload_and_drift(made, given):
+    held, pulled = [], []
+    for seed in range(5):
+        found = analyse_loop(loop(seed, **made), Rig(RADIUS, MODULUS, stiffness=given))
+        for name, truth in TRUTH.items():
+            estimate = getattr(found, name)
+            held.append(estimate.low <= truth <= estimate.high)
+        pulled.append(found.pull_off_force.value)
+    assert np.mean(held) >= 0.85
+    # The table ends at 1.6 times the radius of pull-off, after the largest pull.
+    pull = -jkr.pull_off_force(W_RETR) * Scales(RADIUS, 1.0, MODULUS).force
+    # A wave of 1% of the largest force is 8% of this pull.
+    assert np.mean(pulled) == pytest.approx(pull, rel=0.12 if "wave" in made else 0.05)
+
+
+@pytest.mark.parametrize("n_row", [100, 3000])
+def test_the_pull_off_force_is_not_that_of_the_lowest_noise(n_row):
+    one = loop(0, n_row=n_row, force_noise=0.02)
+    pull = analyse_loop(one, Rig(RADIUS, MODULUS)).pull_off_force
+    clean = -np.min(loop(0, n_row=n_row, force_noise=0.0).force)
+    assert pull.low < clean < pull.high
+    assert clean * 1.05 < -np.min(one.force)
+
+
+@pytest.mark.parametrize(
+    ("made", "rig", "remark"),
+    [
+        ({}, {"stiffness": 200.0}, "stiffness of the machine has no part"),
+        ({"without": "radius"}, {"contact_modulus": 3 * MODULUS}, "pulls with up to"),
+        ({"retraction": 0.3}, {}, "No force pulls in the retraction"),
+    ],
+)
+def test_what_contradicts_itself_is_said(made, rig, remark):
+    known = {"radius": RADIUS, "contact_modulus": MODULUS} | rig
+    assert any(remark in one for one in analyse_loop(loop(0, **made), Rig(**known)).remarks)
+
+
+@pytest.mark.parametrize(
+    ("made", "rig", "sentence"),
+    [
+        ({}, {"modulus_error": 0.1, "contact_modulus": None}, "no modulus is given"),
+        ({}, {"window": (9e-5, 5e-5)}, "window is 90 um to 50 um; give a smaller and a larger"),
+        (
+            {},
+            {"window": (3e-4, 4e-4)},
+            "have 0 and 0 rows at contact radii within the window; .*um",
+        ),
+        (
+            {"preload": 5.0, "force_noise": 0.01, "without": "radius"},
+            {},
+            "press less, average rows",
+        ),
+    ],
+)
+def test_what_gives_no_works_is_refused(made, rig, sentence):
+    known = {"radius": RADIUS, "contact_modulus": MODULUS} | rig
+    with pytest.raises(ValueError, match=sentence):
+        analyse_loop(loop(0, **made), Rig(**known))
+
+
+def test_the_energy_lost_is_the_hysteresis_times_the_area_that_was_swept():
+    found = analyse_loop(loop(0), Rig(RADIUS, MODULUS))
+    assert found.lost_energy == pytest.approx(W_RETR - W_APPR, rel=0.1)
+
+
+def test_a_loop_that_begins_in_contact_has_no_lost_energy_and_says_so():
+    whole = loop(0)
+    first = int(np.flatnonzero(whole.radius > 0)[5])
+    cut = Recording(*(one[first:] for one in (whole.force, whole.radius, whole.displacement)))
+    found = analyse_loop(cut, Rig(RADIUS, MODULUS))
+    assert np.isnan(found.lost_energy)
+    assert any("the approach does not begin out of contact" in one for one in found.remarks)
+
+
+def test_one_radius_that_is_too_large_does_not_lower_the_lost_energy():
+    whole = loop(0)
+    radius = whole.radius.copy()
+    radius[int(np.argmax(radius)) - 20] *= 1.3
+    rig = Rig(RADIUS, MODULUS)
+    one, other = (analyse_loop(replace(whole, radius=each), rig) for each in (whole.radius, radius))
+    assert other.lost_energy == pytest.approx(one.lost_energy, rel=0.05)
+
+
+def test_rows_that_noise_leaves_without_a_work_are_no_small_matter():
+    """The others are no fair part of them."""
+    work = np.where(np.arange(100) < 11, np.nan, 1.0)
+    with pytest.raises(
+        ValueError, match=r"11% of the rows in contact have no work of adhesion, as"
+    ):
+        _refuse_lost_rows(work)
+    _refuse_lost_rows(work[2:])
+
+
+def test_rows_without_a_force_are_not_lost_to_noise():
+    whole = loop(0, without="radius")
+    force = np.where(np.arange(whole.force.size) % 8 == 3, np.nan, whole.force)
+    found = analyse_loop(replace(whole, force=force), Rig(RADIUS, MODULUS, stiffness=1e3))
+    assert found.hysteresis.low <= W_RETR - W_APPR <= found.hysteresis.high
+
+
+def test_the_last_row_before_a_sharp_pull_off_is_no_spike():
+    whole = loop(0, without="radius", force_noise=2e-4)
+    last = int(np.flatnonzero(np.abs(whole.force) > 0.05 * np.max(whole.force))[-1])
+    force = np.array(whole.force)
+    force[last + 1] = 1.5 * force[last]
+    sharp = replace(whole, force=force)
+    touches = _touches(sharp)
+    assert touches[last + 1]
+    assert not touches[last + 2]
+
+
+def test_a_contact_that_is_large_against_the_sphere_is_told():
+    found = analyse_loop(loop(0), Rig(RADIUS, MODULUS))
+    assert not any("paraboloid" in one for one in found.remarks)
+    ratio = float(np.nanmax(found.contact_radius)) / RADIUS
+    small = Rig(RADIUS * ratio / 0.5, MODULUS)
+    told = [one for one in analyse_loop(loop(0), small).remarks if "paraboloid" in one]
+    assert "reaches 0.5 of that of the sphere" in told[0]
+
+
+def test_an_unclosed_loop_has_no_lost_energy_and_says_so():
+    found = analyse_loop(loop(0, retraction=0.6), Rig(RADIUS, MODULUS))
+    assert np.isnan(found.lost_energy)
+    assert any("energy lost is not known" in remark for remark in found.remarks)
+    assert any("Its drift is unknown" in remark for remark in found.remarks)
+
+
+def test_errors_of_modulus_and_radius_widen_the_intervals():
+    known = analyse_loop(loop(0), Rig(RADIUS, MODULUS))
+    for unsure in (
+        Rig(RADIUS, MODULUS, modulus_error=0.05),
+        Rig(RADIUS, MODULUS, radius_error=0.05),
+    ):
+        wider = analyse_loop(loop(0), unsure)
+        assert wider.w_retr.value == pytest.approx(known.w_retr.value)
+        assert wider.w_retr.high - wider.w_retr.low > 2 * (known.w_retr.high - known.w_retr.low)
+
+
+def test_a_modulus_that_the_loop_contradicts_is_said():
+    found = analyse_loop(loop(0), Rig(RADIUS, 1.5 * MODULUS))
+    assert any("fit a contact modulus" in remark for remark in found.remarks)
+
+
+def test_edges_of_all_kinds_have_the_radius_of_their_force_and_penetration():
+    radius = np.linspace(0.3, 2.5, 60)
+    for work in (0.01, 1.0, 2.0):
+        force = radius**3 - np.sqrt(6 * work * radius**3)
+        assert radius_at(force, penetration_at(radius, force)) == pytest.approx(radius, rel=1e-6)
+
+
+def test_a_loop_that_turns_twice_is_refused():
+    one = loop(0)
+    twice = Recording(*(np.tile(column, 2) for column in (one.force, one.radius, one.displacement)))
+    with pytest.raises(ValueError, match="turns more than once"):
+        analyse_loop(twice, Rig(RADIUS, MODULUS))
+
+
+def test_arrays_and_their_table_are_the_same_loop(tmp_path):
+    one = loop(0)
+    arrays = {"force": one.force, "radius": one.radius}
+    path = tmp_path / "rig.csv"
+    rows = zip(one.force, one.radius, strict=True)
+    path.write_text("Force (N),Radius (m)\n" + "".join(f"{f},{a}\n" for f, a in rows))
+    known = {"radius": RADIUS, "contact_modulus": MODULUS}
+    assert repr(measured_loop(arrays, **known)) == repr(measured_loop(path, **known))
+    with pytest.raises(ValueError, match="has no speed"):
+        measured_loop({"force": one.force, "speed": one.force}, **known)
+
+
+def test_a_loop_without_noise_is_that_of_its_works():
+    """Exact zeros out of contact leave no covariance of the force's zero."""
+    found = analyse_loop(loop(0, force_noise=0.0, radius_noise=0.0), Rig(RADIUS, MODULUS))
+    assert found.w_appr.value == pytest.approx(W_APPR, rel=1e-9)
+    assert found.w_retr.value == pytest.approx(W_RETR, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("columns", "sentence"),
+    [
+        ({"force": np.zeros(50), "displacement": np.linspace(0, 1e-6, 50)}, "no row is in contact"),
+        ({"force": np.zeros(50), "radius": np.zeros(50)}, "no row is in contact"),
+        ({"force": np.full(50, np.nan), "radius": np.ones(50)}, "force has no finite value"),
+        ({"force": np.zeros(50)}, "needs two of"),
+        ({"force": np.zeros(50), "radius": np.ones(49)}, "not of one length"),
+    ],
+)
+def test_what_is_no_loop_is_refused(columns, sentence):
+    with pytest.raises(ValueError, match=sentence):
+        measured_loop(columns, radius=RADIUS, contact_modulus=MODULUS)
+
+
+def test_a_bent_drift_widens_the_intervals():
+    one, time = loop(0), np.linspace(-1, 1, 320)
+    bent = one.force + 0.05 * np.max(one.force) * time**2
+    found = analyse_loop(replace(one, force=bent), Rig(RADIUS, MODULUS))
+    for name, truth in TRUTH.items():
+        estimate = getattr(found, name)
+        assert estimate.low <= truth <= estimate.high
+
+
+def test_a_spike_out_of_contact_is_no_contact():
+    one = loop(0, without="radius")
+    for row in (5, -8):
+        force = one.force.copy()
+        force[row] += 0.2 * np.max(force)
+        spiked = Recording(force, None, one.displacement)
+        found = analyse_loop(spiked, Rig(RADIUS, MODULUS, stiffness=1e3))
+        assert found.hysteresis.value == pytest.approx(W_RETR - W_APPR, rel=0.1)
+
+
+def test_a_sharp_pull_off_is_not_smoothed_away():
+    radius = np.concatenate([np.linspace(35e-6, 400e-6, 400), np.linspace(400e-6, 20e-6, 400)])
+    work = np.repeat([W_APPR, W_RETR], 400)
+    force = 4 / 3 * MODULUS * radius**3 / RADIUS
+    force -= np.sqrt(8 * np.pi * MODULUS * work * radius**3)
+    found = measured_loop({"force": force, "radius": radius}, radius=RADIUS)
+    assert found.pull_off_force.value == pytest.approx(1.5 * np.pi * W_RETR * RADIUS, rel=0.01)
+
+
+def test_a_force_of_the_other_sign_is_refused_with_what_to_check():
+    one = loop(0)
+    with pytest.raises(ValueError, match="at the largest displacement, and has the wrong sign"):
+        analyse_loop(Recording(-one.force, None, one.displacement), Rig(RADIUS, MODULUS))
+    for modulus in (None, MODULUS):
+        with pytest.raises(ValueError, match="has the wrong sign; displacement and force are posi"):
+            measured_loop(
+                {"force": -one.force, "radius": one.radius}, radius=RADIUS, contact_modulus=modulus
+            )
+
+
+def in_contact(**given):
+    """Columns of a loop that begins and ends in contact, at radii of no jump."""
+    one, scales = loop(0, **given), Scales(RADIUS, 1.0, MODULUS)
+    held = np.flatnonzero(one.radius > scales.lateral * jkr.equilibrium_radius(0.0, W_APPR))
+    rows = slice(held[0], held[-1] + 1)
+    return {name: getattr(one, name)[rows] for name in ("force", "radius", "displacement")}
+
+
+@pytest.mark.parametrize("noise", [0.0, 0.003])
+def test_rows_in_contact_give_no_zero_of_the_force(noise):
+    columns = in_contact(force_noise=noise, radius_noise=0.0, stiffness=1e9)
+    del columns["radius"]
+    found = measured_loop(columns, radius=RADIUS, contact_modulus=MODULUS)
+    assert "The zero of the force is that of the file, as no rows are out of contact." in (
+        found.remarks
+    )
+    for name, truth in TRUTH.items():
+        estimate = getattr(found, name)
+        assert estimate.low - 1e-6 <= truth <= estimate.high + 1e-6
+        assert estimate.value == pytest.approx(truth, rel=1e-4 if noise == 0 else 0.2)
+
+
+def test_the_force_may_rise_after_its_least_value_in_retraction():
+    """At a fixed displacement a contact is lost beyond the largest pulling force."""
+    radius = np.concatenate([np.linspace(35e-6, 90e-6, 60), np.linspace(90e-6, 30e-6, 60)])
+    work = np.repeat([W_APPR, W_RETR], 60)
+    force = 4 / 3 * MODULUS * radius**3 / RADIUS
+    force -= np.sqrt(8 * np.pi * MODULUS * work * radius**3)
+    assert np.ptp(force[np.argmin(force) :]) > 0.2 * np.ptp(force)
+    known = {"radius": RADIUS, "contact_modulus": MODULUS}
+    found = measured_loop({"force": force, "radius": radius}, **known)
+    assert found.hysteresis.value == pytest.approx(W_RETR - W_APPR, rel=1e-6)
+
+
+def test_what_cannot_be_of_a_loop_is_said():
+    columns = in_contact(force_noise=0.0, radius_noise=0.0)
+    known = {"radius": RADIUS, "contact_modulus": MODULUS}
+    back = {name: column[::-1] for name, column in columns.items()}
+    assert any("negative" in one for one in measured_loop(back, **known).remarks)
+    with pytest.raises(ValueError, match=r"the contact radius reaches .* on a sphere of 1\.25 mm"):
+        measured_loop({**columns, "radius": 1e6 * columns["radius"]}, **known)
+
+
+def test_masked_rows_are_left_out_and_texts_have_units():
+    columns = in_contact(force_noise=0.0, radius_noise=0.0)
+    spiked = np.ma.masked_array(columns["force"].copy(), np.arange(columns["force"].size) == 40)
+    spiked.data[40] = 9999.0
+    given = {"force": spiked, "radius": columns["radius"]}
+    found = measured_loop(given, radius="1.25mm", contact_modulus=f"{MODULUS}Pa")
+    assert found.w_retr.value == pytest.approx(W_RETR, rel=1e-9)
+    labelled = xr.Dataset(
+        {"force": ("t", 1e3 * columns["force"], {"units": "mN"}), "radius": ("t", given["radius"])}
+    )
+    timed = labelled.assign(time=("t", np.arange(labelled.sizes["t"])))
+    for one in (labelled, timed, dict(labelled)):
+        assert measured_loop(one, radius=RADIUS).w_retr.value == pytest.approx(W_RETR, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("given", "sentence"),
+    [
+        ({"window": "70um:120um"}, "window is '70um:120um'; give a pair of contact radii"),
+        ({"window": (7e-5, 1e-4, 2e-4)}, "window has 3 values"),
+        ({"window": ("70um", "1g")}, "a contact radius of window is '1g'"),
+        ({"modulus_error": "1%"}, "modulus_error is '1%'; give a number"),
+        ({"stiffness": "3kg"}, "no stiffness"),
+    ],
+)
+def test_an_argument_that_cannot_be_used_is_refused(given, sentence):
+    columns = in_contact()
+    with pytest.raises((TypeError, ValueError), match=sentence):
+        measured_loop(columns, radius=RADIUS, **given)

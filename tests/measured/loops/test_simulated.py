@@ -1,0 +1,139 @@
+"""Simulated cycles as loops: the works of adhesion of the simulation, from files in all units."""
+
+import functools
+import json
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+import crackfront as cf
+from crackfront import measured_loop
+from crackfront.analysis.steady_adhesion import mean_adhesion
+from crackfront.cli import main
+from crackfront.simulate.cycle_files import cycle_record
+
+SPHERE = cf.Scales("1.25mm", "63mJ/m2", "0.93MPa")
+WORKS = ("w_appr", "w_retr", "hysteresis")
+FLAT = {"short_cutoff": 0.1, "side": 4.0}
+SPECTRA = {"flat": FLAT, "self-affine": FLAT | {"roll_off": 0.4, "hurst": 0.8}}
+
+
+def run(spectrum, **options):
+    """A cycle on a surface of a spectrum, by its name."""
+    surface = cf.random_surface(elastic_energy=0.03, seed=3, **SPECTRA[spectrum])
+    return cf.run_loop(surface, step=0.03, **options)
+
+
+whole_cycle = functools.cache(run)
+"""A cycle until contact is lost, run once for each spectrum."""
+
+
+@pytest.fixture(params=SPECTRA)
+def cycle(request):
+    return whole_cycle(request.param)
+
+
+@pytest.fixture
+def path(tmp_path):
+    """File of a cycle in reduced units."""
+    path = tmp_path / "cycle.nc"
+    cf.save_result(whole_cycle("flat"), path)
+    return path
+
+
+def loop(*arguments):
+    return CliRunner().invoke(main, ["loop", *map(str, arguments)])
+
+
+def test_a_cycle_has_the_works_of_adhesion_of_its_simulation(cycle):
+    found = measured_loop(cycle)
+    expected = mean_adhesion(cycle_record(cycle), float(cycle.correlation_length), None, np.nan)
+    for name in WORKS:
+        estimate = getattr(found, name)
+        assert estimate.value == pytest.approx(getattr(expected, name), rel=1e-12)
+        assert estimate.standard_error == pytest.approx(getattr(expected, f"{name}_error"))
+        assert estimate.low < estimate.value < estimate.high
+    averaged = found.in_window & (found.direction < 0)
+    assert np.mean(found.work_of_adhesion[averaged]) == pytest.approx(expected.w_retr, rel=1e-12)
+    assert found.window == pytest.approx((expected.lowest_radius, expected.highest_radius))
+
+
+def test_a_file_in_si_units_has_them_times_w_int(cycle, tmp_path):
+    reduced, path = measured_loop(cycle), tmp_path / "cycle.nc"
+    cf.save_result(cf.in_si_units(cycle, SPHERE), path)
+    found = measured_loop(path)
+    for name in WORKS:
+        work = SPHERE.work_of_adhesion * getattr(reduced, name).value
+        assert getattr(found, name).value == pytest.approx(work, rel=1e-12)
+    assert found.lost_energy == pytest.approx(SPHERE.work_of_adhesion * reduced.lost_energy)
+    assert found.pull_off_force.value == pytest.approx(-SPHERE.force * float(cycle.force.min()))
+    assert (found.sphere_radius, found.contact_modulus.value) == (1.25e-3, 0.93e6)
+    assert found.window == pytest.approx(np.array(reduced.window) * SPHERE.lateral)
+
+
+def test_the_energy_lost_is_that_of_all_instabilities():
+    """To what a coarse load step adds to them."""
+    cycle = run("flat", energy=True)
+    energy = float(cycle.dissipated_energy.sum()) + cycle.attrs["pull_off_energy"]
+    area = np.pi * float(cycle.mean_radius.max()) ** 2
+    assert measured_loop(cycle).lost_energy == pytest.approx(np.pi * energy / area, rel=0.1)
+
+
+def test_a_cycle_that_stays_in_contact_has_no_lost_energy_and_says_so():
+    found = measured_loop(run("flat", loads=[0.0, 1.0, -0.3]))
+    assert np.isnan(found.lost_energy)
+    assert any("energy lost is not known" in remark for remark in found.remarks)
+
+
+def test_the_command_prints_reduced_units_and_those_of_a_sphere_that_is_named(path):
+    known = float(cf.load_result(path).w_retr)
+    done = loop(path, "--json")
+    assert done.exit_code == 0, done.output
+    found = json.loads(done.stdout)
+    assert found["units"] == "reduced"
+    assert found["w_retr"]["value"] == pytest.approx(known, rel=1e-12)
+    assert loop(path).stdout.splitlines()[2].split()[:3] == ["w_retr", f"{known:.4g}", "w_int"]
+    sphere = ("--radius", "1.25mm", "--modulus", "0.7MPa", "--work-of-adhesion", "63mJ/m2")
+    done = loop(path, *sphere, "--figure", path.with_name("loop.png"), "--json")
+    assert done.exit_code == 0, done.output
+    found = json.loads(done.stdout)
+    assert found["units"] == "SI"
+    assert found["w_retr"]["value"] == pytest.approx(63e-3 * known, rel=1e-12)
+    assert path.with_name("loop.png").stat().st_size > 1e4
+
+
+@pytest.mark.parametrize(
+    ("options", "sentence"),
+    [
+        (("--stiffness", "200N/m"), "a simulated cycle without a rig; leave out --stiffness"),
+        (("--contact-radius", "a"), "leave out --contact-radius"),
+        (("--work-of-adhesion", "63mJ/m2"), "name --scans too, or --radius and --modulus"),
+        (("--radius", "1mm"), "give --radius, --modulus and --work-of-adhesion"),
+        (("--scans", "a.al3d", "--work-of-adhesion", "63mJ/m2"), "is in reduced units"),
+    ],
+)
+def test_options_that_a_cycle_has_no_use_for_are_refused(path, options, sentence):
+    done = loop(path, *options)
+    assert done.exit_code == 2
+    assert sentence in done.output
+
+
+def test_a_sphere_is_not_named_twice(path):
+    cf.save_result(cf.in_si_units(cf.load_result(path), SPHERE), path)
+    done = loop(path, "--radius", "1mm", "--modulus", "1MPa", "--work-of-adhesion", "50mJ/m2")
+    assert done.exit_code == 2
+    assert "states its sphere" in done.output
+    with pytest.raises(ValueError, match="leave out radius, stiffness"):
+        measured_loop(path, radius=1e-3, stiffness=200.0)
+
+
+def test_cycles_without_works_of_adhesion_are_refused_with_what_to_do(cycle):
+    with pytest.raises(ValueError, match="states neither a correlation length nor the spectrum"):
+        measured_loop(cycle.drop_vars("correlation_length"))
+    with pytest.raises(ValueError, match=r"no works of adhesion: .*penetrate deeper"):
+        measured_loop(cycle.isel(step=slice(0, 8)))
+    surface = cf.random_surface(elastic_energy=0.03, seed=3, **FLAT)
+    straight = cf.run_loop(cf.straight_front(surface, spring=2.0), loads=[0, 2, 0], step=0.5)
+    with pytest.raises(ValueError, match="straight front"):
+        measured_loop(straight)

@@ -1,0 +1,62 @@
+"""The figure of a series of samples."""
+
+import math
+
+import numpy as np
+import pytest
+
+from crackfront.analysis.estimate import Estimate
+from crackfront.measured.page.series import SeriesPoint, series_figure
+
+NONE = Estimate(*[math.nan] * 4)
+
+
+def points():
+    """Predicted and measured, a least value, measured alone, and neither."""
+    known, other = Estimate(20e-3, math.nan, 15e-3, 30e-3), Estimate(22e-3, 1e-3, 20e-3, 24e-3)
+    bare = Estimate(9e-3, math.nan, math.nan, math.nan)
+    return [
+        SeriesPoint("A", "film", known, other, is_lower_bound=False),
+        SeriesPoint("B", "film", known, NONE, is_lower_bound=True),
+        SeriesPoint("C", "glass", NONE, bare, is_lower_bound=False),
+        SeriesPoint("D", "glass", NONE, NONE, is_lower_bound=False),
+    ]
+
+
+def test_every_number_is_drawn_in_its_unit_with_its_interval():
+    [axes] = series_figure(points(), "hysteresis").axes
+    drawn = [one.lines for one in axes.containers]
+    values = [float(line.get_ydata()[0]) for line, _, _ in drawn]
+    assert values == pytest.approx([20, 22, 20, 9])
+    is_open = [line.get_markerfacecolor() == "white" for line, _, _ in drawn]
+    assert is_open == [False, True, False, True]
+    bars = [np.array(bar.get_segments()[0])[:, 1] for _, _, bars in drawn for bar in bars]
+    np.testing.assert_allclose(bars, [(15, 30), (20, 24), (15, 30)])
+    assert [text.get_text() for text in axes.texts] == ["↑", "none", "none"]
+    assert [text.get_text() for text in axes.get_xticklabels()] == ["A", "B", "C", "D"]
+    assert "mJ" in axes.get_ylabel()
+
+
+@pytest.mark.parametrize(
+    ("name", "arrow", "place", "word"),
+    [("e_el", "↑", 30, "at least"), ("w_appr", "↓", 15, "at most"), ("pull_off_force", "", 0, "")],
+)
+def test_arrows_show_where_shorter_waves_would_bring_a_number(name, arrow, place, word):
+    figure = series_figure(points(), name)
+    [axes] = figure.axes
+    arrows = [text for text in axes.texts if text.get_text() != "none"]
+    assert [text.get_text() for text in arrows] == [arrow] * bool(arrow)
+    if arrow:
+        assert arrows[0].xy[1] == pytest.approx(place)
+    told = " ".join(text.get_text() for text in figure.texts)
+    assert (f"Arrows: {word}," in told) == bool(arrow)
+
+
+def test_groups_have_a_marker_and_a_colour_and_the_legend_names_them():
+    [axes] = series_figure(points(), "w_retr").axes
+    looks = [(one.lines[0].get_marker(), one.lines[0].get_color()) for one in axes.containers]
+    assert looks[0] == looks[1] == looks[2] != looks[3]
+    legend = [text.get_text() for text in axes.get_legend().get_texts()]
+    assert legend == ["film", "glass", "predicted", "measured"]
+    [alone] = series_figure([SeriesPoint("A", "", NONE, NONE, is_lower_bound=False)], "w_retr").axes
+    assert alone.get_legend() is None

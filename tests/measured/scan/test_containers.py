@@ -1,0 +1,213 @@
+"""Containers of contact.engineering: all measurements of a surface, with their units and sizes."""
+
+import io
+import json
+import zipfile
+
+import numpy as np
+import pytest
+from ruamel.yaml import YAML
+from SurfaceTopography import Topography
+from SurfaceTopography.Container.IO.CE import write_containers
+from SurfaceTopography.Container.SurfaceContainer import InMemorySurfaceContainer
+
+import crackfront as cf
+from crackfront.measured.options import ReadingOptions
+from crackfront.measured.scan.reading import read_measurements
+
+SIDE = 10e-6
+CENTER = ReadingOptions(detrend="center")
+
+
+def maps(rng, number=2):
+    """Heights of maps without correlation."""
+    return [1e-8 * rng.standard_normal((48, 48)) for _ in range(number)]
+
+
+def texts(heights, factor):
+    """Rows of a map, which states neither unit nor size."""
+    file = io.BytesIO()
+    np.savetxt(file, factor * heights.T, fmt="%.12e")
+    return file.getvalue()
+
+
+def entry(name, **more):
+    """Metadata of a measurement whose text is in nanometres, of a side in micrometres."""
+    return {
+        "name": name,
+        "datafile": {"original": f"{name}.txt"},
+        "size": [10.0, 10.0],
+        "unit": "µm",
+        "height_scale": 1e-3,
+        **more,
+    }
+
+
+def container(path, surfaces, files, metadata="meta.yml"):
+    """A ZIP file of surfaces, named by the entries of their measurements."""
+    content = {"surfaces": [{"name": n, "topographies": t} for n, t in surfaces.items()]}
+    with zipfile.ZipFile(path, "w") as archive:
+        text = io.StringIO()
+        if metadata.endswith("json"):
+            json.dump(content, text)
+        else:
+            YAML(typ="safe").dump(content, text)
+        archive.writestr(metadata, text.getvalue())
+        for name, data in files.items():
+            archive.writestr(name, data)
+    return path
+
+
+@pytest.mark.parametrize("metadata", ["meta.yml", "index.json"])
+def test_all_measurements_of_a_surface_have_the_units_and_sizes_of_the_container(
+    tmp_path, rng, metadata
+):
+    heights = maps(rng)
+    files = {f"{name}.txt": texts(one, 1e9) for name, one in zip("ab", heights, strict=True)}
+    entries = [entry("a"), entry("b", size=[5.0, 5.0])]
+    path = container(tmp_path / "film.zip", {"film": entries}, files, metadata)
+    found = read_measurements([path], CENTER)
+    assert [str(one.path) for one in found] == [f"{path}/a", f"{path}/b"]
+    assert [one.size[0] for one in found] == pytest.approx([SIDE, SIDE / 2])
+    for one, expected in zip(found, heights, strict=True):
+        np.testing.assert_allclose(one.heights, expected - expected.mean(), atol=1e-17)
+    assert "film: b" in str(cf.list_channels(path)[1])
+
+
+def test_a_container_of_the_library_is_read(tmp_path, rng):
+    heights = maps(rng)
+    scans = [
+        Topography(one, (SIDE, SIDE), unit="m", info={"name": name})
+        for name, one in zip("ab", heights, strict=True)
+    ]
+    path = tmp_path / "film.zip"
+    write_containers([InMemorySurfaceContainer(scans)], str(path))
+    found = read_measurements([path], CENTER)
+    for one, expected in zip(found, heights, strict=True):
+        assert one.size == pytest.approx((SIDE, SIDE))
+        np.testing.assert_allclose(one.heights, expected - expected.mean(), atol=1e-17)
+
+
+def instrument(**lengths):
+    """Metadata of an instrument, each of whose lengths is a value and a unit."""
+    parameters = {name: {"value": value, "unit": unit} for name, (value, unit) in lengths.items()}
+    return {"name": "stylus", "type": "contact-based", "parameters": parameters}
+
+
+@pytest.mark.parametrize("metadata", ["meta.yml", "index.json"])
+def test_the_instrument_of_a_container_counts_as_if_the_file_stated_it(tmp_path, rng, metadata):
+    [heights] = maps(rng, 1)
+    stated = instrument(tip_radius=(5, "µm"), resolution=(1, "µm"))
+    entries = [entry("a", instrument=stated), entry("b", instrument=None)]
+    files = dict.fromkeys(("a.txt", "b.txt"), texts(heights, 1e9))
+    files["b.txt"] = texts(heights[::-1], 1e9)
+    path = container(tmp_path / "film.zip", {"film": entries}, files, metadata)
+    found, bare = read_measurements([path], CENTER)
+    assert (found.tip_radius, found.shortest) == pytest.approx((5e-6, 1e-6))
+    assert found.tip_wavelength > 1e-6
+    assert (bare.tip_radius, bare.tip_wavelength) == (0, 0)
+    assert bare.shortest == pytest.approx(4 * SIDE / 48)
+    named, _ = read_measurements([path], ReadingOptions(tip_radius="1um"))
+    assert named.tip_radius == pytest.approx(1e-6)
+
+
+def test_the_instrument_of_a_data_file_counts_before_that_of_its_container(tmp_path, rng):
+    [heights] = maps(rng, 1)
+    own = instrument(tip_radius=(20, "nm"))
+    scan = Topography(heights, (SIDE, SIDE), unit="m", info={"instrument": own})
+    scan.to_netcdf(str(tmp_path / "a.nc"))
+    stated = instrument(tip_radius=(5, "µm"), resolution=(1, "µm"))
+    one = entry("a", datafile={"squeezed-netcdf": "a.nc"}, instrument=stated)
+    content = {"a.nc": (tmp_path / "a.nc").read_bytes()}
+    [found] = read_measurements([container(tmp_path / "a.zip", {"film": [one]}, content)], CENTER)
+    assert (found.tip_radius, found.shortest) == pytest.approx((20e-9, 1e-6))
+
+
+@pytest.mark.parametrize("length", [(5, "V"), (5, None), (-5, "nm"), ("five", "nm")])
+def test_a_length_of_an_instrument_that_is_none_is_a_sentence(tmp_path, rng, length):
+    [heights] = maps(rng, 1)
+    entries = [entry("a", instrument=instrument(tip_radius=length))]
+    path = container(tmp_path / "film.zip", {"film": entries}, {"a.txt": texts(heights, 1e9)})
+    with pytest.raises(ValueError, match=r"film.zip/a: its container states the tip radius of"):
+        read_measurements([path])
+    [found] = read_measurements([path], ReadingOptions(tip_radius="5nm"))
+    assert found.tip_radius == pytest.approx(5e-9)
+
+
+@pytest.mark.parametrize(
+    "nothing",
+    [
+        *({}, "stylus", {"parameters": None}, {"parameters": {"tip_radius": None}}),
+        *(instrument(tip_radius=(0, "nm")), instrument(tip_radius=(None, "nm"))),
+    ],
+)
+def test_an_instrument_without_lengths_is_none(tmp_path, rng, nothing):
+    [heights] = maps(rng, 1)
+    entries = [entry("a", instrument=nothing)]
+    path = container(tmp_path / "film.zip", {"film": entries}, {"a.txt": texts(heights, 1e9)})
+    [found] = read_measurements([path])
+    assert (found.tip_radius, found.shortest) == pytest.approx((0, 4 * SIDE / 48))
+
+
+def test_one_of_several_surfaces_is_chosen_by_name_or_number(tmp_path, rng):
+    heights = maps(rng)
+    files = {f"{name}.txt": texts(one, 1e9) for name, one in zip("ab", heights, strict=True)}
+    surfaces = {"smooth": [entry("a")], "rough": [entry("b")]}
+    path = container(tmp_path / "films.zip", surfaces, files)
+    with pytest.raises(ValueError, match=r"2 surfaces; .*--surface: 0 'smooth' \(1.*; 1 'rough'"):
+        read_measurements([path])
+    for wanted in ("rough", "1"):
+        [found] = read_measurements([path], ReadingOptions(surface=wanted))
+        assert found.path.name == "b"
+    with pytest.raises(ValueError, match="no surface '2'; choose"):
+        read_measurements([path], ReadingOptions(surface="2"))
+
+
+def test_options_hold_where_the_container_says_nothing(tmp_path, rng):
+    [heights] = maps(rng, 1)
+    bare = entry("a")
+    del bare["unit"], bare["height_scale"]
+    path = container(tmp_path / "film.zip", {"film": [bare]}, {"a.txt": texts(heights, 1e6)})
+    with pytest.raises(ValueError, match=r"film.zip/a, read as \w+, states no unit of length"):
+        read_measurements([path])
+    [found] = read_measurements([path], ReadingOptions(unit="um"))
+    assert found.size[0] == pytest.approx(SIDE)
+    stated = container(tmp_path / "other.zip", {"film": [entry("a")]}, {"a.txt": b"1 2\n"})
+    with pytest.raises(ValueError, match=r"other.zip/a.*"):
+        read_measurements([stated], ReadingOptions(unit="um"))
+
+
+def test_what_is_no_container_or_a_damaged_one_is_refused_with_a_sentence(tmp_path, rng, scan):
+    with pytest.raises(ValueError, match="no container of surfaces; leave --surface out"):
+        read_measurements([scan], ReadingOptions(surface="0"))
+    lacking = container(tmp_path / "lacking.zip", {"film": [entry("a")]}, {})
+    with pytest.raises(ValueError, match=r"lacks 'a.txt', which it says that it holds"):
+        read_measurements([lacking])
+    empty = container(tmp_path / "empty.zip", {"film": []}, {})
+    with pytest.raises(ValueError, match=r"meta.yml does not say .*: surfaces.0.topographies"):
+        read_measurements([empty])
+    locked = container(tmp_path / "locked.zip", {"film": [entry("a")]}, {"a.txt": b"1"})
+    content = bytearray(locked.read_bytes())
+    place = content.rindex(b"PK\x01\x02")
+    content[place + 8] |= 1
+    locked.write_bytes(content)
+    with pytest.raises(ValueError, match="is encrypted; unpack it with its password"):
+        read_measurements([locked])
+
+
+def test_a_measurement_that_cannot_be_used_is_left_out_with_a_sentence(tmp_path, rng):
+    [good] = maps(rng, 1)
+    points = np.column_stack([[0.0, 1.0, 2.0, 3.7, 5.0, 6.1, 7.0, 8.4], rng.standard_normal(8)])
+    line = io.BytesIO()
+    np.savetxt(line, points, header="x z")
+    files = {"good.txt": texts(good, 1e9), "uneven.txt": line.getvalue()}
+    entries = [entry("uneven", size=[8.4], height_scale=1.0), entry("good")]
+    both = container(tmp_path / "both.zip", {"rough": entries}, files)
+    [one] = read_measurements([both], CENTER)
+    assert one.path == both / "good"
+    [sentence] = one.unusable
+    assert sentence.startswith(f"{both / 'uneven'}: ")
+    assert "not equally spaced" in sentence
+    alone = container(tmp_path / "alone.zip", {"rough": entries[:1]}, files)
+    with pytest.raises(ValueError, match="not equally spaced"):
+        read_measurements([alone], CENTER)

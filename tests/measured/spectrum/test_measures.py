@@ -1,0 +1,132 @@
+"""What a surface is: spectrum and rms measures of one scan or several."""
+
+import numpy as np
+import pytest
+
+from crackfront.core.adhesion import half_derivative_mean_square
+from crackfront.core.spectrum import SelfAffineSpectrum
+from crackfront.core.synthesis import gaussian_field
+from crackfront.measured.density.bands import analysed_scan
+from crackfront.measured.options import ReadingOptions
+from crackfront.measured.prediction.surface_remarks import spectrum_remarks
+from crackfront.measured.scan.instruments import surface_library
+from crackfront.measured.scan.reading import read_measurements
+from crackfront.measured.spectrum.measured_surface import measured_surface
+from tests.measured.made import (
+    SIDE,
+    SPECTRUM,
+    map_heights,
+    measured_mean_square,
+    periodic_measurement,
+    write_al3d,
+    write_line,
+)
+
+# A batch says what a surface is; how many there should be, test_draws.py asks.
+pytestmark = pytest.mark.usefixtures("few_draws")
+
+
+def half(surface):
+    """Mean square half-derivative of a surface's spectrum, with its standard error."""
+    return surface.half_derivative
+
+
+def test_the_spectrum_of_the_shipped_scans_is_that_of_nanodiamond(surface):
+    fit, truth = surface.joint.fit, SelfAffineSpectrum(0.1e-6, 2.1e-6, 1.0, 8.4e-27)
+    for found, value in ((fit.roll_off, 2.1e-6), (fit.hurst, 1.0), (fit.plateau, 8.4e-27)):
+        assert 0.99 * found.low < value < 1.01 * found.high
+    assert fit.has_roll_off
+    assert 0.2 < fit.misfit < 1.5
+    found = half(surface)
+    assert found.value == pytest.approx(truth.mean_square(0.5), rel=0.1)
+    assert found.low < truth.mean_square(0.5) < found.high < 1.5 * found.low
+    assert surface.joint.shares.measured > 0.9
+
+
+def test_the_measures_of_a_periodic_map_are_ours_and_the_librarys(rng):
+    heights = gaussian_field(SPECTRUM, 128, SIDE, rng)
+    measurement = periodic_measurement(heights)
+    pixel = SIDE / 128
+    library = surface_library().Topography(heights, measurement.size, periodic=True)
+    found = [measured_mean_square(analysed_scan(measurement), order) for order in (0.0, 0.5, 1.0)]
+    assert found[0] == pytest.approx(np.mean(heights**2), rel=1e-9)
+    assert found[0] == pytest.approx(library.moment_power_spectrum(order=0), rel=1e-9)
+    assert found[1] == pytest.approx(half_derivative_mean_square(heights, pixel), rel=1e-9)
+    assert found[1] == pytest.approx(library.variance_half_derivative(), rel=1e-9)
+    slopes = library.moment_power_spectrum(order=2)
+    assert found[2] == pytest.approx(slopes, rel=1e-9)
+
+
+def test_a_second_measurement_widens_the_wavelengths(rng, tmp_path, scan):
+    fine = SelfAffineSpectrum(0.08e-6, 3e-6, 0.8, 1e-26)
+    heights = map_heights(rng, spectrum=fine, side=5e-6)
+    detail = write_al3d(tmp_path / "detail.al3d", heights, 5e-6)
+    alone = measured_surface(read_measurements([scan])).joint
+    both = measured_surface(read_measurements([scan, detail])).joint
+    assert both.shortest == pytest.approx(4 * 5e-6 / 128, rel=0.1)
+    assert both.longest == pytest.approx(alone.longest) == pytest.approx(10e-6, rel=0.15)
+    assert both.fit.hurst.low < 0.8 < both.fit.hurst.high
+    widths = [one.high - one.low for one in (both.fit.hurst, alone.fit.hurst)]
+    assert widths[0] < widths[1]
+    assert not any(both.density.disagrees(index) for index in range(2))
+
+
+def test_the_surface_does_not_depend_on_a_tilt_or_a_curvature(tmp_path, heights, scan):
+    x = np.linspace(0, 1, len(heights))[:, None]
+    bent = heights + 1e-5 * x + 3e-5 * x**2 - 2e-5 * x.T**2
+    other = write_al3d(tmp_path / "bent.al3d", bent)
+    straight, found = (measured_surface(read_measurements([path])) for path in (scan, other))
+    assert half(found).value == pytest.approx(half(straight).value, rel=1e-4)
+    [raw] = read_measurements([other], ReadingOptions(detrend="center"))
+    assert np.ptp(raw.heights) > 10 * np.ptp(straight.scans[0].measurement.heights)
+
+
+def test_line_scans_stand_for_an_isotropic_surface(rng, tmp_path):
+    truth = SPECTRUM.mean_square(0.5)
+    heights = 1e6 * map_heights(rng)
+    paths = [
+        write_line(tmp_path / f"{number}.xyz", heights[:, 25 * number], 20 / 128)
+        for number in range(5)
+    ]
+    surface = measured_surface(read_measurements(paths, ReadingOptions(unit="um")))
+    assert all(one.density.is_profile for one in surface.scans)
+    assert all(one.measurement.is_line for one in surface.scans)
+    found = half(surface)
+    assert 0.95 * found.low < truth < found.high < 4 * found.low
+
+
+def test_a_surface_without_plateau_says_so(rng, tmp_path):
+    steep = SelfAffineSpectrum(0.4e-6, 40e-6, 0.8, 1e-22)
+    path = write_al3d(tmp_path / "steep.al3d", map_heights(rng, spectrum=steep))
+    fit = measured_surface(read_measurements([path])).joint.fit
+    assert not fit.has_roll_off
+    assert fit.roll_off.value > 5e-6
+
+
+def test_anisotropy_is_the_ratio_of_the_slopes(rng, tmp_path, scan):
+    stretched = map_heights(rng, n_point=256)[::1, ::2][:128, :128]
+    path = write_al3d(tmp_path / "aniso.al3d", stretched)
+    isotropic, (ratio, angle) = (
+        analysed_scan(read_measurements([one])[0]).band.anisotropy for one in (scan, path)
+    )
+    assert 1 <= isotropic[0] < 1.25
+    assert ratio > 1 / 0.7
+    assert abs(angle) == pytest.approx(90, abs=15)
+
+
+@pytest.mark.parametrize("angle", [0, 30, 45, -60])
+def test_anisotropy_is_seen_in_any_direction(rng, tmp_path, angle):
+    """A surface that hardly changes across a direction."""
+    one, other = np.ix_(np.fft.fftfreq(128), np.fft.fftfreq(128))
+    along = np.cos(np.radians(angle)) * one + np.sin(np.radians(angle)) * other
+    across = -np.sin(np.radians(angle)) * one + np.cos(np.radians(angle)) * other
+    size = np.hypot(along, across)
+    filtered = np.exp(-((30 * across) ** 2)) / (0.02 + size) * (size < 0.2)
+    heights = np.fft.ifft2(filtered * np.fft.fft2(rng.standard_normal((128, 128)))).real
+    path = write_al3d(tmp_path / "grooves.al3d", 1e-8 * heights / heights.std())
+    surface = measured_surface(read_measurements([path]))
+    ratio, found = surface.scans[0].band.anisotropy
+    assert ratio > 2
+    assert found == pytest.approx(angle, abs=5)
+    [told] = [one.sentence for one in spectrum_remarks(surface) if "isotropic" in one.sentence]
+    assert "degrees from x is" in told

@@ -1,0 +1,132 @@
+"""Surfaces by a spectral density or by numbers alone, beside spectra that are known exactly."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import crackfront as cf
+from crackfront.core.spectrum import SelfAffineSpectrum
+from crackfront.measured.options import SelfAffineOptions
+from crackfront.measured.scan.psd import Psd
+from crackfront.measured.spectrum.stated import density_surface, self_affine_surface_of
+from tests.measured.made import SCENE
+
+SURFACE = SelfAffineSpectrum(20e-9, 2e-6, hurst=0.8, plateau=1e-27)
+
+
+def psd(tmp_path, shortest=100e-9, longest=20e-6, spectrum=SURFACE, *, is_profile=True):
+    """Density of a surface as a file has it."""
+    q = 2 * np.pi / np.geomspace(longest, shortest, 45)
+    value = spectrum.profile_density(q) if is_profile else spectrum.density(q)
+    return Psd(tmp_path / "psd.csv", "0" * 8, q, value, is_profile, "a density", ())
+
+
+@pytest.mark.parametrize("hurst", [0.3, 0.8, 1.0])
+def test_profiles_have_the_isotropic_density_that_they_are_the_projection_of(tmp_path, hurst):
+    spectrum = replace(SURFACE, hurst=hurst, short_cutoff=1e-12)
+    found = density_surface(psd(tmp_path, spectrum=spectrum))
+    q = 2 * np.pi / np.array(found.spectrum.wavelengths)
+    np.testing.assert_allclose(found.spectrum.densities, spectrum.density(q), rtol=0.15)
+    energy = spectrum.mean_square_between(0.5, 100e-9, 1.0)
+    assert found.half_derivative.value == pytest.approx(energy, rel=0.02)
+
+
+def test_profiles_and_isotropic_densities_predict_the_same(tmp_path):
+    spectrum = replace(SURFACE, short_cutoff=1e-12)
+    by_profile, by_map = (
+        cf.predict(density_surface(psd(tmp_path, spectrum=spectrum, is_profile=kind)), SCENE)
+        for kind in (True, False)
+    )
+    assert by_profile.hysteresis.value == pytest.approx(by_map.hysteresis.value, rel=0.03)
+    assert by_profile.e_el.low == by_profile.e_el.value == by_profile.e_el.high
+    assert by_profile.hysteresis.low < by_profile.hysteresis.value
+
+
+@pytest.mark.parametrize(
+    ("ends", "said"),
+    [((100e-9, 20e-6), None), ((800e-9, 20e-6), "shorter"), ((50e-9, 0.5e-6), "rises up to")],
+)
+def test_waves_that_a_table_lacks_and_that_matter_are_a_reservation(tmp_path, ends, said):
+    steep = replace(SURFACE, hurst=1.0)
+    doubts = density_surface(psd(tmp_path, *ends, steep, is_profile=False)).doubts
+    assert [said in text for text in doubts] == ([] if said is None else [True])
+
+
+@pytest.mark.parametrize("hurst", [0.3, 0.8, 1.0])
+def test_numbers_give_the_surface_that_has_them(rng, hurst):
+    given = SelfAffineOptions(
+        rms="60nm", correlation_length="1um", hurst=hurst, short_cutoff="100nm"
+    )
+    found = self_affine_surface_of(given)
+    assert found.measures[0].rms.value == pytest.approx(60e-9)
+    assert found.doubts == ()
+    # Autocorrelation by the transform of the density, of a period of many correlation lengths.
+    n, side = 2048, 64e-6
+    axis = 2 * np.pi * np.fft.fftfreq(n, side / n)
+    density = found.spectrum.density(np.hypot(axis[:, None], axis))
+    correlation = np.fft.ifft2(density).real[:, 0]
+    distance = side / n * np.arange(n // 4)
+    there = np.interp(1e-6, distance, correlation[: n // 4] / correlation[0])
+    assert there == pytest.approx(np.exp(-1), abs=0.01)
+
+
+def test_a_roll_off_may_stand_for_the_correlation_length():
+    given = SelfAffineOptions(rms=60e-9, roll_off=2e-6, hurst=0.8, short_cutoff=20e-9)
+    found = self_affine_surface_of(given)
+    shape = SelfAffineSpectrum(20e-9, 2e-6, 0.8)
+    expected = shape.mean_square(0.5) * 60e-9**2 / shape.mean_square(0.0)
+    assert found.half_derivative.value == pytest.approx(expected)
+
+
+def test_an_unnamed_cutoff_is_assumed_or_asked_for():
+    found = cf.self_affine_surface(rms="60nm", correlation_length="1um", hurst=0.8)
+    [doubt] = found.doubts
+    assert "continued to 1 nm" in doubt
+    assert "8% of e_el" in doubt
+    with pytest.raises(ValueError, match=r"Hurst exponent is 0\.5.*as short cutoff, as in 10nm"):
+        cf.self_affine_surface(rms="60nm", correlation_length="1um", hurst=0.5)
+
+
+@pytest.mark.parametrize(
+    ("numbers", "sentence"),
+    [
+        ({"rms": "60nm", "hurst": 0.8}, "needs rms and hurst, and one of"),
+        ({"rms": "60nm", "roll_off": "1um"}, "needs rms and hurst, and one of"),
+        (
+            {"rms": "60nm", "roll_off": "1um", "correlation_length": "1um", "hurst": 0.8},
+            "one of correlation length and roll-off",
+        ),
+        (
+            {"rms": "60nm", "roll_off": "1um", "short_cutoff": "2um", "hurst": 0.8},
+            "the roll-off, 1 um, is shorter than the short cutoff, 2 um",
+        ),
+        *(
+            (
+                {"rms": "60nm", "correlation_length": "1um", "short_cutoff": cutoff, "hurst": 0.8},
+                "no correlation length of 1 um; name a shorter",
+            )
+            for cutoff in ("10um", "20um")
+        ),
+        (
+            {"rms": "60nm", "correlation_length": "1um", "short_cutoff": "1nm", "hurst": 0.02},
+            "exponent of 0.02 .* 1 um needs a roll-off above 100 um; name the roll-off",
+        ),
+        ({"rms": "60", "roll_off": "1um", "hurst": 0.8}, "rms is '60', without a unit"),
+    ],
+)
+def test_numbers_that_are_no_surface_are_refused(numbers, sentence):
+    with pytest.raises(ValueError, match=sentence):
+        cf.self_affine_surface(**numbers)
+
+
+def test_what_needs_heights_is_said_and_not_checked():
+    rough = cf.self_affine_surface(rms="20nm", roll_off="2um", hurst=0.8, short_cutoff="20nm")
+    found = cf.predict(rough, SCENE)
+    [said] = [one.sentence for one in found.verdict.of("reservation") if "heights" in one.sentence]
+    assert "isotropic" in said
+    assert not [one for one in found.verdict.remarks if one.concerns == "random roughness"]
+    page = repr(found)
+    assert "rms height        20 nm; waves from 20 nm to 2 um" in page
+    with pytest.raises(TypeError, match="unexpected keyword argument 'unit'"):
+        cf.predict(rough, SCENE, unit="um")

@@ -1,0 +1,310 @@
+"""Series of samples: what a row of a table or of YAML says, and what comes of it."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from crackfront.measured.samples import predicted_samples, read_samples
+from tests.measured.made import SCENE
+
+ROOT = Path(__file__).parents[2]
+
+SPHERE = {
+    "modulus": "0.7MPa",
+    "poisson": "0.5",
+    "radius": "1.25mm",
+    "work_of_adhesion": "63mJ/m2",
+}
+
+CSV = """\
+# a series of films
+sample,group,rms (nm),roll-off (um),hurst,short_cutoff,radius (mm),measured hysteresis (mJ/m2)
+A,polished,20,2,0.8,20nm,1.25,2
+B,rough,40,2,0.8,20nm,,
+"""
+
+YAML = """\
+samples:
+  - sample: A
+    group: polished
+    rms (nm): 20
+    roll_off: 2um
+    hurst: 0.8
+    short_cutoff: 2e-8 m
+    radius: 1.25e-3 m
+    measured_hysteresis: 2mJ/m2
+  - {sample: B, group: rough, rms: 40nm, roll_off: 2um, hurst: 0.8, short_cutoff: 20nm}
+"""
+
+TABLES = {
+    "samples.csv": CSV,
+    "samples.tsv": CSV.replace(",", "\t"),
+    "excel.csv": CSV.replace(",", ";").replace(".", ","),
+    "samples.yaml": YAML,
+    "list.yml": YAML.removeprefix("samples:\n"),
+}
+
+
+@pytest.mark.parametrize("name", TABLES)
+def test_a_row_means_the_same_in_every_form(tmp_path, name):
+    path = tmp_path / name
+    path.write_text(TABLES[name], encoding="utf-8")
+    first, second = read_samples(path, SPHERE)
+    assert (first.name, first.group, second.group) == ("A", "polished", "rough")
+    assert first.numbers.rms == pytest.approx(20e-9)
+    assert first.numbers.roll_off == pytest.approx(2e-6)
+    assert first.numbers.short_cutoff == pytest.approx(20e-9)
+    assert first.measured["hysteresis"].value == pytest.approx(2e-3)
+    assert second.measured == {}
+    for one in (first, second):
+        assert one.scales.radius == pytest.approx(SCENE.radius)
+        assert one.scales.contact_modulus == pytest.approx(SCENE.contact_modulus)
+
+
+def test_a_sample_may_have_several_scans_psds_and_units(tmp_path):
+    for name in ("a-1.txt", "a-2.txt", "b.txt", "psd.csv"):
+        (tmp_path / name).write_text("1 2\n")
+    path = tmp_path / "samples.csv"
+    path.write_text(
+        "sample,scans,psd,unit,psd_sides,tip radius (nm),detrend\n"
+        "A,a-*.txt,,um,,20,slope\nB,b.txt | a-1.txt,,,,,slope\nC,,psd.csv,,one,,\n"
+    )
+    one, two, three = read_samples(path, SPHERE)
+    assert [file.name for file in one.scans] == ["a-1.txt", "a-2.txt"]
+    assert [file.name for file in two.scans] == ["b.txt", "a-1.txt"]
+    assert {by.unit for by in one.reading} == {"um"}
+    assert {by.detrend for by in (*one.reading, *two.reading)} == {"slope"}
+    assert one.reading[0].tip_radius == pytest.approx(20e-9)
+    assert (three.psd, three.density.psd_sides) == (tmp_path / "psd.csv", "one")
+
+
+def test_a_pattern_of_a_psd_stands_for_one_file(tmp_path):
+    path = tmp_path / "samples.csv"
+    path.write_text("sample,psd\nA,psd-*.csv\n")
+    (tmp_path / "psd-1.csv").write_text("1 2\n")
+    [found] = read_samples(path, SPHERE)
+    assert found.psd == tmp_path / "psd-1.csv"
+    (tmp_path / "psd-2.csv").write_text("1 3\n")
+    several = r"line 2: psd-\*.csv stands for 2 files, psd-1.csv, psd-2.csv; name one of them"
+    with pytest.raises(ValueError, match=several):
+        read_samples(path, SPHERE)
+
+
+def test_a_mask_of_a_row_is_relative_to_the_table_and_one_of_the_command_is_not(
+    tmp_path, monkeypatch
+):
+    folder = tmp_path / "films"
+    folder.mkdir()
+    monkeypatch.chdir(tmp_path)
+    for name in ("a.txt", "mask.txt"):
+        (folder / name).write_text("1 2\n")
+    table, listed = folder / "samples.csv", folder / "samples.yaml"
+    table.write_text('sample,scans,mask\nA,a.txt,mask.txt\nB,a.txt,"0:1um,0:1um"\n')
+    one, two = read_samples(table, SPHERE)
+    assert one.reading[0].mask == (folder / "mask.txt",)
+    assert two.reading[0].mask == (((0, 1e-6), (0, 1e-6)),)
+    listed.write_text("samples:\n - {sample: A, scans: a.txt, mask: [mask.txt, '0:1um,0:1um']}\n")
+    [three] = read_samples(listed, SPHERE)
+    assert three.reading[0].mask == (folder / "mask.txt", *two.reading[0].mask)
+    table.write_text("sample,scans\nA,a.txt\n")
+    [four] = read_samples(table, SPHERE | {"mask": ("mask.txt",)})
+    assert four.reading[0].mask == (Path("mask.txt"),)
+    table.write_text("sample,scans,mask\nA,a.txt,absent.txt\n")
+    with pytest.raises(ValueError, match=r"line 2: there is no file .*absent.txt; correct its"):
+        read_samples(table, SPHERE)
+
+
+def test_the_page_shows_the_table_of_the_example_and_its_scans_are_there():
+    path = ROOT / "examples/samples.csv"
+    assert path.read_text("utf-8") in (ROOT / "docs/surfaces.md").read_text("utf-8")
+    first, second = read_samples(path, SPHERE)
+    assert [len(one.scans) for one in (first, second)] == [2, 1]
+    assert first.measured["hysteresis"].value == pytest.approx(27e-3)
+
+
+@pytest.mark.parametrize("unit", ["(1)", "[1]", "(-)", "()", "[ ]"])
+@pytest.mark.parametrize("name", ["samples.csv", "excel.csv", "samples.yaml"])
+def test_a_pure_number_in_the_unit_of_a_head_is_no_unit(tmp_path, name, unit):
+    path = tmp_path / name
+    text = TABLES[name].replace("hurst: 0.8", f"'hurst {unit}': 0.8")
+    path.write_text(text.replace("hurst;", f"hurst {unit};").replace("hurst,", f"hurst {unit},"))
+    assert [one.numbers.hurst for one in read_samples(path, SPHERE)] == [0.8, 0.8]
+
+
+@pytest.mark.parametrize("name", ["samples.csv", "excel.csv", "samples.yaml"])
+def test_a_unit_that_begins_with_a_number_is_refused(tmp_path, name):
+    path = tmp_path / name
+    path.write_text(TABLES[name].replace("rms (nm)", "rms (10^1 nm)"))
+    with pytest.raises(ValueError, match=r"'rms' is '10\^1 nm', which begins with a number; write"):
+        read_samples(path, SPHERE)
+
+
+def test_two_sides_between_semicolons_are_no_number_with_a_decimal_comma(tmp_path):
+    path, head = tmp_path / "samples.csv", "sample;scans;unit;tip radius (nm);size\n"
+    (tmp_path / "a.txt").write_text("1 2\n")
+    for size, expected in (("50, 25", (50, 25)), ("50.5", (50.5,)), ("50", (50,))):
+        path.write_text(f"{head}A;a.txt;um;20,5;{size}\n")
+        [found] = read_samples(path, SPHERE)
+        assert found.reading[0].size == expected
+    path.write_text(f"{head}A;a.txt;um;20,5;50,25\n")
+    with pytest.raises(ValueError, match=r"line 2: size is '50,25', one side or two; write '50, 2"):
+        read_samples(path, SPHERE)
+
+
+def test_a_name_may_look_like_a_number_with_a_decimal_comma(tmp_path):
+    path = tmp_path / "samples.csv"
+    path.write_text(CSV.replace(",", ";").replace(".", ",").replace("\nA;", "\n1,5;"))
+    assert "1,5" in [one.name for one in read_samples(path, SPHERE)]
+
+
+@pytest.mark.parametrize("between", [";", "\t"])
+def test_numbers_with_both_decimal_signs_are_refused(tmp_path, between):
+    path = tmp_path / "samples.csv"
+    text = CSV.replace(",", between).replace(".", ",")
+    path.write_text(text.replace(f"{between}40{between}", f"{between}40.000{between}"))
+    with pytest.raises(ValueError, match="line 4: the table has numbers with decimal points and"):
+        read_samples(path, SPHERE)
+
+
+@pytest.mark.parametrize("between", [";", "\t"])
+def test_a_comma_that_may_separate_thousands_is_refused_unless_another_number_settles_it(
+    tmp_path, between
+):
+    path = tmp_path / "samples.tsv"
+
+    def write(radius, cutoff):
+        head = "sample,rms (nm),roll_off (nm),hurst,short_cutoff (nm),radius (um)"
+        row = between.join(["A", "20", "9000", "1", cutoff, radius])
+        path.write_text(f"{head.replace(',', between)}\n{row}\n")
+        return read_samples(path, SPHERE)
+
+    for radius, plain in (("1,250", "1250"), ("12,000", "12000"), ("125,500", "125500")):
+        sentence = rf"line 2: radius is '{radius}', .* write '{plain}', or '{radius}0' if"
+        with pytest.raises(ValueError, match=sentence):
+            write(radius, "20")
+    for radius, cutoff in (("1,250", "20,5"), ("1,250", "0,250"), ("1,2500", "20")):
+        [found] = write(radius, cutoff)
+        assert found.scales.radius == pytest.approx(1.25e-6)
+    [found] = write("1250", "20.5")
+    assert found.scales.radius == pytest.approx(1.25e-3)
+    with pytest.raises(ValueError, match="line 2: the table has numbers with decimal points and"):
+        write("1,250", "20.5")
+
+
+@pytest.mark.parametrize(
+    ("row", "common", "sentence"),
+    [
+        ("C,,psd.csv,,1,", {}, "shortest is an option of scans, and the sample has none; leave"),
+        ("C,,,20,1,", {}, "shortest is an option of scans, and the sample has none; leave it out"),
+        ("C,,psd.csv,,,", {"shortest": "1um"}, "has none; write it in a column, for rows"),
+        ("C,,,20,,", {"mask": ("mask.txt",)}, "mask is an option of scans, and the sample has"),
+        ("C,a.txt,,,,one", {}, "psd_sides is an option of psd, and the sample has none; leave it"),
+        ("C,,,20,,one", {}, "psd_sides is an option of psd, and the sample has none; leave it out"),
+    ],
+)
+def test_an_option_without_effect_on_a_sample_is_refused(tmp_path, row, common, sentence):
+    for name in ("a.txt", "psd.csv"):
+        (tmp_path / name).write_text("1 2\n")
+    path, head = tmp_path / "samples.csv", "sample,scans,psd,rms (nm),shortest (um),psd_sides"
+    numbers = "2um,0.8,20nm" if ",20," in row else ",,"
+    path.write_text(f"{head},roll_off,hurst,short_cutoff\n{row},{numbers}\n")
+    with pytest.raises(ValueError, match=rf"line 2: .*{sentence}"):
+        read_samples(path, SPHERE | common)
+    path.write_text("sample,psd\nC,psd.csv\n")
+    [found] = read_samples(path, SPHERE | {"detrend": "curvature", "mask": ()})
+    assert found.psd == tmp_path / "psd.csv"
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "sentence"),
+    [
+        ("A,polished,20", "A,polished,20kg", "line 3: rms is '20kg', which is no length"),
+        ("B,rough,40", "B,rough,", "line 4: a surface of numbers needs rms and hurst, and one"),
+        ("B,rough", "A,rough", "line 4: the sample 'A' is in line 3 as well"),
+        ("B,rough", ",rough", "line 4: there is no name; write it in the column 'sample'"),
+        ("0.8,20nm,,", "1.8,20nm,,", "line 4: hurst is 1.8; it must lie between"),
+        ("hurst", "hurts", "line 3: there is no column 'hurts'; did you mean hurst"),
+        ("group", "scans", "line 3: the surface is given by scans and rms; name"),
+        ("B,rough,40,2,0.8,20nm,,", "B,,,,,,,", "line 4: the surface is given by nothing"),
+        ("20nm,,", "20nm,,,,5", "line 4: the row has 10 cells and the heads are 8"),
+        ("group", "rms", "line 2: two columns are called 'rms'"),
+        ("A,polished,20,2", "A,polished,20,0.001", "line 3: the roll-off, 1 nm, is shorter"),
+    ],
+)
+def test_a_row_that_cannot_be_used_is_refused_with_its_line(tmp_path, old, new, sentence):
+    path = tmp_path / "samples.csv"
+    assert old in CSV
+    path.write_text(CSV.replace(old, new, 1))
+    with pytest.raises(ValueError, match=r"samples.csv, line \d+: ") as caught:
+        read_samples(path, SPHERE)
+    assert sentence in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "sentence"),
+    [
+        ("rms (nm): 20", "rms: 20", "line 2: rms is '20', without a unit"),
+        ("radius: 1.25e-3 m", "radius: true", "line 2: radius is 'True', which is no number"),
+        ("measured_hysteresis: 2mJ/m2", "measured_hysteresis: 2", "is '2', without a unit"),
+        ("hurst: 0.8", "hurst: [0.8]", "line 2: hurst is [0.8]; write a number"),
+        ("samples:", "sphere: 1\nsamples:", "has 'sphere' beside samples; remove it"),
+    ],
+)
+def test_yaml_is_read_as_strictly_as_cells(tmp_path, old, new, sentence):
+    path = tmp_path / "samples.yaml"
+    assert old in YAML
+    path.write_text(YAML.replace(old, new, 1))
+    with pytest.raises((ValueError, TypeError)) as caught:
+        read_samples(path, SPHERE)
+    assert sentence in str(caught.value)
+
+
+def test_what_a_row_lacks_is_refused_before_any_work(tmp_path):
+    path = tmp_path / "samples.csv"
+    path.write_text("sample,scans\nA,absent.al3d\n")
+    with pytest.raises(ValueError, match=r"line 2: there is no file .*absent.al3d; correct"):
+        read_samples(path, SPHERE)
+    path.write_text(CSV)
+    with pytest.raises(ValueError, match=r"line 4: the sphere is incomplete; name all of modulus"):
+        read_samples(path, {name: one for name, one in SPHERE.items() if name != "radius"})
+    path.write_text("sample,rms\n")
+    with pytest.raises(ValueError, match="has 0 samples; write a row for each"):
+        read_samples(path, SPHERE)
+    other = tmp_path / "samples.yaml"
+    other.write_text("samples: {A: 1}\n")
+    with pytest.raises(ValueError, match="has no list of samples; write 'samples:'"):
+        read_samples(other, SPHERE)
+    other.write_text("samples:\n  - {sample: A\n  - B: [\n")
+    with pytest.raises(ValueError, match=r"samples.yaml, line \d: this is no YAML: "):
+        read_samples(other, SPHERE)
+    other.write_text("samples:\n  - {sample: A, rms: 20nm, hurst: 0.8}\n")
+    with pytest.raises(ValueError, match=r"samples.yaml, line 2: a surface of numbers needs"):
+        read_samples(other, SPHERE)
+
+
+def test_a_sample_that_fails_later_keeps_the_rows_of_the_others(tmp_path):
+    (tmp_path / "bad.txt").write_text("no scan\n")
+    path = tmp_path / "samples.csv"
+    path.write_text(
+        "sample,scans,rms,roll_off,hurst,short_cutoff,measured_w_retr,measured_w_retr_error\n"
+        "bad,bad.txt,,,,,,\ngood,,20nm,2um,0.8,20nm,65mJ/m2,1mJ/m2\n"
+        "rough,,20um,2um,0.8,20nm,,\n"
+    )
+    bad, good, rough = predicted_samples(read_samples(path, SPHERE))
+    assert (bad.outcome, bad.prediction) == ("refused", None)
+    assert "bad.txt" in bad.row["remarks"]
+    assert good.row["hysteresis_low"] < good.row["hysteresis"] < good.row["hysteresis_high"]
+    assert (good.row["at_least"], good.row["none_expected"], good.row["failed"]) == (
+        False,
+        False,
+        "",
+    )
+    assert good.row["measured_w_retr"] == pytest.approx(65e-3)
+    point = good.point("w_retr")
+    assert (point.measured.low, point.measured.high) == pytest.approx((63e-3, 67e-3))
+    assert point.predicted.value == good.prediction.w_retr.value
+    assert rough.outcome == "does not apply"
+    assert "full conformity" in rough.row["failed"]
+    assert np.isnan(rough.point("w_retr").predicted.value)

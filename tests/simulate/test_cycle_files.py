@@ -1,0 +1,90 @@
+"""A simulation that ends at any state and goes on later is the undisturbed one, bit for bit."""
+
+import functools
+from dataclasses import asdict, replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from crackfront.simulate.cycle_files import read_checkpoint, write_checkpoint
+from crackfront.simulate.provenance import provenance
+from crackfront.simulate.run_simulation import run_simulation
+from crackfront.simulate.sphere.full_cycle import FullCycle
+from crackfront.simulate.sphere.steady_branches import SteadySchedule
+from crackfront.simulate.storage import UnreadableFileError
+from crackfront.sweep.configuration import load_configuration
+
+CONFIG = Path(__file__).parents[2] / "config"
+SWEEP, LINES = (load_configuration(CONFIG / name) for name in ("test.yaml", "line-test.yaml"))
+CYCLE = replace(
+    SWEEP.simulation(SWEEP.spectra[1], 0.1, 0),
+    schedule=FullCycle(0.5, 0.125),
+    record_fronts=True,
+    record_energy=True,
+)
+STEADY = replace(CYCLE, schedule=SteadySchedule(0.4, 1.2, travel=0.5, standard_error=1e-6))
+LINE = replace(LINES.simulation(LINES.spectra[0], 0.16, 1), record_fronts=True)
+
+
+@functools.cache
+def checkpoints(simulation):
+    """Undisturbed result of a simulation, and its checkpoint at every state."""
+    found = []
+    result = run_simulation(simulation, keep=lambda make: found.append(make()))
+    assert len(found) == result.record.states.direction.size
+    return result, found
+
+
+@pytest.mark.parametrize("simulation", [CYCLE, STEADY, LINE], ids=["cycle", "steady", "line"])
+def test_a_run_goes_on_from_any_state_to_the_same_bits(tmp_path, simulation):
+    undisturbed, found = checkpoints(simulation)
+    directions = undisturbed.record.states.direction
+    assert {1, -1} == set(directions.tolist())
+    for partial in found[:: 1 + len(found) // 20]:
+        path = write_checkpoint(tmp_path, "checkpoint", partial, provenance())
+        resumed = read_checkpoint(path, simulation)
+        computed = []
+        result = run_simulation(simulation, resume=resumed, keep=computed.append)
+        np.testing.assert_equal(asdict(result.record), asdict(undisturbed.record))
+        n_known = partial.checkpoint.record.states.direction.size
+        assert len(computed) == directions.size - n_known
+        assert result.measures.cpu_seconds > partial.cpu_seconds
+
+
+@pytest.mark.parametrize(("simulation", "sites"), [(CYCLE, "angle"), (LINE, "y")])
+def test_fronts_of_a_checkpoint_have_the_sites_of_their_geometry(tmp_path, simulation, sites):
+    _, found = checkpoints(simulation)
+    path = write_checkpoint(tmp_path, "checkpoint", found[0], provenance())
+    with xr.open_dataset(path) as dataset:
+        assert dataset["last_front"].dims == dataset["turning_front"].dims == (sites,)
+        assert dataset["last_front"].attrs["long_name"] == "front of the last state"
+
+
+def test_a_record_without_fronts_and_energies_goes_on_too(tmp_path):
+    simulation = replace(CYCLE, record_fronts=False, record_energy=False)
+    undisturbed, found = checkpoints(simulation)
+    path = write_checkpoint(tmp_path, "checkpoint", found[5], provenance())
+    resumed = read_checkpoint(path, simulation)
+    record = run_simulation(simulation, resume=resumed).record
+    assert record.fronts is None
+    assert record.dissipated_energy is None
+    assert np.array_equal(record.states.force, undisturbed.record.states.force)
+    assert np.array_equal(record.states.iterations, undisturbed.record.states.iterations)
+
+
+def test_a_checkpoint_of_another_load_is_refused():
+    _, found = checkpoints(CYCLE)
+    with pytest.raises(ValueError, match="it is that of another load"):
+        run_simulation(replace(CYCLE, schedule=FullCycle(0.5, 0.25)), resume=found[5])
+
+
+def test_a_truncated_checkpoint_and_that_of_another_simulation_are_refused(tmp_path):
+    _, found = checkpoints(CYCLE)
+    path = write_checkpoint(tmp_path, "checkpoint", found[2], provenance())
+    with pytest.raises(UnreadableFileError, match="is no checkpoint of"):
+        read_checkpoint(path, STEADY)
+    path.write_bytes(path.read_bytes()[:3000])
+    with pytest.raises(UnreadableFileError, match="is no complete netCDF file"):
+        read_checkpoint(path, CYCLE)
