@@ -19,7 +19,7 @@ COUNT = Range(1, 10**15)
 """Any count."""
 
 PLATEAU = Range(1e-60, 1e15)
-"""Densities of heights at long waves, in m^4 or reduced: 1e-27 m^4 is that of a polished film."""
+"""Densities of heights at long waves, in m^4 or reduced: a polished film has 1e-27 m^4."""
 
 LENGTH = Range(1e-9, 1e9)
 """Lengths in reduced units: from far below an atom on the smallest spheres to far above them."""
@@ -49,7 +49,7 @@ SI = {
     "N": Range(1e-18, 1e9),
     "N/m": Range(1e-9, 1e12),
 }
-"""Lengths from below an atom to planets, moduli beyond those of foams and diamond, and so on."""
+"""Lengths from below an atom to planets, moduli from below foams to above diamond, and so on."""
 
 TOLERANCE = Range(1e-16, 1.0)
 """Force that may be left, relative to w_int per front length."""

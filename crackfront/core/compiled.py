@@ -148,21 +148,23 @@ def dispatched(function: Function) -> Function:
 
     numba chooses when it compiles, so one source of a kernel serves all types.
     """
-    known: dict[type, Any] = {}
+    implementations: dict[type, Any] = {}
 
     @functools.wraps(function)
-    def chosen(first: Any, *others: Any) -> Any:
-        return known[type(first)](first, *others)
+    def chosen(first: Any, *arguments: Any) -> Any:
+        return implementations[type(first)](first, *arguments)
 
-    def choose(first: Any, *others: Any) -> Any:
-        return known.get(first.instance_class) if isinstance(first, types.BaseNamedTuple) else None
+    def choose(first: Any, *arguments: Any) -> Any:
+        if not isinstance(first, types.BaseNamedTuple):
+            return None
+        return implementations.get(first.instance_class)
 
     # numba compares the names of arguments, and annotations as well.
     names = inspect.signature(function).parameters.values()
     plain = [name.replace(annotation=name.empty) for name in names]
     choose.__signature__ = inspect.Signature(plain)  # type: ignore[attr-defined]
     overload(chosen)(choose)
-    _IMPLEMENTATIONS[chosen] = known
+    _IMPLEMENTATIONS[chosen] = implementations
     return chosen  # type: ignore[return-value]
 
 

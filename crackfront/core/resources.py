@@ -46,14 +46,14 @@ def refuse_beyond_time(what: str, seconds: float, remedy: str) -> None:
 def memory_at_hand() -> float:
     """Memory that this process may have, of the machine, its group and its own limit, in bytes."""
     shared = _machine_and_group_limit()
-    own, _ = resource.getrlimit(resource.RLIMIT_AS)
-    if own == resource.RLIM_INFINITY:
+    limit, _ = resource.getrlimit(resource.RLIMIT_AS)
+    if limit == resource.RLIM_INFINITY:
         return shared
     pages = int(Path("/proc/self/statm").read_text().split()[0])
-    return max(min(shared, float(own - pages * resource.getpagesize())), 0.0)
+    return max(min(shared, float(limit - pages * resource.getpagesize())), 0.0)
 
 
-# A process may lower its own limit, but those of its machine and job are set before it starts.
+# A process may lower its own limit; the limits of its machine and job are set before it starts.
 @functools.cache
 def _machine_and_group_limit() -> float:
     """Memory of the machine, or of the control groups of this process where that is less."""
@@ -86,6 +86,6 @@ def peak_memory() -> float:
     marks = [int(line.split()[1]) for line in lines if line.startswith("VmHWM")]
     if marks:
         return 1024.0 * marks[0]
-    # This peak cannot be reset, and a process may inherit that of its parent; macOS: in bytes.
+    # This peak cannot be reset, and a process may inherit its parent's peak; macOS: in bytes.
     unit = 1 if sys.platform == "darwin" else 1024
     return float(unit * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)

@@ -24,7 +24,7 @@ class Spectrum(ABC):
 
     A shape is a frozen dataclass with a `short_cutoff`, beyond which it is zero, and the methods
     that are abstract here. It says which of its fields are lengths, pure numbers and amplitudes;
-    files, seeds, keys and units follow from these names, which differ from those of other shapes.
+    files, seeds, keys and units follow from these names, which no two shapes share.
     """
 
     __slots__ = ()
@@ -43,10 +43,10 @@ class Spectrum(ABC):
     @staticmethod
     def stated(parameters: Mapping[str, Any]) -> Spectrum | None:
         """Shape that some parameters state, numbers or arrays by their names, if they state one."""
-        for shape in sorted(Spectrum._shapes.values(), key=lambda one: -len(one._names())):
+        for shape in sorted(Spectrum._shapes.values(), key=lambda shape: -len(shape._names())):
             if all(name in parameters for name in shape._names()):
-                given = (np.asarray(parameters[name], float).tolist() for name in shape._names())
-                return shape(*(tuple(one) if isinstance(one, list) else one for one in given))
+                values = (np.asarray(parameters[name], float).tolist() for name in shape._names())
+                return shape(*(tuple(x) if isinstance(x, list) else x for x in values))
         return None
 
     @staticmethod
@@ -61,10 +61,11 @@ class Spectrum(ABC):
 
     @property
     def parameters(self) -> dict[str, float | Array]:
-        """Lengths and pure numbers by their names, which :meth:`stated` makes the shape of."""
-        given = {name: getattr(self, name) for name in self._names()}
+        """Lengths and pure numbers by their names, from which :meth:`stated` makes the shape."""
+        values = {name: getattr(self, name) for name in self._names()}
         return {
-            name: np.array(one) if isinstance(one, tuple) else one for name, one in given.items()
+            name: np.array(value) if isinstance(value, tuple) else value
+            for name, value in values.items()
         }
 
     @property
@@ -89,8 +90,8 @@ class Spectrum(ABC):
 
         .. math:: (h^{(\alpha)}_{rms})^2 = \frac{1}{4\pi^2} \int d^2q\, q^{2\alpha} C(q)
 
-        The order alpha is 0 for heights, 1/2 for the half-derivative, 1 for slopes. (Units: those
-        of the density / length**(2 + 2 * order))
+        The order alpha is 0 for heights, 1/2 for the half-derivative, 1 for slopes.
+        (Units: density / length**(2 + 2 * order))
         """
 
     def longer_than(self, wavelength: float) -> Self:
@@ -121,7 +122,7 @@ class Spectrum(ABC):
     def dominant_wavelengths(self, order: float, share: float = 0.8) -> tuple[float, float]:
         """Shortest and longest wavelength of the range that carries a share of a mean square.
 
-        It is that of the derivative of an order, as in :meth:`mean_square`. Half of the rest lies
+        The mean square is as in :meth:`mean_square`. Half of the rest lies
         at shorter wavelengths, the other half at longer ones.
         """
         total, rest = self.mean_square(order), (1 - share) / 2
@@ -259,7 +260,7 @@ class SelfAffineSpectrum(Spectrum):
         -------
         array
             C_1D(q); the mean square height is its integral over q > 0, divided by pi.
-            (Units: those of the density / length)
+            (Units: density / length)
         """
         q = np.asarray(wavevector, dtype=float)
         knee, cutoff = 2 * math.pi / self.roll_off, 2 * math.pi / self.short_cutoff
@@ -305,7 +306,7 @@ class TabulatedSpectrum(Spectrum):
         for name in ("wavelengths", "densities"):
             for value in getattr(self, name):
                 if not (math.isfinite(value) and value > 0):
-                    raise ValueError(f"{name} hold {value}; they must be positive and finite")
+                    raise ValueError(f"{name} contain {value}; they must be positive and finite")
         if len(self.wavelengths) < 2 or len(self.wavelengths) != len(self.densities):
             raise ValueError(
                 f"{len(self.wavelengths)} wavelengths and {len(self.densities)} densities make no "
@@ -329,10 +330,10 @@ class TabulatedSpectrum(Spectrum):
         q = np.asarray(wavevector, dtype=float) * self.short_cutoff / (2 * np.pi)
         places = -np.log(np.array(self.wavelengths) / self.short_cutoff)
         # Far below the first wavelength all is flat; the logarithm needs a number.
-        found = np.interp(
+        log_density = np.interp(
             np.log(np.maximum(q, math.exp(places[0]))), places, np.log(self.densities)
         )
-        return np.where(q <= 1 + 1e-12, np.exp(found), 0.0)
+        return np.where(q <= 1 + 1e-12, np.exp(log_density), 0.0)
 
     def mean_square(self, order: float) -> float:
         """Mean square of the derivative of a given order, exact for the pieces."""
@@ -349,10 +350,10 @@ class TabulatedSpectrum(Spectrum):
 
     def longer_than(self, wavelength: float) -> TabulatedSpectrum:
         """Part of the spectrum with wavelengths above one that is not below the short cutoff."""
-        longer = [one for one in self.wavelengths if one > wavelength * (1 + 1e-12)]
+        longer = [length for length in self.wavelengths if length > wavelength * (1 + 1e-12)]
         if not longer:
             longer = [2 * wavelength]
         end = float(self.density(2 * np.pi / wavelength))
-        # Where all of it is flat, the first density holds at any longer wavelength as well.
+        # Where all of it is flat, the first density applies at any longer wavelength as well.
         values = (self.densities[0], *self.densities[1 : len(longer)], end)
         return TabulatedSpectrum((*longer, wavelength), values)

@@ -65,9 +65,9 @@ def gaussian_field(
         noise = rng.standard_normal((rows.size, 2, columns.size))
         wavevector = step * np.hypot(rows[:, None] * (l_y / l_x), columns)
         amplitude = np.sqrt(spectrum.density(wavevector) / 2) / math.sqrt(l_x * l_y)
-        kept = np.abs(rows) <= kept_x
-        found = (noise[:, 0] + 1j * noise[:, 1]) * amplitude
-        modes[rows[kept], : kept_y + 1] = found[kept, : kept_y + 1]
+        resolved = np.abs(rows) <= kept_x
+        row_modes = (noise[:, 0] + 1j * noise[:, 1]) * amplitude
+        modes[rows[resolved], : kept_y + 1] = row_modes[resolved, : kept_y + 1]
     # A real field: on the column q_y = 0 the modes at -q_x are the conjugates of those at q_x.
     modes[0, 0] = 0.0
     modes[-kept_x:, 0] = np.conj(modes[kept_x:0:-1, 0])
@@ -105,15 +105,15 @@ def uncorrelated_rows(
 ) -> Array:
     r"""Rows along x that are independent of each other, as a front sees weak disorder from afar.
 
-    Their spectrum is that of an isotropic field integrated across, :math:`q^{2 \alpha} C(q)` with
+    Their spectrum is an isotropic field's, integrated across, :math:`q^{2 \alpha} C(q)` with
     the order alpha, of shortest wavelengths of two pixels or more. The n_y rows of n_x points have
     zero mean, and unit variance in the mean over realisations.
     """
     n_x, n_y = n_point
-    _, kept = _modes(spectrum.short_cutoff, n_x, n_x * pixel)
-    wavevector = 2 * np.pi / (n_x * pixel) * np.arange(1, kept + 1)
+    _, n_mode = _modes(spectrum.short_cutoff, n_x, n_x * pixel)
+    wavevector = 2 * np.pi / (n_x * pixel) * np.arange(1, n_mode + 1)
     power = wavevector ** (2 * order) * spectrum.density(wavevector)
     modes = np.zeros((n_x // 2 + 1, n_y), dtype=complex)
-    noise = rng.standard_normal((2, kept, n_y))
-    modes[1 : kept + 1] = (noise[0] + 1j * noise[1]) * np.sqrt(power / power.sum())[:, None] / 2
+    noise = rng.standard_normal((2, n_mode, n_y))
+    modes[1 : n_mode + 1] = (noise[0] + 1j * noise[1]) * np.sqrt(power / power.sum())[:, None] / 2
     return np.asarray(irfft(modes, n=n_x, axis=0, norm="forward"))

@@ -116,7 +116,7 @@ class ReducedUnit(StrEnum):
         return unit
 
     def scale(self, scales: Scales) -> float:
-        """Value of the unit in SI for a sphere (Units: those of `si`)."""
+        """Value of the unit in SI for a sphere (Units: as `si`)."""
         match self:
             case ReducedUnit.LATERAL:
                 return scales.lateral

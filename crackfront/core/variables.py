@@ -50,7 +50,7 @@ def variable(long_name: str, units: str, *dims: str, default: Any = MISSING) -> 
 def variables(kind: type[Any], *along: str) -> tuple[Variable, ...]:
     """Variables in which a file stores the fields of a dataclass that :func:`variable` made.
 
-    Dimensions that count several records, given as `along`, come before those of each field.
+    Dimensions that count several records, given as `along`, precede the dimensions of each field.
 
     Examples
     --------
@@ -60,7 +60,6 @@ def variables(kind: type[Any], *along: str) -> tuple[Variable, ...]:
     >>> variables(Curve)
     (Variable(name='force', dims=(), units='N', long_name='normal force'),)
     """
-    known = (
-        Variable(one.name, *one.metadata[_KEY]) for one in fields(kind) if _KEY in one.metadata
-    )
-    return tuple(replace(item, dims=(*along, *item.dims)) for item in known)
+    stored = (item for item in fields(kind) if _KEY in item.metadata)
+    listed = (Variable(item.name, *item.metadata[_KEY]) for item in stored)
+    return tuple(replace(item, dims=(*along, *item.dims)) for item in listed)

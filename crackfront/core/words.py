@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 
-def counted(number: int, thing: str) -> str:
+def counted(number: int, noun: str) -> str:
     """A number of things, whose plural takes an s.
 
     Examples
@@ -13,7 +13,7 @@ def counted(number: int, thing: str) -> str:
     >>> counted(1, "scan"), counted(3, "scan")
     ('1 scan', '3 scans')
     """
-    return f"{number} {thing}" if number == 1 else f"{number} {thing}s"
+    return f"{number} {noun}" if number == 1 else f"{number} {noun}s"
 
 
 def in_bytes(number: float) -> str:

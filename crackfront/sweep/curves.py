@@ -124,20 +124,25 @@ def curves_dataset(finished: Sequence[FinishedSimulation]) -> xr.Dataset:
         "end_load": [math.nan if record is None else record.end_load for record in records],
         "pull_off_energy": [_pull_off_energy(record) for record in records],
         "n_site": [_fronts(record).shape[1] for record in records],
-        "n_state": [0 if one is None else one.states.direction.size for one in records],
+        "n_state": [_n_state(record) for record in records],
         "n_front_site": [_fronts(record).size for record in records],
     }
-    known = [record for record in records if record is not None]
-    columns |= _state_columns(known)
-    if any(record.fronts is not None for record in known):
-        columns["front"] = np.concatenate([_fronts(record).ravel() for record in known])
+    begun = [record for record in records if record is not None]
+    columns |= _state_columns(begun)
+    if any(record.fronts is not None for record in begun):
+        columns["front"] = np.concatenate([_fronts(record).ravel() for record in begun])
     return _labelled(columns).assign_attrs({PARAMETERS: parameters_text(simulations)})
 
 
 def parameters_text(simulations: Iterable[Simulation]) -> str:
-    """Parameters of the series of simulations as JSON, which say in what others differ."""
-    known = {simulation.series: simulation.parameters for simulation in simulations}
-    return json.dumps(known, sort_keys=True)
+    """Parameters of each series of simulations, as JSON."""
+    parameters = {simulation.series: simulation.parameters for simulation in simulations}
+    return json.dumps(parameters, sort_keys=True)
+
+
+def _n_state(record: CycleRecord | None) -> int:
+    """Number of recorded states."""
+    return 0 if record is None else int(record.states.direction.size)
 
 
 def _cycle_status(record: CycleRecord | None) -> int:
@@ -174,7 +179,9 @@ def _state_columns(records: Sequence[CycleRecord]) -> dict[str, NDArray[Any]]:
         )
         for item in variables(type(records[0].states))
     }
-    energies = [one.dissipated_energy for one in records if one.dissipated_energy is not None]
+    energies = [
+        record.dissipated_energy for record in records if record.dissipated_energy is not None
+    ]
     if energies:
         columns["dissipated_energy"] = np.concatenate(energies)
     return columns
@@ -185,19 +192,19 @@ def _labelled(columns: dict[str, Any]) -> xr.Dataset:
     of_states: dict[str, Variable] = {}
     for kind in (*_STATES, CycleRecord):
         of_states |= {_state_name(item.name): item for item in variables(kind)}
-    found: dict[str, Any] = {}
+    labelled: dict[str, Any] = {}
     for item in (*variables(SweepRow, SIMULATION), *IDENTITY, *_CYCLE):
         about = label(item, STATUSES if item.name == "status" else ())
         if item.name == "cycle_status":
             about = label(item, _CYCLE_STATUSES)
         if item.name in _COUNTS:
             about["sample_dimension"] = _COUNTS[item.name]
-        found[item.name] = (SIMULATION,), columns[item.name], about
-    for name in [name for name in columns if name not in found]:
+        labelled[item.name] = (SIMULATION,), columns[item.name], about
+    for name in [name for name in columns if name not in labelled]:
         item = _FRONT if name == "front" else of_states[name]
         dimension = FRONT_SITE if name == "front" else STATE
-        found[name] = (dimension,), columns[name], label(item)
-    return xr.Dataset(found)
+        labelled[name] = (dimension,), columns[name], label(item)
+    return xr.Dataset(labelled)
 
 
 @dataclass(frozen=True, slots=True)
@@ -241,7 +248,7 @@ def selected(dataset: xr.Dataset, chosen: NDArray[np.integer[Any]]) -> xr.Datase
         if dimension in dataset.sizes:
             counts = dataset[count].values
             ends = np.cumsum(counts)
-            parts = [np.arange(ends[one] - counts[one], ends[one]) for one in chosen]
+            parts = [np.arange(ends[place] - counts[place], ends[place]) for place in chosen]
             places[dimension] = np.concatenate([np.zeros(0, np.int64), *parts])
     return dataset.isel(places)
 
@@ -249,17 +256,17 @@ def selected(dataset: xr.Dataset, chosen: NDArray[np.integer[Any]]) -> xr.Datase
 def concatenated(datasets: Sequence[xr.Dataset]) -> xr.Dataset:
     """Simulations of several datasets, one after the other, with their states."""
     names = dict.fromkeys(name for dataset in datasets for name in dataset.variables)
-    found = {}
+    joined = {}
     for name in names:
         # Files of simulations that all failed have no states.
         parts = [dataset[name].variable for dataset in datasets if name in dataset]
-        found[name] = xr.Variable.concat(parts, dim=parts[0].dims[0])  # type: ignore[no-untyped-call]
-    known: dict[str, Any] = {}
+        joined[name] = xr.Variable.concat(parts, dim=parts[0].dims[0])  # type: ignore[no-untyped-call]
+    parameters: dict[str, Any] = {}
     for dataset in datasets:
-        known |= json.loads(dataset.attrs[PARAMETERS])
-    present = sorted({*found["series"].values.tolist()})
-    text = json.dumps({series: known[series] for series in present}, sort_keys=True)
-    return xr.Dataset(found, attrs={PARAMETERS: text})
+        parameters |= json.loads(dataset.attrs[PARAMETERS])
+    present = sorted({*joined["series"].values.tolist()})
+    text = json.dumps({series: parameters[series] for series in present}, sort_keys=True)
+    return xr.Dataset(joined, attrs={PARAMETERS: text})
 
 
 def read_result(path: Path, place: int, simulation: Simulation) -> SimulationResult:

@@ -101,8 +101,8 @@ def _archive_digests(place: Path, archive: ZipFile) -> dict[str, str]:
     for member in members:
         try:
             with archive.open(member) as file:
-                found = hashlib.file_digest(file, "sha256")  # type: ignore[arg-type]
-                digests[_name(member)] = found.hexdigest()
+                digest = hashlib.file_digest(file, "sha256")  # type: ignore[arg-type]
+                digests[_name(member)] = digest.hexdigest()
         except _UNREADABLE:
             digests[_name(member)] = ""
     digests.pop(SUMS, None)
@@ -150,11 +150,11 @@ def archive_results(folder: Path, path: Path, *, curves: bool) -> int:
     `curves` includes the files of finished simulations. ValueError, and no archive, if the folder
     is not whole.
     """
-    found = verification(folder)
-    if not found.is_whole:
+    result = verification(folder)
+    if not result.is_whole:
         raise ValueError(
-            f"{folder} has {len(found.damaged)} damaged, {len(found.missing)} missing and "
-            f"{len(found.unlisted)} unlisted files; crackfront verify names them"
+            f"{folder} has {len(result.damaged)} damaged, {len(result.missing)} missing and "
+            f"{len(result.unlisted)} unlisted files; crackfront verify names them"
         )
     listed = read_sums(folder).items()
     packed = {name: digest for name, digest in listed if curves or not name.startswith("curves/")}

@@ -89,25 +89,25 @@ class Inventory:
 
     def simulations(self) -> list[Simulation]:
         """Simulations that are to be run."""
-        return [one for item in self.missing for one in item.simulations()]
+        return [simulation for item in self.missing for simulation in item.simulations()]
 
     def sentences(self) -> list[str]:
         """Why simulations run again although the folder has some of their names."""
-        found = []
+        reasons = []
         if self.older:
-            found.append(
+            reasons.append(
                 f"{self.older} stored simulations belong to an older version of the physics (now "
                 f"{PHYSICS_VERSION}) and run again"
             )
         if self.remade:
-            found.append(
+            reasons.append(
                 f"{self.remade} stored simulations have rows of an older version (now "
                 f"{ROWS_VERSION}), which are made again from their states"
             )
         if self.changed:
             listed = ", ".join(f"{n} with another {name}" for name, n in self.changed.most_common())
-            found.append(f"stored simulations of other parameters stay unused: {listed}")
-        return found
+            reasons.append(f"stored simulations of other parameters stay unused: {listed}")
+        return reasons
 
 
 @dataclass(frozen=True, slots=True)
@@ -154,8 +154,8 @@ def located_rows(
         stopped = rows.columns["status"] == STATUSES.index(AT_LIMIT)
         counts = ~(stopped & (rows.columns["max_sweeps"] < max_sweeps))
         counts &= (rows.realisation >= realisations.start) & (rows.realisation < realisations.stop)
-        for row, one in enumerate(series):
-            places = np.flatnonzero(counts & (rows.series == one))
+        for row, digest in enumerate(series):
+            places = np.flatnonzero(counts & (rows.series == digest))
             columns = rows.realisation[places] - realisations.start
             free = file[row, columns] == _NOWHERE
             file[row, columns[free]] = number
@@ -182,12 +182,12 @@ def inventory_of_rows(
         for first, row in zip(firsts, missing, strict=True)
         if row.any()
     ]
-    found = Inventory(missing=tuple(lacking), older=older, changed=changed)
+    unstored = Inventory(missing=tuple(lacking), older=older, changed=changed)
     if missing.all():
-        return found
+        return unstored
     n_done = int(np.isin(located.column("status"), _COMPLETE_PLACES).sum())
     costs = [expected_cost(first).seconds for first in firsts]
-    return found + Inventory(
+    return unstored + Inventory(
         n_done,
         int(np.count_nonzero(~missing)) - n_done,
         remade=located.n_older_rows,
@@ -205,7 +205,7 @@ def _unused(
 ) -> tuple[int, Counter[str]]:
     """How many missing simulations are stored of older physics, and what others differ in."""
     older, changed = 0, Counter[str]()
-    wanted = {first.series for first in firsts}
+    requested = {first.series for first in firsts}
     for stored in rows:
         within = np.isin(stored.realisation, realisations)
         if stored.physics_version != PHYSICS_VERSION:
@@ -214,7 +214,7 @@ def _unused(
                 older += int(np.count_nonzero(again & (stored.series == first.series)))
             continue
         for series, parameters in stored.parameters.items():
-            if series not in wanted and missing.any():
+            if series not in requested and missing.any():
                 names = min((_differences(first, parameters) for first in firsts), key=len)
                 count = int(np.count_nonzero(within & (stored.series == series)))
                 changed[" and ".join(names)] += count

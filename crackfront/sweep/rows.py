@@ -30,7 +30,7 @@ AT_LIMIT = Status.STEP_LIMIT.name.lower()
 NO_STEADY_PART = "no_steady_part"
 """Status of a complete cycle without enough steady states."""
 
-STATUSES = (*(one.name.lower() for one in Status), NO_STEADY_PART, "refused", "defect")
+STATUSES = (*(status.name.lower() for status in Status), NO_STEADY_PART, "refused", "defect")
 """What `status` may be; the file of a sweep has their places."""
 
 
@@ -41,10 +41,10 @@ def sweep_row(result: SimulationResult) -> SweepRow:
     mean = 1 - result.measures.e_el if simulation.kind == "roughness" else 1.0
     steady = mean_adhesion(record, length, simulation.schedule.n_period, mean)
     status, sentence = _status(record, steady)
-    known, cycle = status in COMPLETE, status == COMPLETE[0]
-    numerical = stated_error(simulation, steady, length) if known else (np.nan, np.nan)
+    complete, cycle = status in COMPLETE, status == COMPLETE[0]
+    numerical = stated_error(simulation, steady, length) if complete else (np.nan, np.nan)
     measures: dict[str, Any] = {
-        item.name: getattr(steady, item.name) if known or item.units != ADHESION else np.nan
+        item.name: getattr(steady, item.name) if complete or item.units != ADHESION else np.nan
         for item in variables(SteadyMeasures)
     }
     return SweepRow(
@@ -66,9 +66,9 @@ def failed_row(simulation: Simulation, status: str, sentence: str) -> SweepRow:
     """Row of a simulation that failed, with its status and the reason as a sentence."""
     unknown: dict[str, Any] = {item.name: math.nan for item in fields(SweepRow)}
     nothing = dict.fromkeys(("iterations", "n_step", "n_approach", "n_retraction"), 0)
-    known = {"status": status, "status_sentence": sentence, "seed": simulation.seed}
+    ending = {"status": status, "status_sentence": sentence, "seed": simulation.seed}
     limit = {"max_sweeps": simulation.solver.max_sweeps}
-    return SweepRow(**(unknown | nothing | known | limit))
+    return SweepRow(**(unknown | nothing | ending | limit))
 
 
 def _status(record: CycleRecord, steady: SteadyAdhesion) -> tuple[str, str]:
@@ -91,11 +91,11 @@ def row_columns(rows: Sequence[SweepRow], shape: tuple[int, ...]) -> dict[str, N
 
 def labelled_columns(columns: Mapping[str, NDArray[np.generic]]) -> dict[str, xr.Variable]:
     """Variables of a file for columns as of :func:`row_columns`; texts may be bytes of UTF-8."""
-    found = {}
+    labelled = {}
     for item in variables(SweepRow, *PLACE):
         values = columns[item.name]
         about = label(item, STATUSES if item.name == "status" else ())
         if values.dtype.kind == "S":
             about |= {"_Encoding": "utf-8"}  # as xarray writes for texts
-        found[item.name] = xr.Variable(item.dims, values, about)
-    return found
+        labelled[item.name] = xr.Variable(item.dims, values, about)
+    return labelled

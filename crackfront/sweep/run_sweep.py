@@ -85,8 +85,8 @@ def run_sweep(
     KeyboardInterrupt
         After Ctrl-C or SIGTERM. Finished simulations are stored; the same call continues.
     """
-    for name, given in (("configuration", configuration), ("output", output or "")):
-        refuse_other_type(name, given, (str, PathLike), "the path of a file or folder")
+    for name, path in (("configuration", configuration), ("output", output or "")):
+        refuse_other_type(name, path, (str, PathLike), "the path of a file or folder")
     sweep, store, origin = opened(Path(configuration), None if output is None else Path(output))
     shards = sweep.shards()
     write_source(Path(configuration), store.folder)
@@ -116,11 +116,11 @@ def write_source(configuration: Path, results: Path) -> None:
 
 def without_value(table: Path) -> tuple[int, str]:
     """How many simulations of a table have no value, and how most of them ended, with a remedy."""
-    found = read_derived(table, ("status", "status_sentence"))
-    words, sentences = flag_words(found.status), found.status_sentence.values
+    dataset = read_derived(table, ("status", "status_sentence"))
+    words, sentences = flag_words(dataset.status), dataset.status_sentence.values
     failed = ~np.isin(words, COMPLETE)
-    others, ended = (Counter(values[failed].tolist()) for values in (words, sentences))
-    listed = ", ".join(f"{count} {status}" for status, count in sorted(others.items()))
-    said = "; ".join(f"{count}: {sentence}" for sentence, count in ended.most_common(3))
+    by_status, by_sentence = (Counter(values[failed].tolist()) for values in (words, sentences))
+    listed = ", ".join(f"{count} {status}" for status, count in sorted(by_status.items()))
+    reasons = "; ".join(f"{count}: {text}" for text, count in by_sentence.most_common(3))
     count = int(np.count_nonzero(failed))
-    return count, f"{count} of {failed.size} simulations have no value: {listed} ({said})"
+    return count, f"{count} of {failed.size} simulations have no value: {listed} ({reasons})"

@@ -62,9 +62,9 @@ class ShardSummary:
         return self.physics_version == PHYSICS_VERSION and within and series in self.series
 
     def has_rows(self, series: Iterable[str], max_sweeps: int) -> bool:
-        """Whether its rows are those of some series as they are today, at such a limit."""
-        known = all(self.has_states(one, max_sweeps) for one in series)
-        return known and self.rows_version == ROWS_VERSION
+        """Whether it has rows of all these series, of today's versions and at such a limit."""
+        has_states = all(self.has_states(digest, max_sweeps) for digest in series)
+        return has_states and self.rows_version == ROWS_VERSION
 
 
 def write_shard(
@@ -130,7 +130,7 @@ def shard_columns(
     They are read without xarray, which takes 0.1 s to open a file: sweeps have hundreds.
     """
     first = shard.realisations.start
-    amplitudes = [shard.series.index(one) for one in series]
+    amplitudes = [shard.series.index(digest) for digest in series]
     columns = {}
     with utf8_path(shard.path) as named, netCDF4.Dataset(named) as file:
         file.set_auto_maskandscale(False)
@@ -149,10 +149,11 @@ def covering(
 ) -> list[tuple[ShardSummary, range]]:
     """Shards of a spectrum that together have as many realisations as possible, and what of each.
 
-    No realisation is taken twice, and none beyond the number of those that are wanted.
+    No realisation is taken twice, and none beyond the requested number.
     """
     chosen, position = [], 0
-    for shard in sorted(shards, key=lambda one: (one.realisations.start, -one.realisations.stop)):
+    longest_first = sorted(shards, key=lambda shard: -len(shard.realisations))
+    for shard in sorted(longest_first, key=lambda shard: shard.realisations.start):
         start, stop = shard.realisations.start, shard.realisations.stop
         taken = range(max(position, start), min(stop, n_realisation))
         if taken:

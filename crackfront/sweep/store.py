@@ -114,7 +114,7 @@ class Store:
                 self.announce(f"{sentence}; the workflow makes it again")
 
     def _whole(self, paths: Iterable[Path]) -> Iterator[Path]:
-        """Those of some files that are as they were written; others are set aside."""
+        """Files that are as they were written; damaged ones are set aside."""
         for path in paths:
             try:
                 sentence = set_aside_if_damaged(path)
@@ -138,12 +138,12 @@ class Store:
 
     def _stored_rows(self, item: NamedSpectrum, realisations: range) -> list[StoredRows]:
         """Rows of all files of curves that may have simulations of a spectrum and block."""
-        found = []
+        rows = []
         for folder in self._curve_folders(item, realisations):
             for path in self._whole(curve_files(folder)):
                 with contextlib.suppress(FileNotFoundError):
-                    found.append(stored_rows(path))
-        return found
+                    rows.append(stored_rows(path))
+        return rows
 
     def located(self, sweep: Sweep, shard: Shard) -> LocatedRows:
         """Where the files of curves have the simulations of a shard."""
@@ -165,8 +165,8 @@ class Store:
         """Attributes of the files of shards of a spectrum that are whole."""
         folder = self.folder / "shards"
         paths = [folder / f"{item.name}.nc", *sorted(folder.glob(f"{item.name}.*-*.nc"))]
-        found = map(shard_summary, self._whole(path for path in paths if path.is_file()))
-        return [summary for summary in found if summary.spectrum == item.name]
+        summaries = map(shard_summary, self._whole(path for path in paths if path.is_file()))
+        return [summary for summary in summaries if summary.spectrum == item.name]
 
     def is_finished(self, sweep: Sweep, shard: Shard) -> bool:
         """Whether the file of a shard is there, whole, and what is asked for."""
@@ -177,31 +177,31 @@ class Store:
 
     def unfinished(self, sweep: Sweep, shards: Iterable[Shard]) -> Inventory:
         """What is stored and lacking of shards; those with a file that is asked for are done."""
-        found = Inventory()
+        total = Inventory()
         for shard in shards:
             if self.is_finished(sweep, shard):
-                found += Inventory(len(sweep.elastic_energies) * len(shard.realisations))
+                total += Inventory(len(sweep.elastic_energies) * len(shard.realisations))
             else:
-                found += self.inventory(sweep, shard.item, shard.realisations)
-        return found
+                total += self.inventory(sweep, shard.item, shard.realisations)
+        return total
 
     def progress(self, sweep: Sweep, item: NamedSpectrum) -> Inventory:
         """How far a spectrum is: by the attributes of its shards, the rest by files of curves."""
         firsts, series = sweep.one_per_amplitude(item), sweep.series(item)
         costs = sum(expected_cost(first).seconds for first in firsts)
-        limit, found, position = sweep.numerics.max_sweeps, Inventory(), 0
-        known = [
+        limit, total, position = sweep.numerics.max_sweeps, Inventory(), 0
+        current = [
             summary
             for summary in self.shard_summaries(item)
-            if all(summary.has_states(one, limit) for one in series)
+            if all(summary.has_states(digest, limit) for digest in series)
         ]
-        for summary, taken in covering(known, sweep.n_realisation):
+        for summary, taken in covering(current, sweep.n_realisation):
             if gap := range(position, taken.start):
-                found += self.inventory(sweep, item, gap)
-            rows = [summary.series.index(one) for one in series]
+                total += self.inventory(sweep, item, gap)
+            rows = [summary.series.index(digest) for digest in series]
             n_failed, size = int(summary.n_failed[rows].sum()), len(rows) * len(taken)
             share = len(taken) / len(summary.realisations)
-            found += Inventory(
+            total += Inventory(
                 size - min(n_failed, size),
                 min(n_failed, size),
                 remade=size if summary.rows_version != ROWS_VERSION else 0,
@@ -211,8 +211,8 @@ class Store:
             )
             position = taken.stop
         if gap := range(position, sweep.n_realisation):
-            found += self.inventory(sweep, item, gap)
-        return found
+            total += self.inventory(sweep, item, gap)
+        return total
 
     @contextlib.contextmanager
     def locked(self, shards: Iterable[Shard]) -> Iterator[None]:
@@ -255,14 +255,14 @@ class Store:
 
     def running_shards(self) -> list[str]:
         """Names of the shards whose lock another process holds, as far as this machine sees it."""
-        found = []
+        names = []
         for path in sorted((self.folder / "curves").glob("*/.lock")):
             with contextlib.suppress(OSError), path.open("ab") as file:
                 try:
                     fcntl.lockf(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
                 except (BlockingIOError, PermissionError):
-                    found.append(path.parent.name)
-        return found
+                    names.append(path.parent.name)
+        return names
 
     def finish_shard(self, sweep: Sweep, shard: Shard, origin: Provenance) -> Path:
         """Merge the files of curves of a shard, and derive the file of its rows.
@@ -343,18 +343,20 @@ class Store:
         merged = merged.assign(
             {name: (SIMULATION, values, merged[name].attrs) for name, values in columns.items()}
         )
-        kept = write_curves(folder, MERGED, shard.name, merged, origin)
+        merged_path = write_curves(folder, MERGED, shard.name, merged, origin)
         for path in curve_files(folder):
-            if path != kept and self._is_replaced(path, kept):
+            if path != merged_path and self._is_replaced(path, merged_path):
                 path.unlink()
 
-    def _is_replaced(self, path: Path, kept: Path) -> bool:
-        """Whether a file has only simulations that another one has too, or older ones."""
-        rows, others = stored_rows(path), stored_rows(kept)
+    def _is_replaced(self, path: Path, merged_path: Path) -> bool:
+        """Whether all simulations of a file are in the merged one, or of older physics."""
+        rows, merged = stored_rows(path), stored_rows(merged_path)
         if rows.physics_version < PHYSICS_VERSION:
             return True
-        known = {*zip(others.series.tolist(), others.realisation.tolist(), strict=True)}
-        return known.issuperset(zip(rows.series.tolist(), rows.realisation.tolist(), strict=True))
+        in_merged = {*zip(merged.series.tolist(), merged.realisation.tolist(), strict=True)}
+        return in_merged.issuperset(
+            zip(rows.series.tolist(), rows.realisation.tolist(), strict=True)
+        )
 
     def result(self, sweep: Sweep, simulation: Simulation) -> SimulationResult:
         """Stored result of a simulation; `UnreadableFileError` where it is not stored."""
@@ -383,7 +385,7 @@ class Store:
         return read_table(self.hysteresis)
 
     def about(self, sweep: Sweep) -> dict[str, str]:
-        """Attributes of the file of the whole sweep; refused as by :meth:`table`."""
+        """Attributes of the file of the whole sweep; errors as of :meth:`table`."""
         if not self.hysteresis.exists():
             raise ValueError(
                 f"{self.folder} has no hysteresis.nc; run crackfront aggregate with the "
@@ -408,8 +410,9 @@ class Store:
         limit, chosen, n_missing = sweep.numerics.max_sweeps, [], 0
         for item in sweep.spectra:
             series = sweep.series(item)
-            known = [one for one in self.shard_summaries(item) if one.has_rows(series, limit)]
-            taken = covering(known, sweep.n_realisation)
+            summaries = self.shard_summaries(item)
+            current = [summary for summary in summaries if summary.has_rows(series, limit)]
+            taken = covering(current, sweep.n_realisation)
             n_missing += sweep.n_realisation - sum(len(block) for _, block in taken)
             chosen.append([(shard, series, block) for shard, block in taken])
         if n_missing:
@@ -418,8 +421,9 @@ class Store:
                 f"are in no finished shard of {self.folder}; run `crackfront simulate` with this "
                 "configuration and output, or `make` again"
             )
-        read = (shard_columns(*one) for one in watched([one for some in chosen for one in some]))
-        parts = [[*itertools.islice(read, len(some))] for some in chosen]
+        blocks = watched([block for spectrum in chosen for block in spectrum])
+        read = (shard_columns(*block) for block in blocks)
+        parts = [[*itertools.islice(read, len(spectrum))] for spectrum in chosen]
         forget_sums(self.folder)
         write_request(self.folder, table_request(sweep))
         write_hysteresis(self.hysteresis, sweep, parts, origin)

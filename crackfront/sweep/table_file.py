@@ -57,7 +57,10 @@ def write_hysteresis(
     columns = {}
     for variable in variables(SweepRow):
         spectra = [
-            np.concatenate([one.pop(variable.name) for one in parts], axis=2) for parts in shards
+            np.concatenate(
+                [columns_of_shard.pop(variable.name) for columns_of_shard in parts], axis=2
+            )
+            for parts in shards
         ]
         columns[variable.name] = np.concatenate(spectra)
     dataset = columns_dataset(sweep, columns, range(sweep.n_realisation))
@@ -83,7 +86,7 @@ def _small_chunk_caches() -> Iterator[None]:
 def read_table(path: Path) -> SweepTable:
     """Arrays of a sweep that a fit needs, from a file that :func:`write_hysteresis` wrote.
 
-    UnreadableFileError if the file is missing, truncated or that of something else.
+    UnreadableFileError if the file is missing, truncated, or not the table of a sweep.
     """
     names = sorted(set(SweepTable.__dataclass_fields__) - {"contact_radius", "parameters"})
     dataset = _read(path, (*names, *_WINDOW))
@@ -116,11 +119,13 @@ def _axes(sweep: Sweep, realisations: range) -> SweepAxes:
     spectra = [item.spectrum for item in sweep.spectra]
     energies = np.array(sweep.elastic_energies)
     one_per_amplitude = [sweep.one_per_amplitude(item) for item in sweep.spectra]
-    stated = all(isinstance(one, SelfAffineSpectrum) for one in spectra)
-    texts = [json.dumps(one.parameters, default=np.ndarray.tolist) for one in spectra]
+    self_affine = all(isinstance(spectrum, SelfAffineSpectrum) for spectrum in spectra)
+    texts = [json.dumps(spectrum.parameters, default=np.ndarray.tolist) for spectrum in spectra]
 
     def each(name: str) -> NDArray[Any]:
-        return np.array([[attrgetter(name)(one) for one in row] for row in one_per_amplitude])
+        return np.array(
+            [[attrgetter(name)(simulation) for simulation in row] for row in one_per_amplitude]
+        )
 
     return SweepAxes(
         spectrum=np.array([item.name for item in sweep.spectra]),
@@ -138,7 +143,7 @@ def _axes(sweep: Sweep, realisations: range) -> SweepAxes:
         amplitude=energies,
         w_rms_requested=2 * np.sqrt(energies),
         realisation=np.array(realisations),
-        parameters=None if stated else np.array(texts),
+        parameters=None if self_affine else np.array(texts),
     )
 
 

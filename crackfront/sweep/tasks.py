@@ -103,8 +103,8 @@ class BatchWriter:
 
 def checkpoint_files(folder: Path, simulation: Simulation) -> list[Path]:
     """Checkpoints of a simulation in the folder of its shard, the latest last."""
-    found = folder.glob(f"{_CHECKPOINT}-{simulation.stem}-*.nc")
-    return sorted(found, key=lambda path: path.stat().st_mtime)
+    paths = folder.glob(f"{_CHECKPOINT}-{simulation.stem}-*.nc")
+    return sorted(paths, key=lambda path: path.stat().st_mtime)
 
 
 def run_and_store(

@@ -31,18 +31,18 @@ class Step:
     load: Load
     before: Array
     """Front that it began with. Shape (n_site,). (Units: reduced lateral length)"""
-    found: Relaxation
-    """Front that it ended with, and how."""
+    relaxation: Relaxation
+    """Front at its end, and why it ended."""
 
     @property
     def front(self) -> Array:
         """Front at the end (Units: reduced lateral length)."""
-        return self.found.front
+        return self.relaxation.front
 
     @property
     def status(self) -> Status:
         """How the relaxation at this load ended."""
-        return self.found.status
+        return self.relaxation.status
 
 
 def follow(
@@ -60,7 +60,7 @@ def follow(
         Loads to visit. The next one is read after the step before it was used, so that it may
         depend on that step.
     solver : Solver, optional
-        How each front is found.
+        How each front is relaxation.
 
     Yields
     ------
@@ -74,10 +74,10 @@ def follow(
             front, at_rest = load.start, True
         if not at_rest:
             return
-        found = relax(front, load.value, load.direction, field, solver, memory)
-        yield Step(load, front, found)
-        at_rest = found.status is Status.CONVERGED
-        front = found.front
+        relaxation = relax(front, load.value, load.direction, field, solver, memory)
+        yield Step(load, front, relaxation)
+        at_rest = relaxation.status is Status.CONVERGED
+        front = relaxation.front
 
 
 def front_at(field: Field, front: Array, load: Load, solver: Solver | None = None) -> Array:

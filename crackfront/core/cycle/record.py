@@ -27,12 +27,12 @@ class CycleRecord:
     end_load: float
     """Load at which it ended (where contact was lost)."""
     states: Any
-    """Dataclass of (n_step,) arrays, the states as the geometry records them; that of a sphere is
-    :class:`crackfront.core.geometry.sphere.ContactState`."""
+    """Dataclass of (n_step,) arrays, a state of the geometry, as
+    :class:`crackfront.core.geometry.sphere.ContactState` for a sphere."""
     dissipated_energy: Array | None = variable(
         "energy lost in the jumps of a load step", ENERGY, STEP, default=None
     )
-    """If recorded; the first includes that of making contact. Shape (n_step,)."""
+    """If recorded; the first includes the energy of making contact. Shape (n_step,)."""
     pull_off_energy: float | None = None
     """Energy lost when the contact vanishes after the last state; with it the dissipated energies
     sum up to the loop integral of F db. None where energies are not recorded or contact was not
@@ -53,7 +53,7 @@ class Checkpoint:
 
 
 Observer = Callable[["Recorder"], None]
-"""Function that is called at every new state, with the recorder that holds it."""
+"""Function that is called at every new state, with the recorder."""
 
 
 class Recorder:
@@ -87,13 +87,13 @@ class Recorder:
     ) -> None:
         self.states = []
         self._observers, self._resume = observers, resume
-        known = None if resume is None else resume.record
+        earlier = None if resume is None else resume.record
         self._fronts: list[Array] | None = [] if fronts else None
-        if known is not None and known.fronts is not None:
-            self._fronts = list(known.fronts)
+        if earlier is not None and earlier.fronts is not None:
+            self._fronts = list(earlier.fronts)
         self._dissipated: list[float] | None = [] if energy else None
-        if known is not None and known.dissipated_energy is not None:
-            self._dissipated = known.dissipated_energy.tolist()
+        if earlier is not None and earlier.dissipated_energy is not None:
+            self._dissipated = earlier.dissipated_energy.tolist()
 
     def run(
         self, field: Field, front: Array, loads: Iterable[Load], solver: Solver | None = None
@@ -112,16 +112,16 @@ class Recorder:
                 self._add(step)
 
     def _recalled(self, loads: Iterator[Load]) -> Iterator[Load]:
-        """Yield the loads whose states the checkpoint holds, then restore its front."""
+        """Yield the loads whose states are in the checkpoint, then restore its front."""
         if self._resume is None:
             return
         for state in rows(self._resume.record.states):
             load = next(loads)
-            known = getattr(state, fields(state)[0].name), state.direction
-            if known != (load.value, load.direction):
+            load_value = getattr(state, fields(state)[0].name)
+            if (load_value, state.direction) != (load.value, load.direction):
                 raise ValueError(
-                    f"the checkpoint goes to {state.load_noun} {known[0]} where this run goes to "
-                    f"{load.value}; it is that of another load"
+                    f"the checkpoint goes to {state.load_noun} {load_value} where this run goes to "
+                    f"{load.value}; it belongs to other loads"
                 )
             self.states.append(state)
             yield load
@@ -134,7 +134,7 @@ class Recorder:
             self._turn = load.start
         elif self.states and self.states[-1].direction != load.direction:
             self._turn = step.before
-        state = self._field.geometry.state(step.found, load.value, load.direction, self._turn)
+        state = self._field.geometry.state(step.relaxation, load.value, load.direction, self._turn)
         if self._dissipated is not None:
             if load.start is None and self.states:
                 energy = dissipated_energy(step.before, step.front, load.value, self._field)
@@ -164,7 +164,7 @@ class Recorder:
         return Checkpoint(self.record(), self.front, self._turn)
 
     def record(self, status: Status | None = None) -> CycleRecord:
-        """Record of all states so far; its status is by default that of the last relaxation."""
+        """Record of all states so far; by default with the status of the last relaxation."""
         status, energies, fronts = status or self.status, self._dissipated, self._fronts
         lost = energies is not None and status is Status.LOST_CONTACT
         return CycleRecord(

@@ -164,19 +164,19 @@ def _mode_coefficients(values: Array) -> Array:
 def refuse_unknown_interpolation(interpolation: str) -> None:
     """Raise if there is no such interpolation."""
     if interpolation not in get_args(Interpolation):
-        known = ", ".join(get_args(Interpolation))
-        raise ValueError(f"interpolation is {interpolation!r}; choose one of {known}")
+        kinds = ", ".join(get_args(Interpolation))
+        raise ValueError(f"interpolation is {interpolation!r}; choose one of {kinds}")
 
 
 def refuse_unusable(values: Array, names: tuple[str, ...]) -> None:
-    """Raise if a field holds NaN or infinity, or nothing but zeros."""
+    """Raise if a field contains NaN or infinity, or nothing but zeros."""
     finite = np.isfinite(values)
     if not np.all(finite):
         bad = np.argwhere(~finite)
         place = ", ".join(f"{name} index {i}" for name, i in zip(names, bad[0], strict=True))
-        others = f" ({len(bad)} values are not finite)" if len(bad) > 1 else ""
+        count = f" ({len(bad)} values are not finite)" if len(bad) > 1 else ""
         raise ValueError(
-            f"work of adhesion is {values[tuple(bad[0])]} at {place}{others}; "
+            f"work of adhesion is {values[tuple(bad[0])]} at {place}{count}; "
             "replace it by a finite value"
         )
     if not np.any(values):

@@ -1,7 +1,7 @@
 """The product between two samples of a ray: one polynomial, whether straight or cubic.
 
 A piece is described by its Bezier ordinates. The curve lies in the convex hull of its four control
-points (t = 0, 1/3, 2/3, 1), which gives bounds on it. Those of a straight piece lie on it.
+points (t = 0, 1/3, 2/3, 1), which gives bounds on it. The points of a straight piece lie on it.
 """
 
 from __future__ import annotations

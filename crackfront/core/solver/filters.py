@@ -66,12 +66,12 @@ def set_filter(filtering, geometry, shift, inverted):
     """Set the factors to the stiffness of the line plus a shift, or to the inverse of this sum."""
     size, paired = filtering.sine.size, filtering.paired
     for k in range(size):
-        one = mode_stiffness(geometry, k if paired else min(k, size - k)) + shift
-        other = mode_stiffness(geometry, size - k) + shift if paired else one
+        factor = mode_stiffness(geometry, k if paired else min(k, size - k)) + shift
+        partner = mode_stiffness(geometry, size - k) + shift if paired else factor
         if inverted:
-            one, other = 1.0 / one, 1.0 / other
-        difference = 0.5 * (one - other)
-        filtering.straight[k] = 0.5 * (one + other) - difference * filtering.sine[k]
+            factor, partner = 1.0 / factor, 1.0 / partner
+        difference = 0.5 * (factor - partner)
+        filtering.straight[k] = 0.5 * (factor + partner) - difference * filtering.sine[k]
         filtering.crossed[k] = difference * filtering.cosine[k]
 
 

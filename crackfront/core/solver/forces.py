@@ -34,7 +34,7 @@ CONVERGED, INWARD, OUTWARD, LIMIT, BLOCKED, TURNED, STILL, NEEDLES = range(8)
 """Codes with which a compiled solver ends."""
 
 RIGID = 10.0
-"""Stiffness of a site's own force, over that of the line against it, above which it is a needle."""
+"""Ratio of a site's own stiffness to the line's against it, above which it is a needle."""
 
 GROWTH = 8
 """Longest step of a site, over the longest distance that its step before looked ahead."""

@@ -68,7 +68,7 @@ Pairs of a step are wasted if it moves the front less than as many sweeps do.
 """
 
 _SLOW, _STIFF = 0.1, 8.0
-"""Way of a step, over that of as many sweeps without a field, below which needles hold it.
+"""Way of a step over the way of as many sweeps without a field, below which needles stop it.
 
 They do where a site's own force is so many times as stiff as the line against it; elsewhere the
 line itself is slow.
@@ -88,7 +88,7 @@ _ROUND_OFF = 1e-9
 def monotone_newton(place, problem, max_sweeps):
     """First metastable front in the direction of motion; the places are changed.
 
-    Returns a code, the number of FFT pairs, that of updates of a site, and the largest drive left.
+    Returns a code, the numbers of FFT pairs and of updates of a site, and the largest drive left.
     """
     if place.size <= 2 * HALF_BAND:
         return rosso_krauth(place, problem, max_sweeps)
@@ -118,7 +118,7 @@ def _relax(place, problem, max_sweeps):
     window = make_window(line)
     residual, first_least, pairs, updates = np.inf, 0.0, 0, 0
     share, collective, doubted = _LEVEL, False, 0
-    own, needles, swept, stepped, wasted = window.coupling[LONGEST], False, np.inf, 0, 0
+    site_stiffness, needles, swept, stepped, wasted = window.coupling[LONGEST], False, np.inf, 0, 0
     hardest = 0.0
     code = place_sites(problem, front)
     while code == CONVERGED:
@@ -165,7 +165,9 @@ def _relax(place, problem, max_sweeps):
             if needles and moved < used * swept:
                 wasted += used
             hardest = max(hardest, largest_entry(work.hardening))
-            is_held = hardest > _STIFF * own and moved < _SLOW * used * drive / own
+            is_held = (
+                hardest > _STIFF * site_stiffness and moved < _SLOW * used * drive / site_stiffness
+            )
             needles |= code == NEEDLES or (not calm and is_held)
             if code != BLOCKED and code != NEEDLES:
                 continue
@@ -173,9 +175,9 @@ def _relax(place, problem, max_sweeps):
         code, used, stiffest = _relax_runs(window, problem, front, runs[:n_run], level)
         updates += used
         hardest = max(hardest, stiffest)
-        needles |= hardest > RIGID * own
+        needles |= hardest > RIGID * site_stiffness
         if needles and code == CONVERGED:
-            code, swept = sweep_from(problem, front, before, own)
+            code, swept = sweep_from(problem, front, before, site_stiffness)
             updates += count
     return code, pairs, updates, residual
 
@@ -192,7 +194,7 @@ def _remember(place, before):
 
 @kernel
 def _sums(front, before):
-    """Sum of the ways of the sites from the places before, and that of the forward drives there."""
+    """Sums of the ways of the sites from the places before, and of the forward drives there."""
     moved, drive = 0.0, 0.0
     for i in range(np.uint64(before.size)):
         moved += abs(front.place[i] - before[i])
@@ -236,7 +238,7 @@ def _line_outweighs_field(work, problem, front, window):
 def _list_runs(problem, front, level, runs):
     """List the runs of active sites: the first site of each and the first after it.
 
-    A run may pass the ends of the front. Returns the number of runs and that of their sites.
+    A run may pass the ends of the front. Returns the numbers of runs and of their sites.
     """
     geometry, count = problem.field.geometry, front.drive.size
     n_run, n_active, site = 0, 0, _next_active(geometry, front, level, 0)

@@ -69,7 +69,7 @@ class Workspace(NamedTuple):
     residual, preconditioned : array
         Right side less the forces against the step, scaled; the same after the preconditioner.
     search, line_along, force_along : array
-        Direction of search, force of the line along it, and the same with that of the sites.
+        Direction of search, force of the line along it, and the same with the force of the sites.
     softening, rigid : (1,) array
         Part of the softening that the last step used; stiffness of a site, over that of the line
         against it, above which the system is scaled.
@@ -244,7 +244,7 @@ def _soften(work, floor):
 
 
 @kernel
-def _scale(work, own):
+def _scale(work, site_stiffness):
     """Scale the free sites so that none is stiffer than the line against it.
 
     Without that, needles of the field spoil the preconditioner. Returns the mean scaled stiffness.
@@ -252,7 +252,7 @@ def _scale(work, own):
     total = 0.0
     for i in range(work.step.size):
         stiffness = max(work.stiffness[i], 0.0)
-        part = own / max(stiffness, own)
+        part = site_stiffness / max(stiffness, site_stiffness)
         if work.scale[i] > 0.0:
             work.scale[i] = np.sqrt(part)
         total += part * stiffness
@@ -260,7 +260,7 @@ def _scale(work, own):
 
 
 @kernel
-def _solve_softest(work, geometry, own, floor, tolerance, all_free, started):
+def _solve_softest(work, geometry, site_stiffness, floor, tolerance, all_free, started):
     """Solve with as much softening as leaves the matrix positive definite.
 
     Returns the number of FFT pairs and whether it succeeded.
@@ -270,15 +270,15 @@ def _solve_softest(work, geometry, own, floor, tolerance, all_free, started):
         if not started:
             work.step[:] = 0.0
         mean, stiffest = _soften(work, floor)
-        scaled = stiffest > work.rigid[0] * own
+        scaled = stiffest > work.rigid[0] * site_stiffness
         if scaled:
-            mean, all_free = _scale(work, own), False
+            mean, all_free = _scale(work, site_stiffness), False
         used, solved = _solve(work, geometry, mean + floor, tolerance, all_free, scaled, started)
         pairs += used
         if solved or work.softening[0] == 0.0:
             return pairs, solved
         started = False
-        if used >= _MOST_PAIRS and stiffest > own and not scaled:
+        if used >= _MOST_PAIRS and stiffest > site_stiffness and not scaled:
             work.rigid[0] = 1.0
         elif work.softening[0] > _LEAST_SOFTENING:
             work.softening[0] *= _FALL
@@ -298,23 +298,23 @@ def newton_step(work, problem, front, among_needles):
     """
     step, drive, geometry = work.step, front.drive, problem.field.geometry
     largest, longest = largest_positive(drive), largest_entry(work.reach)
-    own = mode_stiffness(geometry, 1) * self_modes(drive.size)
+    site_stiffness = mode_stiffness(geometry, 1) * self_modes(drive.size)
     floor, guess = largest / problem.furthest, 0.0
     if longest == 0.0:
         # How far the front would go as a whole, if only the load held it.
         slope = restoring_slope(geometry, front.place[0], problem.load)
         guess = min(problem.furthest / GROWTH, largest / max(slope, floor))
-    furthest = min(problem.furthest, GROWTH * max(longest, guess, largest / own))
+    furthest = min(problem.furthest, GROWTH * max(longest, guess, largest / site_stiffness))
     tolerance = _ACCURACY * max(_forward_sum(drive) / drive.size, 1e-4 * largest)
     all_free = _prepare(work, problem, front, tolerance, furthest, guess)
     _fails(work, problem, front, 1.0)
-    if not among_needles and largest_entry(work.hardening) > RIGID * own:
+    if not among_needles and largest_entry(work.hardening) > RIGID * site_stiffness:
         return NEEDLES, 0
     work.softening[0] = min(_RISE * max(work.softening[0], _LEAST_SOFTENING), 1.0)
     pairs, safe, part, longest = 0, False, 1.0, 0.0
     for _ in range(_TRIALS):
         used, solved = _solve_softest(
-            work, geometry, own, floor, tolerance, all_free, longest > 0.0
+            work, geometry, site_stiffness, floor, tolerance, all_free, longest > 0.0
         )
         pairs += used
         if not solved:
@@ -329,7 +329,7 @@ def newton_step(work, problem, front, among_needles):
     for i in range(step.size):
         step[i] *= part
     if not safe or longest == 0.0:
-        _set_own_steps(work, problem, front, own, furthest)
+        _set_own_steps(work, problem, front, site_stiffness, furthest)
     if _passes_lowest(work, front, problem.lowest):
         return BLOCKED, pairs
     return _move(work, problem, front), pairs
@@ -383,12 +383,12 @@ def _move(work, problem, front):
 
 
 @kernel
-def _set_own_steps(work, problem, front, own, furthest):
-    """Replace the step by that of each site by its own force, all others held: always safe."""
+def _set_own_steps(work, problem, front, site_stiffness, furthest):
+    """Move each site by its own force with all others fixed, which is always safe."""
     drive, step = front.drive, work.step
     for i in range(step.size):
-        step[i] = min(max(drive[i], 0.0) / own, furthest)
+        step[i] = min(max(drive[i], 0.0) / site_stiffness, furthest)
         work.reach[i], work.hardening[i] = 0.0, -np.inf
     _fails(work, problem, front, 1.0)
     for i in range(step.size):
-        step[i] = min(max(drive[i], 0.0) / (own + max(work.hardening[i], 0.0)), step[i])
+        step[i] = min(max(drive[i], 0.0) / (site_stiffness + max(work.hardening[i], 0.0)), step[i])

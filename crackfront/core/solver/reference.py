@@ -50,7 +50,7 @@ def rosso_krauth(place, problem, max_sweeps):
     The places are changed. What a site leaves out when it moves, the pull of its neighbours' moves,
     only pushes it on: no barrier is ever passed. The stiffness of a cubic piece is that of its
     steepest chord from the site to the next sample; a linear piece has only one. Returns a code,
-    the number of sweeps, that of updates of a site, and the largest drive left.
+    the numbers of sweeps and of updates of a site, and the largest drive left.
     """
     field, memory, load, direction = (
         problem.field, problem.memory, problem.load, problem.direction
@@ -113,7 +113,7 @@ def rosso_krauth(place, problem, max_sweeps):
 
 
 @kernel
-def sweep_from(problem, front, before, own):
+def sweep_from(problem, front, before, site_stiffness):
     """Move every site to where it would rest with all others held at the places before.
 
     This is at least as far as the reference moves it. Both its place and this are behind the first
@@ -134,7 +134,7 @@ def sweep_from(problem, front, before, own):
             reach = min(rest, GROWTH * step)
             if not (drive > 0.1 * problem.slack and reach > 0.0):
                 break
-            stiffness = own + hardening(problem, i, place, product, segment, reach)
+            stiffness = site_stiffness + hardening(problem, i, place, product, segment, reach)
             step = min(drive / stiffness, reach) if stiffness > 0.0 else reach
             moved = target if step == rest else place + direction * step
             if moved == place:
@@ -143,7 +143,8 @@ def sweep_from(problem, front, before, own):
             if segment < 0:
                 return -segment, total
             rise = restoring_force(geometry, moved, load) - restoring_force(geometry, place, load)
-            drive += direction * (value - product - rise) - own * direction * (moved - place)
+            way = direction * (moved - place)
+            drive += direction * (value - product - rise) - site_stiffness * way
             place, product = moved, value
         total += direction * (place - before[i])
         if direction * (place - front.place[i]) > 0.0:

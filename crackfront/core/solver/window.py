@@ -30,7 +30,7 @@ HALF_BAND = 7
 LONGEST = 256
 """Largest number of sites relaxed at once."""
 
-_BESIDE = 8
+_MARGIN = 8
 """Sites on each side of the active ones that a step moves, too."""
 
 _DOMINANCE = 0.02
@@ -45,7 +45,7 @@ class Window(NamedTuple):
 
     Attributes
     ----------
-    drive, reach, stiffness, step, given : (LONGEST + HALF_BAND,) array
+    drive, reach, stiffness, step, prescribed : (LONGEST + HALF_BAND,) array
         For each site the force along the motion, the distance over which its stiffness holds, this
         stiffness of its own force, its step, and a step that is prescribed, negative for none.
     band : (LONGEST + HALF_BAND, HALF_BAND + 1) array
@@ -58,7 +58,7 @@ class Window(NamedTuple):
     reach: Array
     stiffness: Array
     step: Array
-    given: Array
+    prescribed: Array
     band: Array
     coupling: Array
 
@@ -71,8 +71,8 @@ def make_window(row):
     for lag in range(min(LONGEST, row.size)):
         coupling[LONGEST + lag] = coupling[LONGEST - lag] = row[lag]
     drive, reach, stiffness = np.zeros(size), np.zeros(size), np.zeros(size)
-    step, given, band = np.zeros(size), np.zeros(size), np.zeros((size, HALF_BAND + 1))
-    return Window(drive, reach, stiffness, step, given, band, coupling)
+    step, prescribed, band = np.zeros(size), np.zeros(size), np.zeros((size, HALF_BAND + 1))
+    return Window(drive, reach, stiffness, step, prescribed, band, coupling)
 
 
 @kernel(inline="always")
@@ -108,15 +108,15 @@ def _solve_banded(window, count):
     """
     band, step, drive, stiffness = window.band, window.step, window.drive, window.stiffness
     k = window.coupling[LONGEST : LONGEST + HALF_BAND + 1]
-    least, given = _DOMINANCE * k[0], 1e15 * k[0]
+    least, clamp = _DOMINANCE * k[0], 1e15 * k[0]
     fresh = (k[0], k[1], k[2], k[3], k[4], k[5], k[6], k[7], 0.0)
     row = second = third = fourth = fifth = sixth = seventh = fresh
     for i in range(count):
         pivot, c1, c2, c3, c4, c5, c6, c7, right = row
         pivot += stiffness[i]
         right += max(drive[i], 0.0)
-        if window.given[i] >= 0.0:
-            right, pivot = given * window.given[i], given
+        if window.prescribed[i] >= 0.0:
+            right, pivot = clamp * window.prescribed[i], clamp
         rest = least - (c1 + c2) - (c3 + c4) - (c5 + c6) - c7
         if pivot < rest:
             stiffness[i] += rest - pivot
@@ -137,7 +137,9 @@ def _solve_banded(window, count):
         # The nearest site last: its step is computed last.
         far = band[i, 7] * s7 + band[i, 6] * s6 + band[i, 5] * s5 + band[i, 4] * s4
         value = step[i] - far - band[i, 3] * s3 - band[i, 2] * s2 - band[i, 1] * s1
-        step[i] = window.given[i] if window.given[i] >= 0.0 else max(value * band[i, 0], 0.0)
+        step[i] = max(value * band[i, 0], 0.0)
+        if window.prescribed[i] >= 0.0:
+            step[i] = window.prescribed[i]
         s1, s2, s3, s4, s5, s6, s7 = step[i], s1, s2, s3, s4, s5, s6
 
 
@@ -170,13 +172,13 @@ def _choose_step(window, problem, front, first, count, furthest):
 def _stop_at_lowest(window, front, first, count, lowest, part):
     """Let sites that would pass the lowest place go by their own force alone, and not beyond it."""
     place, step = front.place, window.step
-    own, passing = window.coupling[LONGEST], False
+    site_stiffness, passing = window.coupling[LONGEST], False
     for j in range(count):
         rest = max(place[(first + j) % place.size] - lowest, 0.0)
         if part * step[j] > rest:
             passing = True
-            stiffness = own + max(window.stiffness[j], 0.0)
-            window.given[j] = min(max(window.drive[j], 0.0) / stiffness, rest)
+            stiffness = site_stiffness + max(window.stiffness[j], 0.0)
+            window.prescribed[j] = min(max(window.drive[j], 0.0) / stiffness, rest)
     if passing:
         _solve_banded(window, count)
 
@@ -188,9 +190,9 @@ def _couple(drive, coupling, step, count):
     for j in range(0, count, 4):
         first, second, third, fourth = step[j], step[j + 1], step[j + 2], step[j + 3]
         row = coupling[LONGEST - j - 3 : LONGEST - j + count]
-        for other in range(np.uint64(count)):
-            near = first * row[other + np.uint64(3)] + second * row[other + np.uint64(2)]
-            drive[other] -= near + (third * row[other + np.uint64(1)] + fourth * row[other])
+        for site in range(np.uint64(count)):
+            near = first * row[site + np.uint64(3)] + second * row[site + np.uint64(2)]
+            drive[site] -= near + (third * row[site + np.uint64(1)] + fourth * row[site])
 
 
 @kernel
@@ -217,7 +219,7 @@ def _move(window, problem, front, first, count):
 
 @kernel
 def _trim(window, problem, front, first, count, level):
-    """Reduce the window to the active sites, those with a drive above a level, and some beside.
+    """Reduce the window to sites with a drive above a level, and some next to them.
 
     Returns the first and the number of its sites, which is 0 if none is active.
     """
@@ -230,10 +232,10 @@ def _trim(window, problem, front, first, count, level):
         i = following(i, place.size)
     if high == 0:
         return first, 0
-    low, high = max(low - _BESIDE, 0), min(high + _BESIDE, count)
+    low, high = max(low - _MARGIN, 0), min(high + _MARGIN, count)
     for j in range(low, high):
         drive[j - low], reach[j - low] = drive[j], reach[j]
-        window.given[j - low] = 0.0 if drive[j] < -problem.slack else -1.0
+        window.prescribed[j - low] = 0.0 if drive[j] < -problem.slack else -1.0
     return (first + low) % place.size, high - low
 
 
@@ -246,11 +248,11 @@ def relax_window(window, problem, front, first, count, level):
     the largest stiffness of a site's own force.
     """
     drive, reach, step = window.drive, window.reach, window.step
-    own = window.coupling[LONGEST]
+    site_stiffness = window.coupling[LONGEST]
     touch_samples(problem, front, first, step[:count])
     for j in range(count):
         drive[j] = front.drive[(first + j) % front.drive.size]
-        reach[j] = 4 * max(drive[j], 0.0) / own
+        reach[j] = 4 * max(drive[j], 0.0) / site_stiffness
     updates, stiffest = 0, 0.0
     for _ in range(_ROUNDS):
         first, count = _trim(window, problem, front, first, count, level)
