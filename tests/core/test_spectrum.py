@@ -282,8 +282,8 @@ def test_the_mean_square_of_a_shape_is_the_integral_of_its_density(shape, order)
         ((1.0,), (1.0,), "make no table; give two or more"),
         ((1.0, 0.5), (1.0,), "make no table"),
         ((0.5, 1.0), (1.0, 1.0), "must fall; order them"),
-        ((1.0, -0.5), (1.0, 1.0), "wavelengths hold -0.5"),
-        ((1.0, 0.5), (1.0, float("nan")), "densities hold nan"),
+        ((1.0, -0.5), (1.0, 1.0), "wavelengths contain -0.5"),
+        ((1.0, 0.5), (1.0, float("nan")), "densities contain nan"),
     ],
 )
 def test_tables_that_are_none_are_refused(lengths, densities, sentence):
