@@ -7,7 +7,8 @@ import pytest
 from crackfront.analysis.law import pinning_factor, shipped_law
 from crackfront.analysis.validity import front_excess, shipped_validity
 from crackfront.core.spectrum import SelfAffineSpectrum
-from crackfront.simulate.laws import chosen_settings, measured_energies
+from crackfront.simulate.laws import measured_energies
+from crackfront.simulate.settings import chosen_settings
 
 FLAT = SelfAffineSpectrum(0.02, 0.02, 1.0)
 

@@ -10,8 +10,8 @@ from crackfront.core import jkr
 from crackfront.core.bounds import LENGTH, PENETRATION, refuse_outside
 from crackfront.core.resources import refuse_beyond_memory, refuse_beyond_time
 from crackfront.core.spectrum import Spectrum
-from crackfront.simulate.laws import Settings
 from crackfront.simulate.numerics import Numerics
+from crackfront.simulate.settings import Settings
 from crackfront.simulate.simulation import Simulation
 
 _RUN_SECONDS = 3e-3

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from crackfront.analysis.steady_adhesion import SteadyAdhesion
-from crackfront.simulate.laws import SettingName, combined_error
+from crackfront.simulate.law_interpolation import combined_error
+from crackfront.simulate.laws import SettingName
 from crackfront.simulate.simulation import Simulation
 
 

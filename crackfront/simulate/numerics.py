@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from crackfront.core.adhesion import FieldKind
 from crackfront.core.solver import DEFAULT_MAX_SWEEPS
 from crackfront.core.spectrum import Spectrum
-from crackfront.simulate.laws import Settings, chosen_settings
+from crackfront.simulate.settings import Settings, chosen_settings
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,7 +35,7 @@ class Numerics:
     ) -> Settings:
         """Settings for one spectrum and amplitude.
 
-        The size is as of :func:`crackfront.simulate.laws.chosen_settings`.
+        The size is as of :func:`crackfront.simulate.settings.chosen_settings`.
         """
         if isinstance(self.settings, Settings):
             return self.settings

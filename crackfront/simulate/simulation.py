@@ -22,8 +22,8 @@ from crackfront.core.geometry.base import Geometry
 from crackfront.core.solver.relax import Solver, named_solver
 from crackfront.core.spectrum import Spectrum
 from crackfront.simulate.contact import Schedule
-from crackfront.simulate.laws import Settings
 from crackfront.simulate.numerics import Numerics
+from crackfront.simulate.settings import Settings
 from crackfront.simulate.tiles import RandomSurface
 
 

@@ -19,8 +19,8 @@ from crackfront.core.resources import refuse_beyond_memory, refuse_beyond_time
 from crackfront.core.units import Scales
 from crackfront.core.words import counted
 from crackfront.simulate.costs import expected_cost, refuse_oversized
-from crackfront.simulate.laws import Settings
 from crackfront.simulate.numerical_errors import missed_error
+from crackfront.simulate.settings import Settings
 from crackfront.simulate.simulation import Simulation
 from crackfront.sweep.section import (
     ConfigurationError,

@@ -32,9 +32,9 @@ from crackfront.core.spectrum import SelfAffineSpectrum, TabulatedSpectrum
 from crackfront.measured.options import ReadingOptions, reading_options
 from crackfront.measured.spectrum.measured_surface import MeasuredSurface, read_surface
 from crackfront.simulate.contact import SweepLoad
-from crackfront.simulate.laws import Settings
 from crackfront.simulate.line.line_loads import LAW_LENGTH, LineLoad, SpringUnit
 from crackfront.simulate.numerics import Numerics
+from crackfront.simulate.settings import Settings
 from crackfront.simulate.sphere.full_cycle import FullCycle
 from crackfront.simulate.sphere.steady_branches import SteadySchedule
 from crackfront.sweep.section import (

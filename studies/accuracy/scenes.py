@@ -11,8 +11,9 @@ import numpy as np
 from crackfront.core.adhesion import FieldKind
 from crackfront.core.arrays import Array
 from crackfront.core.spectrum import SelfAffineSpectrum
-from crackfront.simulate.laws import MEASURED, SETTINGS, SettingName, Settings, chosen_settings
+from crackfront.simulate.laws import MEASURED, SETTINGS, SettingName
 from crackfront.simulate.numerics import Numerics
+from crackfront.simulate.settings import Settings, chosen_settings
 from crackfront.simulate.simulation import Simulation, simulation_of
 from crackfront.simulate.sphere.full_cycle import FullCycle
 

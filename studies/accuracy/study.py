@@ -18,7 +18,7 @@ from crackfront.core.cycle.record import Recorder
 from crackfront.core.outcome import Direction
 from crackfront.core.variables import ADHESION, FORCE, variable
 from crackfront.simulate.costs import run_cost
-from crackfront.simulate.laws import Settings
+from crackfront.simulate.settings import Settings
 from crackfront.simulate.simulation import simulation_field
 from crackfront.simulate.sphere.steady_branches import forward_circle
 from studies.accuracy.scenes import Progress, Scene, Trial

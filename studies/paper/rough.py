@@ -23,10 +23,11 @@ from crackfront.core.solver.relax import Newton, Solver
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.simulate.costs import expected_cost
-from crackfront.simulate.laws import chosen_settings, measured_energies
+from crackfront.simulate.laws import measured_energies
 from crackfront.simulate.numerical_errors import missed_error
 from crackfront.simulate.numerics import Numerics
 from crackfront.simulate.run_simulation import compile_solver
+from crackfront.simulate.settings import chosen_settings
 from crackfront.simulate.simulation import (
     Simulation,
     simulation_adhesion,

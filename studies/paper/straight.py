@@ -17,9 +17,9 @@ from crackfront.core.field.fields import TileField
 from crackfront.core.geometry.line import initial_front
 from crackfront.core.outcome import Status
 from crackfront.core.solver.relax import Solver
-from crackfront.simulate.laws import Settings
 from crackfront.simulate.line.line_loads import LineLoad
 from crackfront.simulate.numerics import Numerics
+from crackfront.simulate.settings import Settings
 from crackfront.simulate.simulation import simulation_adhesion, simulation_field, simulation_of
 from crackfront.sweep.section import Positive, Section
 from studies.paper.rough import flat_spectrum

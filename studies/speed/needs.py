@@ -26,10 +26,10 @@ from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.core.variables import variable
 from crackfront.simulate.cycle_files import cycle_dataset
-from crackfront.simulate.laws import Settings
 from crackfront.simulate.numerics import Numerics
 from crackfront.simulate.provenance import provenance
 from crackfront.simulate.run_simulation import compile_solver, run_simulation
+from crackfront.simulate.settings import Settings
 from crackfront.simulate.simulation import Simulation, simulation_field, simulation_of
 from crackfront.simulate.sphere.full_cycle import FullCycle
 from crackfront.simulate.sphere.steady_branches import SteadySchedule

@@ -9,8 +9,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from crackfront.core.spectrum import SelfAffineSpectrum, TabulatedSpectrum
-from crackfront.simulate.laws import LAW_SIZE, SETTINGS, chosen_settings, combined_error, read_laws
+from crackfront.simulate.law_interpolation import combined_error
+from crackfront.simulate.laws import LAW_SIZE, SETTINGS, read_laws
 from crackfront.simulate.numerical_errors import numerical_error
+from crackfront.simulate.settings import chosen_settings
 from studies.accuracy.scenes import SCENES, with_setting
 
 ENERGIES = (0.001, 0.0025, 0.01, 0.04, 0.16, 0.4)

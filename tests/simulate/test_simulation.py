@@ -14,10 +14,10 @@ from crackfront.core.outcome import Status
 from crackfront.core.solver.relax import Newton, Reference
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.units import WORK_OF_ADHESION
-from crackfront.simulate.laws import Settings
 from crackfront.simulate.line.line_loads import LineSchedule
 from crackfront.simulate.numerics import Numerics
 from crackfront.simulate.run_simulation import run_simulation
+from crackfront.simulate.settings import Settings
 from crackfront.simulate.simulation import (
     Resolution,
     Simulation,

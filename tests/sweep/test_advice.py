@@ -10,9 +10,9 @@ import pytest
 from crackfront.analysis.steady_adhesion import steady_adhesion
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.units import Scales
-from crackfront.simulate.laws import Settings
 from crackfront.simulate.numerics import Numerics
 from crackfront.simulate.run_simulation import run_simulation
+from crackfront.simulate.settings import Settings
 from crackfront.simulate.simulation import simulation_of
 from crackfront.simulate.sphere.full_cycle import FullCycle
 from crackfront.simulate.sphere.steady_branches import SteadySchedule

@@ -15,8 +15,8 @@ from crackfront.core.units import Scales
 from crackfront.measured.options import ReadingOptions
 from crackfront.measured.scan.reading import read_measurements
 from crackfront.measured.spectrum.measured_surface import measured_surface
-from crackfront.simulate.laws import Settings
 from crackfront.simulate.provenance import provenance
+from crackfront.simulate.settings import Settings
 from crackfront.simulate.sphere.steady_branches import SteadySchedule
 from crackfront.simulate.storage import write_derived
 from crackfront.sweep.configuration import load_configuration

@@ -10,8 +10,8 @@ from crackfront.core.cycle.record import Recorder
 from crackfront.core.cycle.run import run_cycle
 from crackfront.core.solver.relax import Newton
 from crackfront.core.spectrum import SelfAffineSpectrum
-from crackfront.simulate.laws import chosen_settings
 from crackfront.simulate.provenance import provenance
+from crackfront.simulate.settings import chosen_settings
 from crackfront.simulate.simulation import simulation_field
 from crackfront.simulate.sphere.full_cycle import FullCycle
 from crackfront.simulate.storage import write_dataset

@@ -1,0 +1,188 @@
+"""Errors that settings leave, interpolated between the measured laws.
+
+Between measured shapes and amplitudes errors are interpolated; beyond the amplitudes they are not
+known. Scatters of different settings are added in quadrature, biases as they are where they have
+one sign: too few samples make the hysteresis too small, all else makes it too large.
+"""
+
+from __future__ import annotations
+
+import functools
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import get_args
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from crackfront.core.adhesion import FieldKind, correlation_length, force_correlation_length
+from crackfront.core.arrays import Array
+from crackfront.core.field.fields import Interpolation
+from crackfront.core.spectrum import Spectrum
+from crackfront.simulate.laws import (
+    LAW_CUTOFF,
+    LAW_SIZE,
+    MEASURED,
+    ErrorLaw,
+    SettingName,
+    error_laws,
+    measured_energies,
+    sphere_size,
+)
+
+_NARROW: dict[FieldKind, str] = {"chemical": "chemical", "roughness": "flat"}
+"""The shape without long wavelengths; the broad ones serve both kinds."""
+
+_ONSET = 0.7
+"""Larkin length, in radii of the sphere, at which scatter was largest in all shapes."""
+
+_LEEWAY = 1.05
+"""Relative tolerance of e_el and correlation lengths outside the measured range."""
+
+
+@dataclass(frozen=True, slots=True)
+class LawInterpolation:
+    """Measured shapes and amplitudes from which the errors of others are interpolated."""
+
+    weights: tuple[tuple[str, float], ...]
+    """Measured shapes, and the weight of each in the error."""
+    lowest: float
+    highest: float
+    """Ends of a range of e_el / w_int; the largest error among its amplitudes counts."""
+    independent: float
+    """Share of independent cutoffs along a front, relative to the fronts of the laws."""
+
+    def errors(self, setting: SettingName, values: ArrayLike) -> Array:
+        """Errors at values of a setting on fronts of :data:`LAW_SIZE` (Units: e_el).
+
+        Their axes are bias and scatter, approach and retraction, values.
+        """
+        # Errors are interpolated, not their logarithms: the geometric mean with a bias of 0 is 0.
+        branches = [
+            np.tensordot(
+                [weight for _, weight in self.weights],
+                [
+                    self._largest_error(error_laws()[shape, setting, direction], values)
+                    for shape, _ in self.weights
+                ],
+                axes=1,
+            )
+            for direction in (1, -1)
+        ]
+        return np.stack(branches, axis=1)
+
+    def _largest_error(self, laws: Sequence[ErrorLaw], values: ArrayLike) -> Array:
+        """Bias and scatter of one shape, the largest in the range of amplitudes."""
+        return self._largest(laws, np.array([law.parts(values) for law in laws]))
+
+    def avalanche(self) -> float:
+        """Change of w_appr by the largest avalanche on fronts of :data:`LAW_SIZE` (Units: e_el)."""
+        avalanche = 0.0
+        for shape, weight in self.weights:
+            laws = error_laws()[shape, "sites", 1]
+            measured = np.array([[law.avalanche] for law in laws])
+            avalanche += weight * float(self._largest(laws, measured)[0])
+        return avalanche
+
+    def _largest(self, laws: Sequence[ErrorLaw], measured: Array) -> Array:
+        """Largest in the range of amplitudes of what was measured at those of the laws."""
+        energies = np.array([law.elastic_energy for law in laws])
+        between = (energies > self.lowest) & (energies < self.highest)
+        amplitudes = np.log([self.lowest, *energies[between], self.highest])
+        weights = _linear_weights(amplitudes, np.log(energies))
+        return np.max(np.tensordot(weights, measured, axes=1), axis=0)
+
+
+@functools.cache
+def law_interpolation(
+    kind: FieldKind, spectrum: Spectrum, elastic_energy: float, size: float
+) -> LawInterpolation:
+    """Shapes with the next correlation lengths, and amplitudes with as early an onset.
+
+    The size is that of the front for which settings are chosen.
+    """
+    shapes = (_NARROW[kind], "h03", "h08")
+    measured = np.log([_relative_correlation_length(*MEASURED[shape]) for shape in shapes])
+    length = math.log(_relative_correlation_length(kind, spectrum))
+    [weights] = _linear_weights(np.array([length]), measured).tolist()
+    correlated = force_correlation_length(kind, spectrum) * LAW_CUTOFF / spectrum.short_cutoff
+    # Avalanches begin where the Larkin length falls to _ONSET, within a factor of 2. Below it the
+    # amplitudes count up to that with as many at the cutoff of the laws; w_rms**2 = 4 e_el w_int.
+    onset = 2 * math.pi * correlated / (4 * _ONSET)
+    shorter = size / LAW_SIZE
+    highest = max(elastic_energy, min(2 * elastic_energy * shorter, onset))
+    return LawInterpolation(
+        tuple((shape, weight) for shape, weight in zip(shapes, weights, strict=True) if weight > 0),
+        elastic_energy,
+        highest,
+        max(elastic_energy / highest, 1 / max(shorter, 1.0)),
+    )
+
+
+def _linear_weights(places: Array, measured: Array) -> Array:
+    """Weights of rising measured places in a linear interpolation, (n_places, n_measured).
+
+    Beyond the ends the nearest place has the weight 1.
+    """
+    return np.transpose([np.interp(places, measured, row) for row in np.eye(measured.size)])
+
+
+def _relative_correlation_length(kind: FieldKind, spectrum: Spectrum) -> float:
+    """Correlation length of w_loc in short cutoffs."""
+    return correlation_length(kind, spectrum) / spectrum.short_cutoff
+
+
+def unmeasured_reason(kind: FieldKind, spectrum: Spectrum, elastic_energy: float) -> str:
+    """Why no errors were measured for a spectrum and amplitude; empty if they were."""
+    low, high = measured_energies()
+    remedy = "give the resolution and the tolerance instead"
+    if not low / _LEEWAY <= elastic_energy <= high * _LEEWAY:
+        return (
+            f"errors were measured for e_el/w_int from {low:g} to {high:g}, not at "
+            f"{elastic_energy:.3g}; {remedy}"
+        )
+    shape = _NARROW[kind]
+    least = _relative_correlation_length(*MEASURED[shape])
+    length = _relative_correlation_length(kind, spectrum)
+    # Spectra broader than all that were measured have smaller errors for their cutoff.
+    if length * _LEEWAY < least:
+        return (
+            f"errors were measured for correlation lengths of w_loc from {least:.3g} short cutoffs "
+            f"on, not {length:.3g}; {remedy}"
+        )
+    return ""
+
+
+def combined_error(
+    kind: FieldKind,
+    spectrum: Spectrum,
+    elastic_energy: float,
+    values: Mapping[SettingName, float],
+    size: float,
+    usual_size: float | None = None,
+) -> tuple[float, float]:
+    """Standard errors (w_appr, w_retr) that values of all settings leave (Units: w_int).
+
+    They are NaN where errors were not measured. Of interpolations, the value is the one that is
+    used; `size` is the number of states times circumference of the front over the short cutoff. The
+    other arguments are as of :func:`crackfront.simulate.settings.chosen_settings`.
+    """
+    if unmeasured_reason(kind, spectrum, elastic_energy):
+        return math.nan, math.nan
+    usual = sphere_size(spectrum) if usual_size is None else usual_size
+    interpolation = law_interpolation(kind, spectrum, elastic_energy, usual)
+    errors = {setting: interpolation.errors(setting, value) for setting, value in values.items()}
+    approach, retraction = branch_errors(errors, size * interpolation.independent)
+    return elastic_energy * approach, elastic_energy * retraction
+
+
+def branch_errors(errors: Mapping[SettingName, Array], size: float) -> tuple[float, float]:
+    """Standard errors (w_appr, w_retr) of all settings, each with (bias or scatter, branch)."""
+    biases = {setting: bias for setting, (bias, _) in errors.items()}
+    lowered = [biases.pop(setting) for setting in get_args(Interpolation) if setting in biases]
+    raised = list(biases.values())
+    bias = np.maximum(sum(lowered), sum(raised))
+    scatter = np.sqrt(sum(scatter**2 for _, scatter in errors.values()) * LAW_SIZE / size)
+    approach, retraction = np.hypot(bias, scatter)
+    return float(approach), float(retraction)
