@@ -202,6 +202,9 @@ def _write_references(app: Sphinx) -> None:
     schema = Configuration.model_json_schema()
     lines = ["# Keys of a configuration", "", "For those who write one."]
     sections, meanings = {"file": schema} | schema["$defs"], _meanings()
+    sections["SurfaceSection"]["properties"] |= {
+        name: {"default": field.default} for name, field in ReadingOptions.model_fields.items()
+    }
     for name, one in sections.items():
         section = name.removesuffix("Section")
         lines += ["", f"## {section.capitalize()}", "", one["description"], ""]

@@ -1,7 +1,8 @@
 """Options of reading scans and of predictions: each is one field of a pydantic model.
 
 Commands (`cli/surface_commands.py`), functions (`measured/predict.py`) and configurations
-(`sweep/sections.py`) take their options from the fields, and their meaning from the text below.
+(`sweep/spectrum_sections.py`) take their options from the fields, and their meaning from the text
+below.
 """
 
 from __future__ import annotations

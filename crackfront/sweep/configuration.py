@@ -31,15 +31,15 @@ from crackfront.sweep.section import (
     validated,
     yaml_mapping,
 )
+from crackfront.sweep.section_checks import refuse_repeated
 from crackfront.sweep.sections import (
     AmplitudesSection,
     FitSection,
     LoadSection,
     NumericsSection,
     ScalesSection,
-    SpectrumSection,
-    refuse_repeated,
 )
+from crackfront.sweep.spectrum_sections import SpectrumSection
 from crackfront.sweep.sweep import FitRange, NamedSpectrum, Sweep
 
 

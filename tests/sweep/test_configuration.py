@@ -1,6 +1,8 @@
 """Configurations: what is accepted, and one clear sentence for everything that is not."""
 
 import shutil
+import subprocess
+import sys
 from dataclasses import replace
 from pathlib import Path
 from unittest import mock
@@ -545,7 +547,7 @@ def test_a_surface_is_read_in_the_words_of_the_commands(tmp_path):
         ("channel: Phase", "has no channel 'Phase'"),
         ("shortest: -1", "shortest is -1 m; it must lie"),
         ("crop: 3", "crop is 3; give a text, as in '2um:8um"),
-        ("chanel: 0", "unknown key spectra.0..surface.chanel; did you mean channel?"),
+        ("chanel: 0", "unknown key chanel; did you mean channel?"),
     ],
 )
 def test_words_of_a_surface_that_cannot_be_used_are_refused(tmp_path, words, sentence):
@@ -553,7 +555,23 @@ def test_words_of_a_surface_that_cannot_be_used_are_refused(tmp_path, words, sen
     spectra = f"spectra:\n  - {{name: film, surface: {{file: {file}, {words}}}}}\n"
     with pytest.raises(ConfigurationError, match=sentence) as refusal:
         load_configuration(written(tmp_path, with_surface(spectra)))
-    assert "spectra[0].surface" in str(refusal.value)
+    assert "spectra[0].surface: " in str(refusal.value)
+
+
+@pytest.mark.parametrize("name", ["default", "test"])
+def test_a_sweep_without_a_measured_surface_imports_nothing_that_reads_scans(name):
+    code = (
+        "import sys\n"
+        "from pathlib import Path\n"
+        "from crackfront.sweep.run_sweep import opened\n"
+        f"sweep, *_ = opened(Path({str(ROOT / 'config' / name) + '.yaml'!r}), None)\n"
+        "assert sweep.series(sweep.spectra[0])\n"
+        "print([name for name in sys.modules if name.startswith('crackfront.measured')])\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, timeout=600, check=True
+    )
+    assert done.stdout == "[]\n"
 
 
 def test_the_table_of_a_sweep_keeps_measured_spectra(film, tmp_path):
