@@ -1,4 +1,4 @@
-"""Expected processor time and memory of simulations, and refusals of what no machine holds."""
+"""Expected processor time and memory of simulations, and errors for what no machine can run."""
 
 from __future__ import annotations
 
@@ -113,23 +113,22 @@ def affordable_seconds(*, n_angle: float, n_point: float, n_state: float, n_samp
 
 
 def refuse_oversized(
-    spectrum: Spectrum, numerics: Numerics, settings: Settings, deepest: float
+    spectrum: Spectrum, numerics: Numerics, settings: Settings, max_penetration: float
 ) -> None:
-    """Raise if the tile or the front of a sphere is larger than any machine holds.
+    """Raise if the tile or the front of a sphere is too large for the memory of any machine.
 
-    The settings are those of the numerics for this spectrum, `deepest` is the largest penetration.
-    (Units: reduced lengths)
+    The settings are what the numerics choose for this spectrum. (Units: reduced lengths)
     """
     lengths = {"short_cutoff": spectrum.short_cutoff, "roll_off": spectrum.longest_feature}
     for name, value in lengths.items():
         refuse_outside(name, value, LENGTH, "reduced lateral lengths")
-    refuse_outside("max_penetration", deepest, PENETRATION, "reduced vertical lengths")
+    refuse_outside("max_penetration", max_penetration, PENETRATION, "reduced vertical lengths")
     cutoff = spectrum.short_cutoff
     points = numerics.tile_side(spectrum) / cutoff * settings.pixels_per_cutoff
     tiles = f"tiles of {points:.2g} x {points:.2g} points"
     remedy = "lower roll_offs, cutoffs or pixels_per_cutoff, or raise short_cutoff"
     refuse_beyond_memory(tiles, _POINT_BYTES * points**2, remedy, anywhere=True)
-    circle = 2 * math.pi * jkr.equilibrium_radius(deepest)
+    circle = 2 * math.pi * jkr.equilibrium_radius(max_penetration)
     sites = settings.angles or circle / cutoff * settings.angles_per_cutoff
     remedy = "lower angles or angles_per_cutoff, or raise short_cutoff"
     refuse_beyond_memory(f"fronts of {sites:.2g} sites", _SITE_BYTES * sites, remedy, anywhere=True)

@@ -7,12 +7,14 @@ from crackfront.simulate.law_interpolation import combined_error
 from crackfront.simulate.laws import SettingName
 from crackfront.simulate.simulation import Simulation
 
+_DIGITS = 1.2
+"""Factor by which an error may exceed the requested one, because settings have two digits."""
 
-def missed_error(simulation: Simulation, wanted: float) -> float:
-    """Error of k that the numerics are expected to leave; 0 where it is at most the wanted one."""
-    left = max(numerical_error(simulation)) / simulation.elastic_energy
-    # Settings have two digits.
-    return left if left > 1.2 * wanted else 0.0
+
+def missed_error(simulation: Simulation, requested: float) -> float:
+    """Error of k that the numerics are expected to leave; 0 if it is at most the requested one."""
+    error = max(numerical_error(simulation)) / simulation.elastic_energy
+    return error if error > _DIGITS * requested else 0.0
 
 
 def numerical_error(

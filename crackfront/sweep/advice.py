@@ -65,12 +65,14 @@ def expectations(sweep: Sweep) -> dict[str, list[Expectation]]:
     """Expectations of each spectrum and amplitude, in the units of the configuration."""
     vertical = 1.0 if sweep.scales is None else sweep.scales.vertical
 
-    def converted(found: Expectation) -> Expectation:
-        needed = found.needed_penetration
-        return found if needed is None else replace(found, needed_penetration=vertical * needed)
+    def converted(expected: Expectation) -> Expectation:
+        needed = expected.needed_penetration
+        return (
+            expected if needed is None else replace(expected, needed_penetration=vertical * needed)
+        )
 
     return {
-        item.name: [converted(expectation(one)) for one in sweep.one_per_amplitude(item)]
+        item.name: [converted(expectation(first)) for first in sweep.one_per_amplitude(item)]
         for item in sweep.spectra
     }
 
@@ -80,15 +82,15 @@ def steady_part_warnings(sweep: Sweep) -> Iterator[str]:
     vertical, name = (1.0, "") if sweep.scales is None else (sweep.scales.vertical, " m")
     for spectrum, expected in expectations(sweep).items():
         needed = {
-            energy: found.needed_penetration
-            for energy, found in zip(sweep.elastic_energies, expected, strict=True)
-            if found.needed_penetration is not None
+            elastic_energy: cell.needed_penetration
+            for elastic_energy, cell in zip(sweep.elastic_energies, expected, strict=True)
+            if cell.needed_penetration is not None
         }
         if needed:
-            energies = ", ".join(f"{energy:g}" for energy in needed)
-            given = f"{vertical * sweep.schedule.max_penetration:g}{name}"
+            energies = ", ".join(f"{elastic_energy:g}" for elastic_energy in needed)
+            largest = f"{vertical * sweep.schedule.max_penetration:g}{name}"
             yield (
                 f"{spectrum} may have no steady part at e_el {energies}: up to the largest "
-                f"penetration, {given}, its front does not forget where both branches begin; "
+                f"penetration, {largest}, its front does not forget where both branches begin; "
                 f"penetrate to {max(needed.values()):.2g}{name} or deeper"
             )

@@ -11,7 +11,7 @@ import hashlib
 from dataclasses import dataclass
 
 from crackfront.core.versions import PHYSICS_VERSION, ROWS_VERSION
-from crackfront.sweep.sweep import Shard, Sweep
+from crackfront.sweep.sweep import NamedSpectrum, Shard, Sweep
 
 FOLDER = "requests"
 """Folder of the requests among results."""
@@ -50,7 +50,7 @@ def shard_request(sweep: Sweep, shard: Shard) -> Request:
         f"rows of {shard.item.name}, realisations {shard.realisations[0]} to "
         f"{shard.realisations[-1]}",
         f"version {PHYSICS_VERSION} of the physics, {ROWS_VERSION} of rows, {limit} sweeps at most",
-        *_series_lines(sweep, shard.item.name),
+        *_series_lines(sweep, shard.item),
     ]
     return Request(f"shard-{shard.name}", _joined(lines))
 
@@ -64,7 +64,7 @@ def table_request(sweep: Sweep) -> Request:
         f"at most {sweep.failed_fraction:g} of them without a value, scales {sweep.scales}",
     ]
     for item in sweep.spectra:
-        lines += [f"spectrum {item.name}", *_series_lines(sweep, item.name)]
+        lines += [f"spectrum {item.name}", *_series_lines(sweep, item)]
     return Request("table", _joined(lines))
 
 
@@ -79,11 +79,12 @@ def fit_request(sweep: Sweep) -> Request:
     return Request("fit", _joined(lines))
 
 
-def _series_lines(sweep: Sweep, spectrum: str) -> list[str]:
-    """A line for the simulations of each amplitude."""
-    energies = sweep.elastic_energies
-    series = sweep.series(sweep.named(spectrum))
-    return [f"{one} e_el {energy:.12g}" for one, energy in zip(series, energies, strict=True)]
+def _series_lines(sweep: Sweep, item: NamedSpectrum) -> list[str]:
+    """A line for the simulations of each amplitude of a spectrum."""
+    return [
+        f"{series} e_el {elastic_energy:.12g}"
+        for series, elastic_energy in zip(sweep.series(item), sweep.elastic_energies, strict=True)
+    ]
 
 
 def _joined(lines: list[str]) -> str:

@@ -80,18 +80,23 @@ class Sweep:
 
     def named(self, name: str) -> NamedSpectrum:
         """Spectrum of a name; a ValueError names the nearest where there is none."""
-        known = {item.name: item for item in self.spectra}
-        if name in known:
-            return known[name]
-        raise ValueError(f"the sweep has no spectrum {name!r}; {nearest_name(name, known)}")
+        spectra = {item.name: item for item in self.spectra}
+        if name in spectra:
+            return spectra[name]
+        raise ValueError(f"the sweep has no spectrum {name!r}; {nearest_name(name, spectra)}")
 
-    def simulation(self, item: NamedSpectrum, energy: float, realisation: int) -> Simulation:
-        """One simulation of the sweep."""
+    def simulation(
+        self, item: NamedSpectrum, elastic_energy: float, realisation: int
+    ) -> Simulation:
+        """One simulation of the sweep, with the settings that its numerics choose."""
+        schedule = self.schedule.for_surface(
+            self.kind, item.spectrum, elastic_energy, item.spring, self.numerics
+        )
         return simulation_of(
             self.kind,
             item.spectrum,
-            energy,
-            self.schedule.for_surface(self.kind, item.spectrum, energy, item.spring, self.numerics),
+            elastic_energy,
+            schedule,
             self.numerics,
             seed=self.seed,
             realisation=realisation,
@@ -104,8 +109,8 @@ class Sweep:
     ) -> Iterator[Simulation]:
         """Simulations, by default all: by spectrum, amplitude and realisation."""
         block = range(self.n_realisation) if realisations is None else realisations
-        for one in self.spectra if item is None else (item,):
-            for first in self.one_per_amplitude(one):
+        for spectrum in self.spectra if item is None else (item,):
+            for first in self.one_per_amplitude(spectrum):
                 yield from (replace(first, realisation=number) for number in block)
 
     def one_per_amplitude(self, item: NamedSpectrum) -> tuple[Simulation, ...]:
@@ -157,7 +162,9 @@ class Sweep:
 @functools.lru_cache(maxsize=4096)
 def _one_per_amplitude(sweep: Sweep, item: NamedSpectrum) -> tuple[Simulation, ...]:
     """First realisations; the laws of the numerics take a millisecond for each."""
-    return tuple(sweep.simulation(item, energy, 0) for energy in sweep.elastic_energies)
+    return tuple(
+        sweep.simulation(item, elastic_energy, 0) for elastic_energy in sweep.elastic_energies
+    )
 
 
 @functools.lru_cache(maxsize=4096)
