@@ -85,7 +85,7 @@ PARTS = (
         {"xarray", "numba", "scipy.optimize", "scipy.stats"},
     ),
     ("studies.paper.figure", {"xarray", "numba", "scipy.optimize", "scipy.stats"}),
-    ("crackfront.sweep.configuration", {"xarray", "scipy.optimize", "scipy.stats"}),
+    ("crackfront.sweep.feasibility", {"xarray", "scipy.optimize", "scipy.stats"}),
 )
 """Parts in an order in which none may load what a later one must not."""
 

@@ -305,15 +305,16 @@ def status(folder: Path, as_json: bool) -> None:
     Shards that run on other machines are shown where the file system passes their locks on; a batch
     system knows them all. Files that are found damaged are renamed to *.damaged.
     """
-    from crackfront.sweep.configuration import load_configuration, refuse_older_layout
     from crackfront.sweep.inventory import Inventory
+    from crackfront.sweep.parameters import load_sweep
+    from crackfront.sweep.results_folder import refuse_older_layout
     from crackfront.sweep.store import Store
 
     store = Store(folder, warn)
     refuse_older_layout(folder)
     if not store.configuration.is_file():
         raise ValueError(f"{folder} holds no sweep that was begun; name results/<its name>")
-    sweep = load_configuration(store.configuration)
+    sweep = load_sweep(store.configuration)
     inventories = {item.name: store.progress(sweep, item) for item in sweep.spectra}
     progress, running = _progress(inventories), store.running_shards()
     sentences = sum(inventories.values(), Inventory()).sentences()

@@ -17,14 +17,15 @@ from crackfront.core.arguments import refuse_other_type
 from crackfront.simulate.labels import flag_words
 from crackfront.simulate.provenance import Provenance, provenance
 from crackfront.simulate.storage import read_derived, write_text
-from crackfront.sweep.configuration import (
+from crackfront.sweep.feasibility import check_feasible
+from crackfront.sweep.parallel import deferring_stops
+from crackfront.sweep.parameters import load_sweep
+from crackfront.sweep.results_folder import (
     SOURCE,
-    load_configuration,
     refuse_older_layout,
     refuse_other_configuration,
     results_folder,
 )
-from crackfront.sweep.parallel import deferring_stops
 from crackfront.sweep.rows import COMPLETE
 from crackfront.sweep.section import movable_text
 from crackfront.sweep.store import Announce, Store
@@ -37,10 +38,11 @@ def opened(
 ) -> tuple[Sweep, Store, Provenance]:
     """Sweep of a configuration file, its store, and the origin of what is computed for it.
 
-    ConfigurationError if the results are those of another configuration that is still there,
-    or of an older layout.
+    ConfigurationError if no machine can run the sweep, or the results are those of another
+    configuration that is still there, or of an older layout.
     """
-    sweep = load_configuration(configuration)
+    sweep = load_sweep(configuration)
+    check_feasible(sweep, configuration)
     if output is not None and output.exists() and not output.is_dir():
         raise ValueError(f"the output is {output}, a file; name a folder for the results")
     store = Store(results_folder(configuration) if output is None else output, announce)

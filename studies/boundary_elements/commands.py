@@ -37,8 +37,8 @@ def validate(configuration: Path, output: Path | None) -> None:
 
     from crackfront.simulate.checksums import forget_sums
     from crackfront.simulate.provenance import provenance
-    from crackfront.sweep.configuration import refuse_other_configuration, results_folder
     from crackfront.sweep.integrity import write_sums
+    from crackfront.sweep.results_folder import refuse_other_configuration, results_folder
     from crackfront.sweep.run_sweep import write_source
     from studies.boundary_elements import study
     from studies.boundary_elements.parameters import load_validation

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from crackfront.simulate.run_simulation import run_simulation
-from crackfront.sweep.configuration import load_configuration
+from crackfront.sweep.parameters import load_sweep
 from crackfront.sweep.rows import row_columns, sweep_row
 from crackfront.sweep.table_file import columns_dataset
 from studies.law.cells import law_cells, measured_cells
@@ -22,7 +22,7 @@ _SAME_SURFACES = "standard error that the numerics leave: the surfaces are the s
 
 def _fronts() -> Mapping[str, Number]:
     """Straight fronts of one spectrum, amplitude and spring."""
-    sweep = load_configuration(Path("config/line-quick.yaml"))
+    sweep = load_sweep(Path("config/line-quick.yaml"))
     sweep = replace(sweep, spectra=sweep.spectra[-1:], elastic_energies=sweep.elastic_energies[-1:])
     rows = [sweep_row(run_simulation(simulation)) for simulation in sweep.simulations()]
     columns = row_columns(rows, (1, 1, sweep.n_realisation))

@@ -15,7 +15,7 @@ from crackfront.cli.common import FILE, examples, refuse_unwritable
 from crackfront.plots.style import save_picture
 from crackfront.simulate.sphere.steady_branches import SteadySchedule
 from crackfront.simulate.storage import read_dataset, write_text
-from crackfront.sweep.configuration import load_configuration
+from crackfront.sweep.parameters import load_sweep
 from crackfront.sweep.run_sweep import opened
 from crackfront.sweep.sweep import Sweep
 from studies.law.cells import LawCell, Row, csv_rows, csv_text, law_cells, measured_cells
@@ -111,7 +111,7 @@ def held_out(output: Path) -> None:
     docs/reference.
     """
     refuse_unwritable(output)
-    schedule = cast(SteadySchedule, load_configuration(Path("config/paper.yaml")).schedule)
+    schedule = cast(SteadySchedule, load_sweep(Path("config/paper.yaml")).schedule)
     rows = [*scene_rows(), *reference_rows(Path("docs/reference/si-5.nc"), schedule)]
     write_text(output / "held-out.csv", csv_text(rows))
     click.echo(sphere_table(rows))

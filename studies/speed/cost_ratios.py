@@ -10,7 +10,7 @@ import numpy as np
 
 from crackfront.simulate.costs import expected_cost
 from crackfront.simulate.run_simulation import run_simulation
-from crackfront.sweep.configuration import load_configuration
+from crackfront.sweep.parameters import load_sweep
 from studies.pages import markdown_table
 
 CONFIGURATIONS = ("default", "test", "line-quick", "line", "line-strong", "line-chemical")
@@ -34,7 +34,7 @@ def measured_costs(
     """Costs of the first realisation of each spectrum at its weakest and strongest amplitude."""
     costs = []
     for name in names:
-        sweep = load_configuration(folder / f"{name}.yaml")
+        sweep = load_sweep(folder / f"{name}.yaml")
         for item in sweep.spectra:
             for energy in sorted(sweep.elastic_energies)[:: len(sweep.elastic_energies) - 1 or 1]:
                 simulation = sweep.simulation(item, energy, 0)

@@ -28,8 +28,8 @@ from crackfront.core.variables import variable
 from crackfront.simulate.provenance import provenance
 from crackfront.simulate.run_simulation import SimulationResult, compile_solver
 from crackfront.simulate.simulation import Simulation, simulation_adhesion, simulation_field
-from crackfront.sweep.configuration import load_configuration
 from crackfront.sweep.curves import FinishedSimulation, curves_dataset
+from crackfront.sweep.parameters import load_sweep
 from crackfront.sweep.rows import sweep_row
 from studies.pages import markdown_table
 
@@ -62,7 +62,7 @@ class Share:
 
 
 def _simulations() -> list[Simulation]:
-    sweep = load_configuration(CONFIGURATION)
+    sweep = load_sweep(CONFIGURATION)
     return [sweep.simulation(sweep.named(name), energy, 0) for name, energy in CASES]
 
 

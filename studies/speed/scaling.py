@@ -28,8 +28,8 @@ from crackfront.simulate.costs import expected_cost
 from crackfront.simulate.provenance import Provenance, provenance
 from crackfront.simulate.run_simulation import run_simulation
 from crackfront.simulate.storage import write_text
-from crackfront.sweep.configuration import load_configuration
 from crackfront.sweep.curves import FinishedSimulation
+from crackfront.sweep.parameters import load_sweep
 from crackfront.sweep.requests import shard_request
 from crackfront.sweep.rows import row_columns, sweep_row
 from crackfront.sweep.shards import write_shard
@@ -115,7 +115,7 @@ def played(
 
 def slowness() -> float:
     """Measured over expected processor time of one simulation of each spectrum of the default."""
-    sweep = load_configuration(ROOT / "config/default.yaml")
+    sweep = load_sweep(ROOT / "config/default.yaml")
     energy = sweep.elastic_energies[-1]
     runs = [sweep.simulation(item, energy, 0) for item in sweep.spectra]
     run_simulation(runs[0])  # compiles, and loads what is compiled
@@ -130,7 +130,7 @@ def million(
 
     A time is the expected one, times how much slower the machine is, times a random factor.
     """
-    sweep = load_configuration(ROOT / "config/default.yaml")
+    sweep = load_sweep(ROOT / "config/default.yaml")
     rng = np.random.default_rng(seed)
     n_block, n_amplitude = n_shard // len(sweep.spectra), len(sweep.elastic_energies)
     shape = n_simulation // (n_block * len(sweep.spectra) * n_amplitude), n_amplitude
@@ -212,7 +212,7 @@ def synthetic(folder: Path, n_simulation: int, *, curves: bool = True) -> Path:
     path = folder / "test.yaml"
     text = (ROOT / "config/test.yaml").read_text(encoding="utf-8")
     path.write_text(text.replace("realisations: 2", f"realisations: {n_simulation // 4}"))
-    sweep, rng = load_configuration(path), np.random.default_rng(1)
+    sweep, rng = load_sweep(path), np.random.default_rng(1)
     store, origin = Store(folder), provenance()
     write_text(store.configuration, path.read_text(encoding="utf-8"))
     firsts = {item.name: _finished(sweep, item, origin) for item in sweep.spectra}

@@ -29,8 +29,8 @@ from crackfront.core.solver.relax import named_solver
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.plots.style import save_figure
 from crackfront.simulate.provenance import provenance
-from crackfront.sweep.configuration import load_configuration
 from crackfront.sweep.curves import FinishedSimulation
+from crackfront.sweep.parameters import load_sweep
 from crackfront.sweep.rows import failed_row
 from crackfront.sweep.store import Store
 from crackfront.sweep.tasks import BatchWriter
@@ -241,7 +241,7 @@ def test_a_plan_tells_what_stored_simulations_are_of_no_use_and_why(tmp_path, co
 
 
 def test_the_status_counts_what_is_done_failed_and_left(tmp_path, copy_store):
-    sweep = load_configuration(TEST)
+    sweep = load_sweep(TEST)
     copy_store("rough", tmp_path)
     flat, store = sweep.shards()[0], Store(tmp_path)
     simulation = next(sweep.simulations(flat.item))

@@ -15,10 +15,10 @@ from crackfront.simulate.costs import expected_cost
 from crackfront.simulate.run_simulation import run_simulation
 from crackfront.simulate.sphere.full_cycle import FullCycle
 from crackfront.simulate.sphere.steady_branches import integral_breadth
-from crackfront.sweep.configuration import load_configuration
+from crackfront.sweep.parameters import load_sweep
 
 ROOT = Path(__file__).parents[2]
-SWEEP = load_configuration(ROOT / "config/test.yaml")
+SWEEP = load_sweep(ROOT / "config/test.yaml")
 ONE = SWEEP.simulation(SWEEP.spectra[0], 0.1, 0)
 
 # Processor times of an AMD EPYC with other work on its cores: medians of four realisations of the
@@ -78,7 +78,7 @@ MEASURED = [
 
 @pytest.mark.parametrize(("configuration", "spectrum", "energy", "seconds"), MEASURED)
 def test_times_are_expected_within_a_factor_of_two(configuration, spectrum, energy, seconds):
-    sweep = load_configuration(ROOT / f"config/{configuration}.yaml")
+    sweep = load_sweep(ROOT / f"config/{configuration}.yaml")
     [energy] = [value for value in sweep.elastic_energies if value == pytest.approx(energy)]
     expected = expected_cost(sweep.simulation(sweep.named(spectrum), energy, 0)).seconds
     assert 0.5 < expected / seconds < 2
@@ -112,10 +112,10 @@ def test_memory_is_predicted_within_a_factor_one_and_a_half():
     code = (
         "from pathlib import Path\n"
         "from dataclasses import replace\n"
-        "from crackfront.sweep.configuration import load_configuration\n"
+        "from crackfront.sweep.parameters import load_sweep\n"
         "from crackfront.simulate.costs import expected_cost\n"
         "from crackfront.simulate.run_simulation import run_simulation\n"
-        f"sweep = load_configuration(Path({str(ROOT / 'config/test.yaml')!r}))\n"
+        f"sweep = load_sweep(Path({str(ROOT / 'config/test.yaml')!r}))\n"
         "one = sweep.simulation(sweep.spectra[0], 0.1, 0)\n"
         "one = replace(one, resolution=replace(one.resolution, n_point=2500))\n"
         "print(run_simulation(one).measures.peak_memory / expected_cost(one).memory)\n"

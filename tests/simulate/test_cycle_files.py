@@ -14,10 +14,10 @@ from crackfront.simulate.run_simulation import run_simulation
 from crackfront.simulate.sphere.full_cycle import FullCycle
 from crackfront.simulate.sphere.steady_branches import SteadySchedule
 from crackfront.simulate.storage import UnreadableFileError
-from crackfront.sweep.configuration import load_configuration
+from crackfront.sweep.parameters import load_sweep
 
 CONFIG = Path(__file__).parents[2] / "config"
-SWEEP, LINES = (load_configuration(CONFIG / name) for name in ("test.yaml", "line-test.yaml"))
+SWEEP, LINES = (load_sweep(CONFIG / name) for name in ("test.yaml", "line-test.yaml"))
 CYCLE = replace(
     SWEEP.simulation(SWEEP.spectra[1], 0.1, 0),
     schedule=FullCycle(0.5, 0.125),

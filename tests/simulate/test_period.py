@@ -18,13 +18,13 @@ from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.simulate.line.line_loads import LineSchedule
 from crackfront.simulate.simulation import simulation_adhesion, simulation_field
-from crackfront.sweep.configuration import load_configuration
+from crackfront.sweep.parameters import load_sweep
 from crackfront.sweep.store import Store
 from crackfront.sweep.table_file import read_table
 
 CONFIG = Path(__file__).parents[2] / "config"
 TEXT = (CONFIG / "line-test.yaml").read_text(encoding="utf-8")
-SWEEP = load_configuration(CONFIG / "line-test.yaml")
+SWEEP = load_sweep(CONFIG / "line-test.yaml")
 ONE = SWEEP.simulation(SWEEP.spectra[1], 0.04, 0)
 SHAPES = {
     "flat": ("roughness", SelfAffineSpectrum(1.0, 1.0, 1.0)),

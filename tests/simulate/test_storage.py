@@ -39,13 +39,13 @@ from crackfront.simulate.storage import (
     write_text,
 )
 from crackfront.surfaces.given_surface import read_field, surface_adhesion
-from crackfront.sweep.configuration import load_configuration
 from crackfront.sweep.curves import FinishedSimulation, curves_dataset, read_result, write_curves
 from crackfront.sweep.fit_files import write_fit
+from crackfront.sweep.parameters import load_sweep
 from crackfront.sweep.rows import row_columns, sweep_row
 from crackfront.sweep.table_file import columns_dataset, read_statuses, read_table
 
-SWEEP = load_configuration(Path(__file__).parents[2] / "config/test.yaml")
+SWEEP = load_sweep(Path(__file__).parents[2] / "config/test.yaml")
 ORIGIN = Provenance("1.2.3", "abc", "crackfront test", "seed: 1\n")
 
 

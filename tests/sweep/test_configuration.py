@@ -22,6 +22,8 @@ from crackfront.simulate.settings import Settings
 from crackfront.simulate.sphere.steady_branches import SteadySchedule
 from crackfront.simulate.storage import write_derived
 from crackfront.sweep.configuration import load_configuration
+from crackfront.sweep.feasibility import check_feasible
+from crackfront.sweep.parameters import configured_sweep, load_sweep
 from crackfront.sweep.rows import failed_row
 from crackfront.sweep.section import ConfigurationError, movable_text, yaml_mapping
 from crackfront.sweep.table_file import read_table
@@ -69,7 +71,7 @@ def refusal(tmp_path, text):
     """What a text is refused for, without the name of the file."""
     path = written(tmp_path, text)
     with pytest.raises(ConfigurationError) as caught:
-        load_configuration(path)
+        check_feasible(load_sweep(path), path)
     message = str(caught.value)
     assert all(line.startswith(str(path)) for line in message.splitlines())
     return message.replace(str(path), "").lstrip(": ")
@@ -77,12 +79,12 @@ def refusal(tmp_path, text):
 
 @pytest.mark.parametrize("name", ["test", "default", "paper", "fig3c", "spheres"])
 def test_the_configurations_of_the_project_are_valid(name):
-    sweep = load_configuration(ROOT / "config" / f"{name}.yaml")
+    sweep = load_sweep(ROOT / "config" / f"{name}.yaml")
     assert len({item.name for item in sweep.spectra}) == len(sweep.spectra)
 
 
 def test_the_paper_configuration_has_the_spectra_of_the_paper():
-    sweep = load_configuration(ROOT / "config/paper.yaml")
+    sweep = load_sweep(ROOT / "config/paper.yaml")
     shapes = [
         (item.spectrum.short_cutoff, item.spectrum.roll_off, item.spectrum.hurst)
         for item in sweep.spectra
@@ -92,17 +94,17 @@ def test_the_paper_configuration_has_the_spectra_of_the_paper():
 
 
 def test_a_roll_off_that_is_not_given_makes_a_flat_spectrum(tmp_path):
-    flat = load_configuration(written(tmp_path, GOOD)).named("flat").spectrum
+    flat = load_sweep(written(tmp_path, GOOD)).named("flat").spectrum
     assert flat.roll_off == flat.short_cutoff == 0.1
 
 
 def test_numbers_with_an_exponent_but_no_point_are_numbers(tmp_path):
-    assert load_configuration(written(tmp_path, GOOD)).numerics.settings.tolerance == 1e-6
+    assert load_sweep(written(tmp_path, GOOD)).numerics.settings.tolerance == 1e-6
 
 
 def test_an_rms_is_converted_to_the_energy_of_full_conformity(tmp_path):
     text = changed("elastic_energy: [0.02, 0.1]", "work_of_adhesion_rms: [0.2, 0.6]")
-    energies = load_configuration(written(tmp_path, text)).elastic_energies
+    energies = load_sweep(written(tmp_path, text)).elastic_energies
     assert energies == pytest.approx((0.01, 0.09), rel=1e-15)
 
 
@@ -116,8 +118,8 @@ def test_lengths_in_metres_are_those_of_the_reduced_sweep(tmp_path):
             spectrum[name] *= scales.lateral
     for name in ("max_penetration", "step"):
         content["load"][name] *= scales.vertical
-    reduced = load_configuration(written(tmp_path, GOOD))
-    metres = load_configuration(written(tmp_path, to_yaml(content)))
+    reduced = load_sweep(written(tmp_path, GOOD))
+    metres = load_sweep(written(tmp_path, to_yaml(content)))
     for one, other in zip(reduced.spectra, metres.spectra, strict=True):
         assert other.spectrum.short_cutoff == pytest.approx(one.spectrum.short_cutoff, rel=1e-14)
         assert other.spectrum.roll_off == pytest.approx(one.spectrum.roll_off, rel=1e-14)
@@ -156,13 +158,13 @@ def settings_of(sweep, item, energy):
 
 
 def test_an_error_chooses_the_numerics_of_every_spectrum_and_amplitude(tmp_path):
-    sweep = load_configuration(written(tmp_path, asking(0.03)))
+    sweep = load_sweep(written(tmp_path, asking(0.03)))
     given = sweep.numerics
     assert (given.settings, given.tile_cutoffs, given.max_sweeps) == (0.03, 20, 100000)
     flat = sweep.named("flat")
     weak, strong = (settings_of(sweep, flat, energy) for energy in sweep.elastic_energies)
     assert strong.angles_per_cutoff > weak.angles_per_cutoff
-    finer = settings_of(load_configuration(written(tmp_path, asking(0.01))), flat, 0.1)
+    finer = settings_of(load_sweep(written(tmp_path, asking(0.01))), flat, 0.1)
     assert finer.angles_per_cutoff > strong.angles_per_cutoff
     simulation = sweep.simulation(flat, 0.1, 0)
     assert simulation.solver.tolerance == strong.tolerance
@@ -176,7 +178,7 @@ def test_an_error_below_that_of_the_finest_numerics_is_refused(tmp_path):
 
 
 def test_given_numerics_serve_every_amplitude(tmp_path):
-    sweep = load_configuration(written(tmp_path, GOOD))
+    sweep = load_sweep(written(tmp_path, GOOD))
     assert isinstance(sweep.numerics.settings, Settings)
     assert settings_of(sweep, sweep.named("rough"), 0.1) is sweep.numerics.settings
 
@@ -203,9 +205,7 @@ def test_an_error_that_no_numerics_have_is_refused(tmp_path, error):
 
 def test_steady_loads_are_read_in_both_units(tmp_path):
     text = GOOD.replace("step: 0.1", "steady: {start: 0.25, travel: 2.0, error: 0.1}")
-    assert load_configuration(written(tmp_path, text)).schedule == SteadySchedule(
-        0.25, 1.0, 2.0, 0.1
-    )
+    assert load_sweep(written(tmp_path, text)).schedule == SteadySchedule(0.25, 1.0, 2.0, 0.1)
     scales = Scales(radius=1e-3, work_of_adhesion=0.05, contact_modulus=1e6)
     content = from_yaml(text)
     content["scales"] = {"radius": 1e-3, "work_of_adhesion": 0.05, "contact_modulus": 1e6}
@@ -214,7 +214,7 @@ def test_steady_loads_are_read_in_both_units(tmp_path):
             spectrum[name] *= scales.lateral
     content["load"]["max_penetration"] *= scales.vertical
     content["load"]["steady"]["start"] *= scales.vertical
-    metres = load_configuration(written(tmp_path, to_yaml(content))).schedule
+    metres = load_sweep(written(tmp_path, to_yaml(content))).schedule
     assert metres.start == pytest.approx(0.25, rel=1e-14)
     assert (metres.travel, metres.standard_error) == (2.0, 0.1)
 
@@ -440,12 +440,12 @@ def test_a_file_that_is_no_text_is_refused(tmp_path):
     path = tmp_path / "sweep.yaml"
     path.write_bytes(b"\xff\xfe\x00seed")
     with pytest.raises(ConfigurationError, match="is no UTF-8 text"):
-        load_configuration(path)
+        load_sweep(path)
 
 
 def test_a_file_that_does_not_exist_is_refused(tmp_path):
     with pytest.raises(ConfigurationError, match=r"none.yaml cannot be read: No such file"):
-        load_configuration(tmp_path / "none.yaml")
+        load_sweep(tmp_path / "none.yaml")
 
 
 SCANS = ROOT / "examples/scans"
@@ -479,7 +479,7 @@ def _few_draws():
 def film(tmp_path_factory):
     """The sweep over the spectrum of two scans and over a flat one."""
     spectra = MEASURED + "  - {name: flat, short_cutoff: 2e-6, hurst: 0.8}\n"
-    return load_configuration(written(tmp_path_factory.mktemp("film"), with_surface(spectra)))
+    return load_sweep(written(tmp_path_factory.mktemp("film"), with_surface(spectra)))
 
 
 def test_a_spectrum_may_be_that_of_measurements(film):
@@ -507,7 +507,7 @@ def test_files_are_relative_to_the_configuration_and_amplitudes_to_what_they_hol
     spectra = "spectra: [{name: film, surface: {file: scan.al3d, mask: mask.txt}}]\n"
     text = with_surface(spectra, **{"elastic_energy: [0.02, 0.1]": "measured: [0.5, 1]"})
     path = written(home, text)
-    sweep = load_configuration(Path("elsewhere", path.name))
+    sweep = load_sweep(Path("elsewhere", path.name))
     options = ReadingOptions(mask=(home / "mask.txt",))
     surface = measured_surface(read_measurements([home / "scan.al3d"], options))
     energy = surface.conformity_energy(sweep.scales.contact_modulus).value
@@ -515,15 +515,15 @@ def test_files_are_relative_to_the_configuration_and_amplitudes_to_what_they_hol
     assert sweep.elastic_energies == pytest.approx((energy / 4, energy), rel=1e-3)
     # The copy that stands with the results means the same.
     (tmp_path / "copy.yaml").write_text(movable_text(path))
-    assert load_configuration(tmp_path / "copy.yaml") == sweep
+    assert load_sweep(tmp_path / "copy.yaml") == sweep
     with pytest.raises(ConfigurationError, match=r"measured: 9 times the heights have an energy"):
-        load_configuration(written(home, text.replace("[0.5, 1]", "[1, 9]")))
+        load_sweep(written(home, text.replace("[0.5, 1]", "[1, 9]")))
 
 
 def test_a_spectrum_may_be_a_table_of_densities(tmp_path):
     table = "{name: ring, table: {wavelengths: [0.12, 0.1], densities: [1.0, 2.0]}}"
     text = changed("{name: flat, short_cutoff: 0.1, hurst: 1.0}", table)
-    sweep = load_configuration(written(tmp_path, text))
+    sweep = load_sweep(written(tmp_path, text))
     assert sweep.spectra[0].name == "ring"
     assert sweep.spectra[0].spectrum == TabulatedSpectrum((0.12, 0.1), (1.0, 2.0))
 
@@ -532,7 +532,7 @@ def test_a_surface_is_read_in_the_words_of_the_commands(tmp_path):
     words = "channel: 0, crop: '1um:6um,1um:6um', detrend: 3, mask: '2um:3um,2um:3um'"
     file = SCANS / "nanodiamond-detail.al3d"
     spectra = f"spectra:\n  - {{name: film, surface: {{file: {file}, shortest: 0.3um, {words}}}}}\n"
-    sweep = load_configuration(written(tmp_path, with_surface(spectra)))
+    sweep = load_sweep(written(tmp_path, with_surface(spectra)))
     square = ((2e-6, 3e-6), (2e-6, 3e-6))
     crop = ((1e-6, 6e-6), (1e-6, 6e-6))
     options = ReadingOptions(channel="0", crop=crop, detrend=3, mask=(square,))
@@ -554,8 +554,19 @@ def test_words_of_a_surface_that_cannot_be_used_are_refused(tmp_path, words, sen
     file = SCANS / "nanodiamond-detail.al3d"
     spectra = f"spectra:\n  - {{name: film, surface: {{file: {file}, {words}}}}}\n"
     with pytest.raises(ConfigurationError, match=sentence) as refusal:
-        load_configuration(written(tmp_path, with_surface(spectra)))
+        load_sweep(written(tmp_path, with_surface(spectra)))
     assert "spectra[0].surface: " in str(refusal.value)
+
+
+def test_reading_a_configuration_opens_no_scan_and_chooses_no_settings(tmp_path):
+    spectra = "spectra: [{name: film, surface: {file: /nowhere.al3d}}]\n"
+    content = from_yaml(with_surface(spectra))
+    kept = {name: content["numerics"][name] for name in ("tile", "max_sweeps", "solver")}
+    content["numerics"] = {"error": 1e-5} | kept
+    configuration = load_configuration(written(tmp_path, to_yaml(content)))
+    assert configuration.numerics.error == 1e-5
+    with pytest.raises(ConfigurationError, match=r"nowhere.al3d cannot be read"):
+        configured_sweep(configuration)
 
 
 @pytest.mark.parametrize("name", ["default", "test"])
@@ -593,7 +604,7 @@ def test_the_table_of_a_sweep_in_metres_is_converted_for_the_sphere_that_it_stat
     content = from_yaml(GOOD) | {"scales": scales}
     content["spectra"] = [{"name": "flat", "short_cutoff": 6e-6}]
     content["load"] = {"max_penetration": 3e-6, "step": 1e-6}
-    sweep = load_configuration(written(tmp_path, to_yaml(content)))
+    sweep = load_sweep(written(tmp_path, to_yaml(content)))
     rows = [failed_row(one, "refused", "a test") for one in sweep.simulations()]
     table = dataset_of_rows(sweep, rows)
     found = cf.in_si_units(table)
@@ -610,7 +621,7 @@ def test_a_range_of_the_fit_may_end_at_an_amplitude_but_for_round_off(tmp_path):
     text = changed("{elastic_energy: [0.02, 0.1]}", amplitudes)
     ends = "lowest_elastic_energy: 0.01, highest_elastic_energy: 0.01"
     text = text.replace("lowest_elastic_energy: 0.01, highest_elastic_energy: 0.1", ends)
-    [energy] = load_configuration(written(tmp_path, text)).elastic_energies
+    [energy] = load_sweep(written(tmp_path, text)).elastic_energies
     assert energy != 0.01
     assert energy == pytest.approx(0.01)
 
@@ -618,17 +629,17 @@ def test_a_range_of_the_fit_may_end_at_an_amplitude_but_for_round_off(tmp_path):
 def test_an_error_chooses_no_pixels_of_uncorrelated_sites(tmp_path):
     """Their disorder is that of a pixel, so that amplitudes would not compare."""
     text = (ROOT / "config/line-weak.yaml").read_text(encoding="utf-8")
-    assert load_configuration(written(tmp_path, text))
+    assert load_sweep(written(tmp_path, text))
     content = from_yaml(text)
     numerics = {"error": 0.05} | {
         name: content["numerics"][name] for name in ("tile", "max_sweeps", "solver")
     }
     with pytest.raises(ConfigurationError, match=r"numerics\.error is 0\.05, which chooses other"):
-        load_configuration(written(tmp_path, to_yaml(content | {"numerics": numerics})))
+        load_sweep(written(tmp_path, to_yaml(content | {"numerics": numerics})))
 
 
 def test_a_table_without_a_sphere_is_not_converted_without_one(tmp_path):
-    sweep = load_configuration(written(tmp_path, GOOD))
+    sweep = load_sweep(written(tmp_path, GOOD))
     rows = [failed_row(one, "refused", "a test") for one in sweep.simulations()]
     with pytest.raises(ValueError, match="the data do not state a sphere"):
         cf.in_si_units(dataset_of_rows(sweep, rows))
@@ -636,9 +647,9 @@ def test_a_table_without_a_sphere_is_not_converted_without_one(tmp_path):
 
 def test_a_flat_spectrum_needs_no_hurst_exponent_and_a_longer_roll_off_does(tmp_path):
     given = "{name: flat, short_cutoff: 0.1, hurst: 1.0}"
-    flat = load_configuration(written(tmp_path, GOOD)).spectra
+    flat = load_sweep(written(tmp_path, GOOD)).spectra
     for text in ("{name: flat, short_cutoff: 0.1}", given.replace("hurst: 1.0", "roll_off: 0.1")):
-        assert load_configuration(written(tmp_path, changed(given, text))).spectra == flat
+        assert load_sweep(written(tmp_path, changed(given, text))).spectra == flat
     rough = changed(given, given.replace("hurst: 1.0", "roll_off: 1"))
     assert "spectra[0]: key hurst is missing; add it" in refusal(tmp_path, rough)
 
@@ -650,11 +661,11 @@ def test_shards_of_a_measured_spectrum_change_with_the_file(tmp_path):
     stems = []
     for comment in (b"SYNTHETIC", b"Synthetic"):
         scan.write_bytes(content.replace(b"SYNTHETIC", comment))
-        sweep = load_configuration(written(tmp_path, with_surface(spectra)))
+        sweep = load_sweep(written(tmp_path, with_surface(spectra)))
         stems.append([one.stem for one in sweep.simulations()])
     assert not set(stems[0]) & set(stems[1])
     scan.write_bytes(content)
-    again = load_configuration(written(tmp_path, with_surface(spectra)))
+    again = load_sweep(written(tmp_path, with_surface(spectra)))
     assert [one.stem for one in again.simulations()] == stems[0]
 
 
@@ -773,7 +784,7 @@ def test_an_anchor_may_be_used_as_often_as_it_is_useful(tmp_path):
         "realisations: 2", "realisations: 3"
     )
     text = text.replace("samples_per_cutoff: 4", "samples_per_cutoff: *two")
-    assert load_configuration(written(tmp_path, text)).numerics.settings.samples_per_cutoff == 2
+    assert load_sweep(written(tmp_path, text)).numerics.settings.samples_per_cutoff == 2
 
 
 def test_many_realisations_are_no_reason_to_refuse_but_samples_that_no_memory_holds(
@@ -781,6 +792,6 @@ def test_many_realisations_are_no_reason_to_refuse_but_samples_that_no_memory_ho
 ):
     monkeypatch.setattr("crackfront.core.resources.memory_at_hand", lambda: 1e9)
     text = changed("realisations: 2", "realisations: 100000").replace("p: 500", "p: 5000")
-    assert load_configuration(written(tmp_path, text)).n_simulation == 400_000
+    assert load_sweep(written(tmp_path, text)).n_simulation == 400_000
     message = refusal(tmp_path, text.replace("p: 5000", "p: 10000000"))
     assert "fit: 10000000 bootstrap samples would need 2 GB of memory" in message

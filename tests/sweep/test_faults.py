@@ -15,8 +15,8 @@ import xarray as xr
 from crackfront.simulate.checksums import is_whole
 from crackfront.simulate.provenance import provenance
 from crackfront.simulate.run_simulation import run_simulation
-from crackfront.sweep.configuration import load_configuration
 from crackfront.sweep.curves import curve_files
+from crackfront.sweep.parameters import load_sweep
 from crackfront.sweep.run_sweep import run_sweep
 from crackfront.sweep.store import Store
 from crackfront.sweep.tasks import run_and_store
@@ -252,7 +252,7 @@ def test_a_full_disk_ends_the_run_and_room_lets_it_go_on(configuration, same, sm
 def test_a_disk_that_is_full_when_all_has_run_costs_no_simulation(configuration, same, small_disk):
     subprocess.run(["mount", "-o", "remount,size=8m", str(small_disk)], check=True)
     folder, filler = small_disk / "out", small_disk / "filler"
-    sweep, store = load_configuration(configuration), Store(folder)
+    sweep, store = load_sweep(configuration), Store(folder)
     runs = [(one, [*sweep.simulations(one.item)]) for one in sweep.shards()]
     for _ in run_and_store(store, runs, provenance(), 0.1):
         pass

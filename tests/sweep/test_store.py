@@ -29,15 +29,15 @@ from crackfront.simulate.storage import (
     write_named_by_digest,
 )
 from crackfront.sweep import tasks
-from crackfront.sweep.configuration import load_configuration
 from crackfront.sweep.curves import curve_files
+from crackfront.sweep.parameters import load_sweep
 from crackfront.sweep.run_sweep import run_sweep
 from crackfront.sweep.store import Store
 from tests.commands import done, refused, run, simulated, slow, stored, table
 
 TEST = Path(__file__).parents[2] / "config/test.yaml"
 LINE = TEST.with_name("line-test.yaml")
-SWEEP = load_configuration(TEST)
+SWEEP = load_sweep(TEST)
 ALL = {one.label for one in SWEEP.simulations()}
 FLAT, ROUGH = ({label for label in ALL if name in label} for name in ("flat", "rough"))
 
@@ -84,7 +84,7 @@ def undisturbed(configuration, tmp_path):
 
 def in_batches(configuration, folder):
     """Store simulations in a batch each, as a process leaves them that is killed in the end."""
-    sweep, store = load_configuration(configuration), Store(folder)
+    sweep, store = load_sweep(configuration), Store(folder)
     shards = [(one, [*sweep.simulations(one.item, one.realisations)]) for one in sweep.shards()]
     for _ in tasks.run_and_store(store, shards, provenance("text"), 0.01):
         pass
@@ -564,7 +564,7 @@ def test_recorded_fronts_and_energies_survive_batches_and_merging_to_the_last_bi
 ):
     configuration, folder = shutil.copy(original, tmp_path / "sweep.yaml"), tmp_path / "sweep"
     change(configuration, *RECORDED)
-    failing, *simulations = load_configuration(configuration).simulations()
+    failing, *simulations = load_sweep(configuration).simulations()
 
     def fail(simulation, **options):
         if simulation == failing:
@@ -665,13 +665,13 @@ from pathlib import Path
 import netCDF4, numpy as np
 from crackfront.analysis.table import SweepRow
 from crackfront.simulate.provenance import provenance
-from crackfront.sweep.configuration import load_configuration
+from crackfront.sweep.parameters import load_sweep
 from crackfront.sweep.table_file import write_hysteresis
 
 KINDS = {"float": float, "int": np.int64, "str": "S40"}
 
 def write(n_realisation):
-    sweep = replace(load_configuration(Path(sys.argv[1])), n_realisation=n_realisation)
+    sweep = replace(load_sweep(Path(sys.argv[1])), n_realisation=n_realisation)
     shape = 1, len(sweep.elastic_energies), n_realisation
     kinds = {one.name: KINDS[one.type] for one in fields(SweepRow)} | {"status": np.int8}
     parts = [[{name: np.zeros(shape, kind) for name, kind in kinds.items()}] for _ in sweep.spectra]

@@ -6,10 +6,10 @@ from pathlib import Path
 import pytest
 
 from crackfront.core.spectrum import SelfAffineSpectrum
-from crackfront.sweep.configuration import load_configuration
+from crackfront.sweep.parameters import load_sweep
 from crackfront.sweep.sweep import NamedSpectrum
 
-SWEEP = load_configuration(Path(__file__).parents[2] / "config/test.yaml")
+SWEEP = load_sweep(Path(__file__).parents[2] / "config/test.yaml")
 
 
 def stems(sweep):

@@ -15,11 +15,9 @@ sys.path.insert(0, str(BASE))  # where the studies stand
 from crackfront.core.versions import PHYSICS_VERSION, ROWS_VERSION
 from crackfront.core.resources import memory_at_hand
 from crackfront.simulate.costs import expected_cost
-from crackfront.sweep.configuration import (
-    load_configuration,
-    refuse_other_configuration,
-    results_folder,
-)
+from crackfront.sweep.feasibility import check_feasible
+from crackfront.sweep.parameters import load_sweep
+from crackfront.sweep.results_folder import refuse_other_configuration, results_folder
 from crackfront.sweep.requests import (
     Request,
     fit_request,
@@ -85,7 +83,8 @@ for key, name in (("sweep", CONFIGURATION), ("validation", VALIDATION)):
         raise WorkflowError(f"{key} is {name!r}; give the name of a file")
 try:
     RESULTS = str(results_folder(Path(CONFIGURATION)))
-    SWEEP = load_configuration(Path(CONFIGURATION))
+    SWEEP = load_sweep(Path(CONFIGURATION))
+    check_feasible(SWEEP, Path(CONFIGURATION))
     refuse_other_configuration(Path(CONFIGURATION), Path(RESULTS))
     SHARDS = {shard.name: shard for shard in SWEEP.shards(config.get("block"))}
     VALIDATED = str(results_folder(Path(VALIDATION)))

@@ -18,13 +18,15 @@ rule request:
         " && printf %s {params.text:q} > {output:q}"
 
 
-FIRSTS = {item.name: SWEEP.one_per_amplitude(item) for item in SWEEP.spectra}
-RANK_BYTES = max(
-    expected_cost(one).memory for firsts in FIRSTS.values() for one in firsts
-)
+# Expected costs of a simulation, for each spectrum and amplitude.
+COSTS = {
+    item.name: [expected_cost(first) for first in SWEEP.one_per_amplitude(item)]
+    for item in SWEEP.spectra
+}
+RANK_BYTES = max(cost.memory for costs in COSTS.values() for cost in costs)
 SECONDS = {
     name: len(shard.realisations)
-    * sum(expected_cost(one).seconds for one in FIRSTS[shard.item.name])
+    * sum(cost.seconds for cost in COSTS[shard.item.name])
     for name, shard in SHARDS.items()
 }
 

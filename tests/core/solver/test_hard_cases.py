@@ -19,7 +19,7 @@ from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.synthesis import gaussian_field
 from crackfront.core.units import WORK_OF_ADHESION, Scales
 from crackfront.simulate.run_simulation import run_simulation
-from crackfront.sweep.configuration import load_configuration
+from crackfront.sweep.parameters import load_sweep
 from tests.yaml_texts import from_yaml, to_yaml
 
 every_solver = pytest.mark.parametrize("solver", sorted(SOLVERS))
@@ -466,7 +466,7 @@ def test_a_scene_from_nanometres_to_metres_gives_the_reduced_result(tmp_path, ra
     records = []
     for content in (reduced, metres):
         (tmp_path / "sweep.yaml").write_text(to_yaml(content))
-        sweep = load_configuration(tmp_path / "sweep.yaml")
+        sweep = load_sweep(tmp_path / "sweep.yaml")
         records.append(run_simulation(sweep.simulation(sweep.named("rough"), 0.1, 0)).record)
     one, other = records
     assert other.status is one.status is Status.LOST_CONTACT

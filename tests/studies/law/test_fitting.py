@@ -12,7 +12,7 @@ from click.testing import CliRunner
 from crackfront.analysis.law import law_value, shipped_law
 from crackfront.simulate.provenance import provenance
 from crackfront.simulate.storage import write_derived
-from crackfront.sweep.configuration import load_configuration
+from crackfront.sweep.parameters import load_sweep
 from crackfront.sweep.rows import failed_row
 from studies.__main__ import main
 from studies.law.cells import MEASURED, LawCell, _without_spacing, csv_rows, measured_cells
@@ -73,7 +73,7 @@ def test_the_table_of_another_configuration_is_refused(tmp_path, monkeypatch, ve
     monkeypatch.chdir(tmp_path)
     path = Path("sweep.yaml")
     path.write_text(text)
-    sweep = load_configuration(path)
+    sweep = load_sweep(path)
     rows = [failed_row(one, "refused", "a test") for one in sweep.simulations()]
     table = dataset_of_rows(sweep, rows)
     write_derived(Path("results/sweep/hysteresis.nc"), table, provenance(text))
@@ -84,7 +84,7 @@ def test_the_table_of_another_configuration_is_refused(tmp_path, monkeypatch, ve
 
 
 def test_spacings_are_extrapolated_to_none_in_either_order_of_the_amplitudes():
-    sweep = load_configuration(ROOT / "config/line-weak.yaml")
+    sweep = load_sweep(ROOT / "config/line-weak.yaml")
     cells = [replace(measured_cells()[0], both=value, error=0.1) for value in (3.0, 2.0)]
     energies = sweep.elastic_energies
     [found] = _without_spacing(sweep, cells)

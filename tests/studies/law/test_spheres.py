@@ -9,7 +9,7 @@ import pytest
 from crackfront.analysis.law import pinning_factor
 from crackfront.core.adhesion import correlation_length
 from crackfront.core.spectrum import SelfAffineSpectrum
-from crackfront.sweep.configuration import load_configuration
+from crackfront.sweep.parameters import load_sweep
 from studies.law.cells import HELD_OUT as HELD_OUT_SHAPES
 from studies.law.cells import csv_text, measured_cells
 from studies.law.spheres import is_covered, is_within, law_of, read_spheres, sphere_table
@@ -25,7 +25,7 @@ def spheres():
 
 
 def test_the_reference_holds_the_sweeps_that_it_is_made_from(spheres):
-    sweep = load_configuration(ROOT / "config/spheres.yaml")
+    sweep = load_sweep(ROOT / "config/spheres.yaml")
     assert len(spheres) == len(sweep.spectra) * len(sweep.elastic_energies)
     for item in sweep.spectra:
         shape = item.spectrum

@@ -1,0 +1,143 @@
+"""Whether a sweep can run: its settings, the errors that they leave, and its costs."""
+
+from __future__ import annotations
+
+import math
+import sys
+from itertools import product
+from pathlib import Path
+
+from crackfront.analysis.standard_error import FEWEST_STATES
+from crackfront.core.adhesion import larkin_length
+from crackfront.core.resources import refuse_beyond_memory, refuse_beyond_time
+from crackfront.core.words import counted
+from crackfront.simulate.costs import expected_cost, refuse_oversized
+from crackfront.simulate.numerical_errors import missed_error
+from crackfront.simulate.settings import Settings
+from crackfront.simulate.simulation import Simulation
+from crackfront.sweep.section import ConfigurationError
+from crackfront.sweep.sweep import Sweep
+
+_LISTED_BYTES = 500.0
+"""Memory of a simulation in a list. (Units: bytes)"""
+
+_SAMPLE_BYTES = 100.0
+"""Memory of the means of a bootstrap sample at one amplitude. (Units: bytes)"""
+
+_COARSER = "use fewer, coarser or larger load steps, or smaller tiles"
+
+_FEWEST_SITES = 0.7
+"""Sites per short cutoff below which k is several times too large, and its bias not known."""
+
+_FEWEST_SAMPLES = {"cubic": 2.0, "linear": 3.0}
+"""Samples per short cutoff along a ray below which they miss waves: with 1, k of straight fronts at
+w_rms 0.1 to 0.8 is 0 to 0.7 of its value with cubic pieces, and 0 to 0.3 with linear ones."""
+
+
+_ROUND_OFF = 1e-9
+"""Relative distance by which samples may be below the fewest."""
+
+
+def check_feasible(sweep: Sweep, path: Path) -> None:
+    """Raise ConfigurationError if no machine can run a sweep, or its numerics are too coarse.
+
+    The sentence begins with the path of the configuration. Settings, errors and costs are computed
+    for every spectrum and amplitude; no surface is made.
+    """
+    try:
+        _check_numbers(sweep)
+        _check_sizes(sweep)
+        _check_costs(sweep)
+        for item in sweep.spectra:
+            for simulation in sweep.one_per_amplitude(item):
+                _check_resolution(simulation)
+                _check_tolerance_and_error(simulation, sweep.numerics.settings)
+    except ValueError as error:
+        raise ConfigurationError(f"{path}: {error}") from error
+
+
+def _check_numbers(sweep: Sweep) -> None:
+    """Raise TooLargeError if memory cannot contain lists of simulations or bootstrap samples."""
+    refuse_beyond_memory(
+        f"realisations: {sweep.n_simulation:.3g} simulations",
+        _LISTED_BYTES * sweep.n_simulation,
+        "lower their number",
+    )
+    refuse_beyond_memory(
+        f"fit: {sweep.fit.n_bootstrap} bootstrap samples",
+        _SAMPLE_BYTES * sweep.fit.n_bootstrap * len(sweep.elastic_energies),
+        "lower bootstrap",
+    )
+
+
+def _check_sizes(sweep: Sweep) -> None:
+    """Raise ValueError if a tile, a front or a length is beyond what any machine computes."""
+    for item, elastic_energy in product(sweep.spectra, sweep.elastic_energies):
+        usual_size = sweep.schedule.usual_size(item.spectrum)
+        settings = sweep.numerics.settings_of(sweep.kind, item.spectrum, elastic_energy, usual_size)
+        refuse_oversized(item.spectrum, sweep.numerics, settings, sweep.schedule.max_penetration)
+
+
+def _check_costs(sweep: Sweep) -> None:
+    """Raise TooLargeError if simulations need more memory or time than any machine has."""
+    seconds = 0.0
+    for item in sweep.spectra:
+        for simulation in sweep.one_per_amplitude(item):
+            cost = expected_cost(simulation)
+            what = f"simulations of {item.name}"
+            refuse_beyond_memory(what, cost.memory, _COARSER, anywhere=True)
+            seconds += sweep.n_realisation * cost.seconds
+    refuse_beyond_time("the simulations", seconds, _COARSER)
+
+
+def _check_resolution(simulation: Simulation) -> None:
+    """Raise ValueError if sites, states or samples are too few for the spectrum."""
+    resolution, schedule = simulation.resolution, simulation.schedule
+    name, elastic_energy = simulation.spectrum_name, simulation.elastic_energy
+    larkin = larkin_length(simulation.kind, simulation.spectrum, 2 * math.sqrt(elastic_energy))
+    site = resolution.tile_side / resolution.n_angle
+    schedule.refuse_few_sites(f"{name} at e_el {elastic_energy:g}", larkin, site)
+    n_state = schedule.n_period
+    if n_state is not None and n_state < FEWEST_STATES:
+        raise ValueError(
+            f"load.line: the period of {name} at e_el {elastic_energy:g} has "
+            f"{counted(n_state, 'state')}, and errors need {FEWEST_STATES} or more; lower step or "
+            "raise period"
+        )
+    short_cutoff, front_length = simulation.spectrum.short_cutoff, schedule.front_length
+    if (density := resolution.n_angle * short_cutoff / front_length) < _FEWEST_SITES:
+        raise ValueError(
+            f"numerics: {resolution.n_angle} sites of a front are {density:.2g} per short cutoff "
+            f"of {name}, with which k comes out too large; use "
+            f"{math.ceil(2 * front_length / short_cutoff)} or more, as angles_per_cutoff: 2 does"
+        )
+    fewest, density = _FEWEST_SAMPLES[resolution.interpolation], short_cutoff / resolution.spacing
+    if density < fewest * (1 - _ROUND_OFF):
+        raise ValueError(
+            f"numerics: samples_per_cutoff is {density:.3g}, with which {resolution.interpolation} "
+            f"pieces miss waves of {name} and k comes out too small; use {fewest:g} or more"
+        )
+
+
+def _check_tolerance_and_error(simulation: Simulation, requested: Settings | float) -> None:
+    """Raise ValueError if the tolerance is of no use, or the requested error cannot be reached."""
+    tolerance, n_angle = simulation.solver.tolerance, simulation.resolution.n_angle
+    name, elastic_energy = simulation.spectrum_name, simulation.elastic_energy
+    round_off = sys.float_info.epsilon * n_angle
+    if tolerance < round_off:
+        raise ValueError(
+            f"numerics: tolerance is {tolerance}, below the round-off of the {n_angle} "
+            f"sites of {name} ({round_off:.1e}); raise it"
+        )
+    if isinstance(requested, Settings):
+        if tolerance > elastic_energy:
+            raise ValueError(
+                f"numerics: tolerance is {tolerance:g}, above e_el {elastic_energy:.3g} of {name}, "
+                "to which forces of pinning are proportional, so that k comes out too large; use "
+                f"{elastic_energy / 10:.1g} or less"
+            )
+    elif left := missed_error(simulation, requested):
+        raise ValueError(
+            f"numerics: error is {requested:g}, but the finest numerics leave {left:.2g} for "
+            f"{name} at e_el {elastic_energy:g}; allow that, or give the settings"
+        )

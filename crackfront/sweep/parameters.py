@@ -1,0 +1,112 @@
+"""Parameters of a sweep, from its configuration."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+
+from crackfront.core.units import Scales
+from crackfront.sweep.configuration import Configuration, load_configuration
+from crackfront.sweep.section import ConfigurationError
+from crackfront.sweep.section_checks import refuse_repeated
+from crackfront.sweep.sweep import FitRange, NamedSpectrum, Sweep
+
+_ROUND_OFF = 1e-9
+"""Relative distance by which an amplitude may lie outside the range of the fit."""
+
+
+def load_sweep(path: Path) -> Sweep:
+    """Parameters of the sweep of a configuration file.
+
+    ConfigurationError, with a sentence that names the file, if the file or a scan that it names
+    cannot be used.
+    """
+    configuration = load_configuration(path)
+    try:
+        return configured_sweep(configuration)
+    except ValueError as error:
+        raise ConfigurationError(f"{path}: {error}") from error
+
+
+def configured_sweep(configuration: Configuration) -> Sweep:
+    """Parameters of the sweep of a configuration, in reduced units.
+
+    The scans of a measured surface are read here, because names and keys of simulations depend on
+    them. ValueError if they cannot be used, or the amplitudes and lengths do not fit together.
+    """
+    scales = None if configuration.scales is None else Scales(**dict(configuration.scales))
+    lateral, vertical = (scales.lateral, scales.vertical) if scales else (1.0, 1.0)
+    spectra = tuple(_named_spectra(configuration, lateral))
+    refuse_repeated("the name of a spectrum and its spring,", [item.name for item in spectra])
+    if scales is not None and configuration.load.line is None:
+        _check_lengths(configuration, scales, spectra)
+    return Sweep(
+        seed=configuration.seed,
+        kind=configuration.field,
+        scales=scales,
+        spectra=spectra,
+        elastic_energies=_elastic_energies(configuration, scales),
+        n_realisation=configuration.realisations,
+        numerics=configuration.numerics.numerics(),
+        schedule=configuration.load.schedule(vertical),
+        record=configuration.record,
+        failed_fraction=configuration.failed_fraction,
+        fit=FitRange(
+            configuration.fit.lowest_elastic_energy,
+            configuration.fit.highest_elastic_energy,
+            configuration.fit.bootstrap,
+        ),
+    )
+
+
+def _named_spectra(configuration: Configuration, lateral: float) -> Iterator[NamedSpectrum]:
+    """Spectra of the sweep; of straight fronts each spectrum with each spring."""
+    line = configuration.load.line
+    for position, section in enumerate(configuration.spectra):
+        item = section.named(position, lateral)
+        if line is None:
+            yield item
+            continue
+        for spring in line.springs:
+            # A name is part of the names of files.
+            ending = f"{spring:g}".replace(".", "p").replace("+", "")
+            yield NamedSpectrum(f"{item.name}-L{ending}", item.spectrum, spring)
+
+
+def _elastic_energies(configuration: Configuration, scales: Scales | None) -> tuple[float, ...]:
+    """Requested e_el / w_int, of which the range of the fit must contain one."""
+    measured, surface = math.nan, configuration.spectra[0].surface
+    if configuration.amplitudes.measured and surface and scales:
+        energy = surface.measured.conformity_energy(scales.contact_modulus).value
+        measured = energy / scales.work_of_adhesion
+    elastic_energies = configuration.amplitudes.elastic_energies(measured)
+    lowest = configuration.fit.lowest_elastic_energy
+    highest = configuration.fit.highest_elastic_energy
+    if not any(
+        lowest * (1 - _ROUND_OFF) <= elastic_energy <= highest * (1 + _ROUND_OFF)
+        for elastic_energy in elastic_energies
+    ):
+        raise ConfigurationError(
+            f"no amplitude lies in the range of the fit, e_el from {lowest:g} to {highest:g}; "
+            "widen the range"
+        )
+    return elastic_energies
+
+
+def _check_lengths(
+    configuration: Configuration, scales: Scales, spectra: Iterable[NamedSpectrum]
+) -> None:
+    """Raise ConfigurationError if a length in metres is not below the radius of the sphere."""
+    max_penetration = configuration.load.max_penetration or 0.0
+    lengths = [("load.max_penetration", abs(max_penetration))]
+    lengths += [
+        (f"short_cutoff of {item.name}", scales.lateral * item.spectrum.short_cutoff)
+        for item in spectra
+    ]
+    for name, length in lengths:
+        if length >= scales.radius:
+            raise ConfigurationError(
+                f"{name} is {length:g} m, and the radius of the sphere {scales.radius:g} m; "
+                "with a section scales all lengths are in metres"
+            )
