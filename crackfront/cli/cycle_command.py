@@ -282,7 +282,8 @@ class _States:
         if sentence := set_aside_if_damaged(self.path):
             click.echo(f"{sentence}; the cycle begins anew", err=True)
             return None
-        found = known_checkpoint(read_dataset(self.path), self._key, self.path)
+        states = self._geometry.state_type
+        found = known_checkpoint(read_dataset(self.path), self._key, states, self.path)
         if found is None:
             raise ValueError(
                 f"{self.path} holds the states of another cycle, of another field, other options "

@@ -13,11 +13,10 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from crackfront.analysis.standard_error import FEWEST_STATES
-from crackfront.core.adhesion import FieldKind, larkin_length
+from crackfront.core.adhesion import FieldKind
 from crackfront.core.resources import refuse_beyond_memory, refuse_beyond_time
 from crackfront.core.units import Scales
-from crackfront.core.words import counted
+from crackfront.simulate.contact import Pressed, SurfaceLoads
 from crackfront.simulate.costs import expected_cost, refuse_oversized
 from crackfront.simulate.laws import Settings
 from crackfront.simulate.numerical_errors import missed_error
@@ -182,15 +181,18 @@ def _refuse_infeasible(sweep: Sweep) -> None:
         "lower bootstrap",
     )
     seconds, numerics, schedule = 0.0, sweep.numerics, sweep.schedule
+    deepest = schedule.max_penetration if isinstance(schedule, Pressed) else 0.0
     coarser = "use fewer, coarser or larger load steps, or smaller tiles"
     for item, energy in product(sweep.spectra, sweep.elastic_energies):
         size = schedule.usual_size(item.spectrum)
         settings = numerics.settings_of(sweep.kind, item.spectrum, energy, size)
-        refuse_oversized(item.spectrum, numerics, settings, schedule.max_penetration)
+        refuse_oversized(item.spectrum, numerics, settings, deepest)
         simulation = sweep.simulation(item, energy, 0)
         cost = expected_cost(simulation)
         refuse_beyond_memory(f"simulations of {item.name}", cost.memory, coarser, anywhere=True)
         seconds += sweep.n_realisation * cost.seconds
+        if isinstance(schedule, SurfaceLoads):
+            schedule.refuse_unresolved(simulation)
         _refuse_too_coarse(simulation, numerics.settings)
     refuse_beyond_time("the simulations", seconds, coarser)
 
@@ -209,15 +211,6 @@ def _refuse_too_coarse(simulation: Simulation, requested: Settings | float) -> N
     """Raise if sites, tolerance or the error that the numerics leave are not as they must be."""
     sizes, tolerance = simulation.resolution, simulation.solver.tolerance
     name, energy = simulation.spectrum_name, simulation.elastic_energy
-    larkin = larkin_length(simulation.kind, simulation.spectrum, 2 * math.sqrt(energy))
-    site = sizes.tile_side / sizes.n_angle
-    simulation.schedule.refuse_few_sites(f"{name} at e_el {energy:g}", larkin, site)
-    n_state = simulation.schedule.n_period
-    if n_state is not None and n_state < FEWEST_STATES:
-        raise ValueError(
-            f"load.line: the period of {name} at e_el {energy:g} has {counted(n_state, 'state')}, "
-            f"and errors need {FEWEST_STATES} or more; lower step or raise period"
-        )
     length, cutoff = simulation.schedule.front_length, simulation.spectrum.short_cutoff
     if (density := sizes.n_angle * cutoff / length) < _FEWEST_SITES:
         raise ValueError(

@@ -12,7 +12,7 @@ from crackfront.core.adhesion import FieldKind
 from crackfront.core.arguments import nearest_name
 from crackfront.core.spectrum import Spectrum
 from crackfront.core.units import Scales
-from crackfront.simulate.contact import SweepLoad
+from crackfront.simulate.contact import SurfaceLoads, SweepLoad
 from crackfront.simulate.numerics import Numerics
 from crackfront.simulate.simulation import Simulation, simulation_of
 
@@ -87,12 +87,15 @@ class Sweep:
 
     def simulation(self, item: NamedSpectrum, energy: float, realisation: int) -> Simulation:
         """One simulation of the sweep."""
+        kind, loads, numerics = self.kind, self.schedule, self.numerics
+        if isinstance(loads, SurfaceLoads):
+            loads = loads.for_surface(kind, item.spectrum, energy, item.spring, numerics)
         return simulation_of(
-            self.kind,
+            kind,
             item.spectrum,
             energy,
-            self.schedule.for_surface(self.kind, item.spectrum, energy, item.spring, self.numerics),
-            self.numerics,
+            loads,
+            numerics,
             seed=self.seed,
             realisation=realisation,
             name=item.name,
