@@ -10,6 +10,7 @@ import click
 from crackfront.cli import Commands
 from crackfront.cli.common import announce_compilation, examples
 from crackfront.simulate.run_simulation import compile_solver
+from crackfront.simulate.sphere.full_cycle import FullCycle
 from crackfront.simulate.storage import write_text
 from studies.pages import keep_option
 
@@ -86,7 +87,7 @@ def canaries(studies: tuple[str, ...], keep: bool) -> None:
 
     chosen = chosen_canaries(studies)
     announce_compilation()
-    compile_solver("newton")
+    compile_solver("newton", FullCycle)
     moved, seconds, count = [], 0.0, 0
     for result in measured(chosen):
         seconds, count = seconds + result.seconds, count + len(result.numbers)

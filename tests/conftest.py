@@ -20,6 +20,7 @@ from crackfront.core.solver.relax import Newton
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.plots.style import STYLE
 from crackfront.simulate.run_simulation import compile_solver
+from crackfront.simulate.sphere.full_cycle import FullCycle
 
 # As of the command: Python looks for garbage among what is imported, also as it ends.
 gc.set_threshold(1_000_000)
@@ -56,7 +57,7 @@ def _kernels_shared_out(request: pytest.FixtureRequest) -> None:
         return
     match os.environ.get("PYTEST_XDIST_WORKER"):
         case "gw0":
-            compile_solver(Newton.name)
+            compile_solver(Newton.name, FullCycle)
         case "gw1":
             rings = polar_field(np.linspace(0.1, 3.0, 30), np.full(30, WORK_OF_ADHESION))
             run_cycle(rings, LoadSchedule(0.0, 0.5), Newton(1e-3), Recorder())

@@ -14,7 +14,7 @@ from crackfront.analysis.standard_error import FEWEST_STATES, standard_error
 from crackfront.core import jkr
 from crackfront.core.arrays import Array
 from crackfront.core.cycle.record import CycleRecord
-from crackfront.core.geometry.line import LineState
+from crackfront.core.geometry.base import State
 from crackfront.core.geometry.sphere import ContactState
 from crackfront.core.variables import ADHESION, LATERAL, variable
 
@@ -77,19 +77,6 @@ class SteadyAdhesion(SteadyMeasures):
     sentence: str = ""
 
 
-def mean_adhesion(
-    record: CycleRecord, correlation_length: float, n_period: int | None, mean: float
-) -> SteadyAdhesion:
-    """Mean apparent work of adhesion of each branch, over its steady part or over a period.
-
-    Arguments as of :func:`period_adhesion`, without a number of states in a period as of
-    :func:`steady_adhesion`.
-    """
-    if n_period is None:
-        return steady_adhesion(record, correlation_length)
-    return period_adhesion(record, n_period, mean, correlation_length)
-
-
 def steady_adhesion(record: CycleRecord, correlation_length: float) -> SteadyAdhesion:
     """Mean apparent work of adhesion over the steady part of each branch, or why there is none.
 
@@ -115,7 +102,7 @@ def steady_adhesion(record: CycleRecord, correlation_length: float) -> SteadyAdh
 
 
 def steady_branches(
-    states: ContactState[Array] | LineState[Array],
+    states: State,
     place: Array,
     name: str,
     correlation_length: float,
@@ -197,12 +184,41 @@ def passing_adhesion(
     The mean of w_loc is in w_int, the period that of the tile along the motion.
     """
     states = record.states
-    branches, _, sentence = steady_branches(
-        states, states.mean_position, "places", correlation_length, period
-    )
+    columns = mean - states.pinning_force, states.mean_position, states.rms_position
+    return steady_means(states, columns, "places", correlation_length, period)
+
+
+def steady_means(
+    states: State,
+    columns: tuple[Array, Array, Array],
+    name: str,
+    correlation_length: float,
+    period: float = math.inf,
+) -> SteadyAdhesion:
+    """Mean apparent work of adhesion over the steady states of both branches at equal places.
+
+    Parameters
+    ----------
+    states : State
+        States of any kind of contact.
+    columns : three (n_state,) arrays
+        Apparent work of adhesion (Units: w_int), mean place of the front, and rms deviation from
+        it. (Units: length)
+    name : str
+        Plural noun of the places, for the sentence.
+    correlation_length : float
+        Travel of every site after which a state is steady. (Units: length)
+    period : float, optional
+        Largest range of places. (Units: length)
+
+    Returns
+    -------
+    SteadyAdhesion
+        NaN and a sentence if there are too few steady states.
+    """
+    branches, _, sentence = steady_branches(states, columns[1], name, correlation_length, period)
     if sentence:
         return _no_value((branches[0].size, branches[1].size), sentence)
-    columns = mean - states.pinning_force, states.mean_position, states.rms_position
     return _measures(columns, branches, correlation_length)
 
 

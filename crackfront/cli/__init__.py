@@ -94,11 +94,12 @@ def compile_solvers() -> None:
 
     from crackfront.simulate.line.line_loads import LineSchedule
     from crackfront.simulate.run_simulation import compile_solver
+    from crackfront.simulate.sphere.full_cycle import FullCycle
 
     announce_compilation()
     with multiprocessing.get_context("spawn").Pool(1) as pool:
         line = pool.apply_async(compile_solver, ("newton", LineSchedule))
-        compile_solver("newton")
+        compile_solver("newton", FullCycle)
         line.get()
 
 

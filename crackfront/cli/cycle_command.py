@@ -181,9 +181,8 @@ def cycle(
     from crackfront.simulate.provenance import provenance
     from crackfront.simulate.storage import refuse_no_file, write_dataset
     from crackfront.surfaces.given_surface import read_field
-    from crackfront.surfaces.loop_setup import LoopContact, LoopNumerics
-    from crackfront.surfaces.loops import loop_dataset
-    from crackfront.surfaces.pressed_sphere import PressedSphere
+    from crackfront.surfaces.loop_setup import LoopNumerics
+    from crackfront.surfaces.loops import loop_contact, loop_dataset
     from crackfront.surfaces.straight_front import straight_front
 
     refuse_no_file(output)
@@ -194,12 +193,11 @@ def cycle(
         refuse_unwritable(path.parent)
     solution = named_solver(solver, DEFAULT_TOLERANCE)
     surface = read_field(field_file)
-    contact: LoopContact = PressedSphere(surface)
-    if spring is not None:
-        contact = straight_front(surface, spring)
+    pressed = surface if spring is None else straight_front(surface, spring)
+    contact = loop_contact(pressed, max_penetration)
     step = (DEFAULT_STEP if loads is None else math.inf) if step is None else step
     numerics = LoopNumerics(error, sites, samples)
-    setup = contact.setup(loads, max_penetration, step, numerics)
+    setup = contact.setup(loads, step, numerics)
     solution = replace(solution, tolerance=setup.tolerance)
     key = _key(field_file, spring, loads, max_penetration, step, numerics, solver, record)
     keeper = _States(output, key, setup.field.geometry)
@@ -284,7 +282,8 @@ class _States:
         if sentence := set_aside_if_damaged(self.path):
             click.echo(f"{sentence}; the cycle begins anew", err=True)
             return None
-        found = known_checkpoint(read_dataset(self.path), self._key, self.path)
+        states = self._geometry.state_type
+        found = known_checkpoint(read_dataset(self.path), self._key, states, self.path)
         if found is None:
             raise ValueError(
                 f"{self.path} holds the states of another cycle, of another field, other options "

@@ -211,13 +211,15 @@ def fit_of_sweep(configuration: Path) -> SweepFit:
 def _fitted(sweep: Sweep, store: Store) -> SweepFit:
     """Fit of a sweep, always the same for the same table."""
     from crackfront.analysis.sweep_fit import fit_sweep
+    from crackfront.simulate.line.line_loads import LineLoad
 
+    loads = sweep.schedule
     return fit_sweep(
         store.table(sweep),
         **asdict(sweep.fit),
         seed=sweep.seed,
         kind=sweep.kind,
-        uncorrelated=sweep.schedule.uncorrelated,
+        uncorrelated=isinstance(loads, LineLoad) and loads.uncorrelated,
         watched=lambda spectra: with_progress(spectra, len(spectra), "spectra"),
     )
 

@@ -86,9 +86,14 @@ class _KernelCache(FunctionCache):  # type: ignore[misc]
         return compiled
 
     def save_overload(self, signature: Any, compiled: CompileResult) -> None:
-        """Keep the version for a signature, if the disk has room for it."""
-        with contextlib.suppress(OSError):
-            super().save_overload(signature, compiled)
+        """Keep the version for a signature, if the disk has room for it.
+
+        Versions for a geometry outside of `core` are not kept: the folder is not named after its
+        source, and another process may be unable to import it.
+        """
+        if all(map(_is_of_core, compiled.signature.args)):
+            with contextlib.suppress(OSError):
+                super().save_overload(signature, compiled)
 
     def _forget(self) -> None:
         """Empty the index of the function, or else do without the cache."""
@@ -96,6 +101,15 @@ class _KernelCache(FunctionCache):  # type: ignore[misc]
             self.flush()
         except OSError:
             self.disable()
+
+
+def _is_of_core(kind: types.Type) -> bool:
+    """Whether the named tuples in the type of an argument are all from `core`."""
+    if not isinstance(kind, types.BaseNamedTuple):
+        return True
+    return kind.instance_class.__module__.startswith("crackfront.core.") and all(
+        map(_is_of_core, kind.types)
+    )
 
 
 @functools.cache

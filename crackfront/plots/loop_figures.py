@@ -22,6 +22,7 @@ from crackfront.core.variables import FORCE, LATERAL
 from crackfront.plots.axis_units import REDUCED, AxisUnits
 from crackfront.plots.parts import PointStyle, draw_arrow, name_without_spring
 from crackfront.plots.style import BLUE, COLUMN, PAGE, VERMILION, blank_figure, house_style
+from crackfront.simulate.line.line_loads import LineSchedule
 
 if TYPE_CHECKING:
     from crackfront.simulate.run_simulation import SimulationResult
@@ -68,18 +69,19 @@ def simulation_figure(result: SimulationResult) -> Figure:
     simulation, states = result.simulation, result.record.states
     energy, kind = result.measures.e_el, simulation.kind
     name = simulation.spectrum_name
-    if isinstance(states, LineState):
-        spring = simulation.schedule.spring / simulation.correlation_length
+    schedule = simulation.schedule
+    if isinstance(schedule, LineSchedule):
+        spring = schedule.spring / simulation.correlation_length
         name = rf"{name_without_spring(name)}, $L_\kappa = {spring:.3g}\,\xi$"
     title = (
         rf"{name}, $e_\mathrm{{el}} = {simulation.elastic_energy:.3g}\,w_\mathrm{{int}}$, "
         f"realisation {simulation.realisation}"
     )
-    if isinstance(states, LineState):
+    if isinstance(schedule, LineSchedule):
         with house_style():
             figure = blank_figure(COLUMN, 0.72 * COLUMN)
             axes = figure.add_subplot(title=title)
-            draw_pinning(axes, states, simulation.schedule.n_period, elastic_energy=energy)
+            draw_pinning(axes, states, schedule.n_period, elastic_energy=energy)
             return figure
     steady = steady_adhesion(result.record, simulation.correlation_length)
     works, window = (steady.w_appr, steady.w_retr), (steady.lowest_radius, steady.highest_radius)

@@ -1,22 +1,61 @@
-"""The interface of a kind of contact in simulations: a class of its loads."""
+"""The interface of a kind of contact in simulations, and how to add a kind.
+
+A kind of contact is one file or folder. `Simulation.schedule` is an instance of its class, and no
+other code asks which kind it is. `tests/simulate/test_third_contact.py` adds a cylinder in one
+file. A new kind must provide the following:
+
+1. Its geometry: the named tuple, the state and the compiled functions that
+   :mod:`crackfront.core.geometry.base` lists. Other loads of a sphere or a line use those of
+   `core/geometry`.
+2. A frozen dataclass that derives from :class:`Schedule`. Its fields and its `load_name` are part
+   of the key of a simulation. Keys stay the same if a later field has a default.
+3. The problem, :class:`ContactTile`: the sizes of front and tile, the work of adhesion, the field.
+4. The loads, :class:`Loads`: a run from load to load, and the shortest loads of the kind.
+5. The result, :class:`Averages`: the works of adhesion of a run, and the size of the fronts that
+   they average.
+6. The forecast, :class:`Forecast`: the number of states, which decides the cost, and the stiffness
+   with which the edge is held, which decides k by the law.
+7. If a contact has a largest penetration, also :class:`Pressed`: sweeps advise to penetrate deeper.
+   If springs of a constant length hold its front, also :class:`OnSprings`: tables have the length.
+8. If the loads of a sweep depend on the surface, a second dataclass that derives from
+   :class:`SurfaceLoads`; else a sweep has the :class:`Schedule` itself.
+9. For configurations, its keys in `LoadSection` of `sweep/sections.py`. For `run_loop` and
+   `crackfront cycle`, a :class:`crackfront.surfaces.loop_setup.LoopContact`.
+
+Lengths are in the unit of the spectrum, works of adhesion in w_int where nothing else is said.
+"""
 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Protocol
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, ClassVar, NamedTuple
 
 from crackfront.core.adhesion import AdhesionMap, FieldKind
 from crackfront.core.cycle.record import CycleRecord, Recorder
-from crackfront.core.field.fields import Interpolation, TileField
-from crackfront.core.geometry.base import Geometry, fast_site_count
+from crackfront.core.field.fields import Field, TileField
+from crackfront.core.geometry.base import Geometry
 from crackfront.core.solver.relax import Solver
 from crackfront.core.spectrum import Spectrum
-from crackfront.simulate.laws import sphere_size
-from crackfront.simulate.tiles import RandomSurface, gaussian_adhesion
+from crackfront.simulate.tiles import Fineness, RandomSurface, Resolution
 
 if TYPE_CHECKING:
     from crackfront.analysis.steady_adhesion import SteadyAdhesion
     from crackfront.simulate.numerics import Numerics
+    from crackfront.simulate.run_simulation import SimulationResult
+    from crackfront.simulate.simulation import Simulation
+
+
+@dataclass(frozen=True, slots=True)
+class Problem:
+    """What a front moves over."""
+
+    field: Field
+    """Work of adhesion along its rays, with the geometry."""
+    correlation_length: float
+    """Correlation length of w_loc. (Units: reduced lateral length)"""
+    elastic_energy: float
+    """Requested e_el. (Units: w_int)"""
 
 
 class ExpectedMotion(NamedTuple):
@@ -27,144 +66,71 @@ class ExpectedMotion(NamedTuple):
     """Way of a smooth front from state to state, in correlation lengths of w_loc."""
 
 
-class SweepLoad(Protocol):
-    """Load of all simulations of a sweep; a :class:`Schedule` is one that all of them share."""
-
-    @property
-    def max_penetration(self) -> float:
-        """Largest penetration of a sphere (Units: reduced vertical length); else 0."""
-
-    @property
-    def uncorrelated(self) -> bool:
-        """Whether sites are independent of each other, the limit of weak disorder."""
-
-    def usual_size(self, spectrum: Spectrum) -> float:
-        """Size of a front for choosing settings, as in :mod:`crackfront.simulate.laws`."""
-
-    def for_surface(
-        self,
-        kind: FieldKind,
-        spectrum: Spectrum,
-        elastic_energy: float,
-        spring: float,
-        numerics: Numerics,
-    ) -> Schedule:
-        """Loads on the surfaces of one spectrum, amplitude and spring of the sweep."""
-
-
-class Schedule(ABC):
-    """Loads of a kind of contact, with all that simulations need of this kind.
-
-    A kind is a frozen dataclass in a folder of its own. Its fields enter the keys of simulations.
-    It has these attributes, the abstract methods, and others of them where the default is another.
-    """
+class ContactTile(ABC):
+    """The problem: sizes of the front and the tile, and the field on it."""
 
     __slots__ = ()
-
-    load_name: ClassVar[str]
-    """What keys of simulations call this kind of load, whatever its class is named."""
-    max_penetration: float
-    """Largest penetration of a sphere; else 0. (Units: reduced vertical length)"""
-    spring: float
-    """Length of the springs of a straight front; else NaN. (Units: length)"""
-    uncorrelated: bool
-    """Whether sites are independent of each other, the limit of weak disorder."""
-
-    @property
-    @abstractmethod
-    def n_period(self) -> int | None:
-        """States at the end of each branch that are averaged; None where travel decides."""
-
-    # The contact and its surface.
 
     @property
     @abstractmethod
     def front_length(self) -> float:
         """Length of the longest front that is smooth (Units: length)."""
 
-    def usual_size(self, spectrum: Spectrum) -> float:
-        """Size of a front for which settings are chosen, by default that of a sphere."""
-        return sphere_size(spectrum)
+    @abstractmethod
+    def resolution(self, fineness: Fineness) -> Resolution:
+        """Sizes of front and tile that are as fine as requested; they are part of the key."""
 
-    def site_count(self, requested: int | None, least: float, n_point: int) -> int:
-        """Sites of a front: as requested, else the least, on a tile of so many points along it."""
-        return requested or fast_site_count(least)
-
-    def fitted(self, side: float, spacing: float) -> tuple[float, float]:
-        """Side of the tile along the front, of a least one, and distance of samples, of a largest.
-
-        (Units: length)
-        """
-        return side, spacing
-
-    def tile(self, n_point: int, side: float) -> tuple[tuple[int, int], tuple[float, float]]:
-        """Points and sides along x and y of a tile with so many points on its side along y."""
-        return (n_point, n_point), (side, side)
+    @abstractmethod
+    def tile(self, sizes: Resolution) -> tuple[tuple[int, int], tuple[float, float]]:
+        """Points and sides of the tile along x and y, of equal pixels (Units: length)."""
 
     @abstractmethod
     def geometry(self, n_site: int) -> Geometry:
-        """Contact, whose springs do not pull at w_int."""
+        """Contact with a front of so many sites, without a tile."""
 
+    @abstractmethod
     def adhesion(self, surface: RandomSurface) -> AdhesionMap:
-        """Work of adhesion on the tile of a surface, by default that of a Gaussian one."""
-        return gaussian_adhesion(surface)
+        """Work of adhesion on the tile of a surface."""
 
     @abstractmethod
-    def field(
-        self, adhesion: AdhesionMap, n_site: int, spacing: float, interpolation: Interpolation
-    ) -> TileField:
-        """Field of a tile, as of :func:`crackfront.core.geometry.sphere.contact_field`."""
+    def field(self, adhesion: AdhesionMap, sizes: Resolution) -> TileField:
+        """Field of a tile that no front leaves under these loads."""
 
-    # The run.
 
-    def for_surface(self, *_: object) -> Schedule:
-        """Loads on one surface, by default the same on all."""
-        return self
+class Loads(ABC):
+    """A run from load to load."""
+
+    __slots__ = ()
+
+    load_name: ClassVar[str]
+    """Name of this kind of load in keys, whatever its class is named."""
 
     @abstractmethod
-    def run(
-        self,
-        field: Any,
-        solver: Solver | None,
-        recorder: Recorder,
-        *,
-        correlation_length: float,
-        elastic_energy: float,
-    ) -> CycleRecord:
-        """States of the whole load on a field of a correlation length and an e_el (w_int)."""
+    def run(self, problem: Problem, solver: Solver | None, recorder: Recorder) -> CycleRecord:
+        """Record of a front under all loads: `recorder.run`, then `recorder.record`.
+
+        Its status is `LOST_CONTACT` after a full cycle and `STEADY` where all loads of other
+        kinds were visited: rows have works of adhesion for these statuses alone.
+        """
 
     @classmethod
     @abstractmethod
     def smallest(cls) -> Schedule:
         """Shortest loads of the kind, on which its kernels are compiled."""
 
-    # What is known of it before and after.
+
+class Averages(ABC):
+    """The works of adhesion that a run gives."""
+
+    __slots__ = ()
 
     @abstractmethod
-    def expected_motion(self, surface: RandomSurface) -> ExpectedMotion:
-        """States that these loads are expected to find on a surface."""
+    def steady_adhesion(self, result: SimulationResult) -> SteadyAdhesion:
+        """Apparent works of adhesion of both branches, or a sentence that says why not.
 
-    @abstractmethod
-    def spring_at(self, work_of_adhesion: float) -> float:
-        """Length L_kappa of the springs that hold the front at the largest load (Units: length).
-
-        The work of adhesion (Units: w_int) is that of a branch. ValueError where nothing holds it.
+        A kind averages over its steady states or over a whole period of its tile;
+        :mod:`crackfront.analysis.steady_adhesion` has functions for both.
         """
-
-    @abstractmethod
-    def steady_load(
-        self, surface: RandomSurface, works: tuple[float, float], travel: float, n_state: int
-    ) -> float:
-        """Largest load from which on so many states of both branches on a surface are steady.
-
-        Works of adhesion of approach and retraction (Units: w_int) and the travel after which a
-        branch is steady (Units: length) are expected ones. Minus infinity where any load is enough.
-        (Units: that of the load)
-        """
-
-    @abstractmethod
-    def refuse_few_sites(self, name: str, larkin_length: float, site: float) -> None:
-        """Raise ValueError if sites of this distance cannot resolve a spectrum of this name."""
 
     @abstractmethod
     def averaged_sizes(
@@ -175,3 +141,87 @@ class Schedule(ABC):
         Sizes are as in :mod:`crackfront.simulate.laws`; states closer than a correlation
         length of w_loc count as one.
         """
+
+    @abstractmethod
+    def usual_size(self, spectrum: Spectrum) -> float:
+        """Size of a front for which settings are chosen, as in :mod:`crackfront.simulate.laws`."""
+
+
+class Forecast(ABC):
+    """What is expected before a run."""
+
+    __slots__ = ()
+
+    @abstractmethod
+    def expected_motion(self, surface: RandomSurface) -> ExpectedMotion:
+        """States that these loads are expected to find on a surface."""
+
+    @abstractmethod
+    def spring_at(self, work_of_adhesion: float) -> float:
+        """Length L_kappa of the springs that hold the front at the largest load (Units: length).
+
+        The work of adhesion (Units: w_int) is that of a branch. ValueError if nothing holds it.
+        """
+
+
+class Schedule(ContactTile, Loads, Averages, Forecast):
+    """Loads of a kind of contact, with all that simulations need of this kind."""
+
+    __slots__ = ()
+
+
+class Pressed(ABC):
+    """Loads up to a largest penetration."""
+
+    __slots__ = ()
+
+    max_penetration: float
+    """Largest penetration. (Units: reduced vertical length)"""
+
+    @abstractmethod
+    def steady_penetration(
+        self, surface: RandomSurface, works: tuple[float, float], travel: float, n_state: int
+    ) -> float:
+        """Largest penetration from which on so many states of both branches are steady.
+
+        Works of adhesion of approach and retraction (Units: w_int) and the travel after which a
+        branch is steady (Units: length) are expected ones. (Units: reduced vertical length)
+        """
+
+
+class OnSprings(ABC):
+    """A front on springs of a constant length."""
+
+    __slots__ = ()
+
+    spring: float
+    """Length of the springs, L_kappa. (Units: length)"""
+
+
+class SurfaceLoads(ABC):
+    """Rule of a sweep that makes loads for each spectrum and amplitude, a frozen dataclass."""
+
+    __slots__ = ()
+
+    @abstractmethod
+    def usual_size(self, spectrum: Spectrum) -> float:
+        """Size of a front for which settings are chosen, as :meth:`Averages.usual_size`."""
+
+    @abstractmethod
+    def for_surface(
+        self,
+        kind: FieldKind,
+        spectrum: Spectrum,
+        elastic_energy: float,
+        spring: float,
+        numerics: Numerics,
+    ) -> Schedule:
+        """Loads on the surfaces of one spectrum, amplitude and spring of the sweep."""
+
+    @abstractmethod
+    def refuse_unresolved(self, simulation: Simulation) -> None:
+        """Raise ValueError if the numerics are too coarse for loads that this rule made."""
+
+
+SweepLoad = Schedule | SurfaceLoads
+"""Loads of a sweep: those of all simulations, or a rule that makes them for each surface."""

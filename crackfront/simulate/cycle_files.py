@@ -11,7 +11,7 @@ import xarray as xr
 from crackfront.core.cycle.record import Checkpoint, CycleRecord
 from crackfront.core.geometry.base import Geometry, State
 from crackfront.core.geometry.line import LineState
-from crackfront.core.geometry.sphere import ContactState, sphere
+from crackfront.core.geometry.sphere import ContactState
 from crackfront.core.outcome import Status
 from crackfront.core.variables import STEP, Variable, variables
 from crackfront.core.versions import PHYSICS_VERSION
@@ -31,8 +31,8 @@ _FRONTS = {
 }
 """Names and meanings of the fronts of a checkpoint, by their fields."""
 
-_STATES: tuple[type[State], ...] = (ContactState, LineState)
-"""Records of the states of all geometries; the load of one of them is in a file of curves."""
+_LOOP_STATES: tuple[type[State], ...] = (ContactState, LineState)
+"""Records of the states of loops on a user's surface; a file has the load of one of them."""
 
 _STEP = Variable(STEP, (STEP,), "1", "number of the state")
 
@@ -46,11 +46,9 @@ def write_checkpoint(folder: Path, name: str, partial: PartialRun, origin: Prove
     return write_named_by_digest(folder, name, dataset.assign_attrs(about), origin)
 
 
-def checkpoint_dataset(
-    checkpoint: Checkpoint, key: str, geometry: Geometry | None = None
-) -> xr.Dataset:
-    """Dataset of the checkpoint of a key; the geometry as of :func:`cycle_dataset`."""
-    front, _ = (geometry or sphere(checkpoint.front.size)).variables
+def checkpoint_dataset(checkpoint: Checkpoint, key: str, geometry: Geometry) -> xr.Dataset:
+    """Dataset of the checkpoint of a key."""
+    front, _ = geometry.variables
     fronts = {
         name: labelled(replace(front, name=name, long_name=text), getattr(checkpoint, field))
         for field, (name, text) in _FRONTS.items()
@@ -61,31 +59,33 @@ def checkpoint_dataset(
 def read_checkpoint(path: Path, simulation: Simulation) -> PartialRun:
     """Stored checkpoint of a simulation; UnreadableFileError if it is of another one."""
     dataset = read_dataset(path)
-    checkpoint = known_checkpoint(dataset, simulation.key, path)
+    states = simulation.geometry.state_type
+    checkpoint = known_checkpoint(dataset, simulation.key, states, path)
     if checkpoint is None or dataset.attrs["physics_version"] != PHYSICS_VERSION:
         raise UnreadableFileError(f"{path} is no checkpoint of {simulation.label}; move it away")
     costs = (float(dataset.attrs[name]) for name in ("seconds", "cpu_seconds"))
     return PartialRun(simulation, checkpoint, *costs)
 
 
-def known_checkpoint(dataset: xr.Dataset, key: str, place: Path) -> Checkpoint | None:
+def known_checkpoint(
+    dataset: xr.Dataset, key: str, states: type[State], place: Path
+) -> Checkpoint | None:
     """Checkpoint that :func:`checkpoint_dataset` made a dataset of; None where its key differs."""
     names = {field: name for field, (name, _) in _FRONTS.items()}
     if dataset.attrs.get("key") != key or not dataset.variables.keys() >= {*names.values()}:
         return None
     fronts = {field: np.asarray(dataset[name]) for field, name in names.items()}
-    return Checkpoint(cycle_record(dataset, place), **fronts)
+    return Checkpoint(cycle_record(dataset, place, states), **fronts)
 
 
-def cycle_dataset(record: CycleRecord, geometry: Geometry | None = None) -> xr.Dataset:
-    """Labelled curves of a record, of the contact of a sphere by default."""
+def cycle_dataset(record: CycleRecord, geometry: Geometry) -> xr.Dataset:
+    """Labelled curves of a record."""
     curves = labelled_fields(record.states, STEP) | labelled_fields(record)
     curves[STEP] = labelled(_STEP, np.arange(record.states.direction.size))
     if record.fronts is not None:
-        contact = geometry or sphere(record.fronts.shape[1])
-        front, site = contact.variables
+        front, site = geometry.variables
         curves[front.name] = labelled(replace(front, dims=(STEP, *front.dims)), record.fronts)
-        curves[site.name] = labelled(site, contact.sites)
+        curves[site.name] = labelled(site, geometry.sites)
     load = variables(type(record.states))[0].name
     attributes: dict[str, str | float] = {
         "title": "states of a crack front from load to load",
@@ -98,10 +98,16 @@ def cycle_dataset(record: CycleRecord, geometry: Geometry | None = None) -> xr.D
     return xr.Dataset(curves, attrs=attributes)
 
 
-def cycle_record(dataset: xr.Dataset, place: Path | str = "the dataset") -> CycleRecord:
-    """Record that a dataset of :func:`cycle_dataset` holds, or `UnreadableFileError`."""
-    known = (kind for kind in _STATES if variables(kind)[0].name in dataset)
-    states = next(known, ContactState)
+def cycle_record(
+    dataset: xr.Dataset, place: Path | str = "the dataset", states: type[State] | None = None
+) -> CycleRecord:
+    """Record in a dataset of :func:`cycle_dataset`, or `UnreadableFileError`.
+
+    Its states are by default those of a loop on a user's surface, of a sphere or a straight front.
+    """
+    if states is None:
+        loops = (kind for kind in _LOOP_STATES if variables(kind)[0].name in dataset)
+        states = next(loops, ContactState)
     names = [item.name for item in variables(states)]
     missing = [name for name in names if name not in dataset]
     name = str(dataset.attrs.get("status", "")).upper()

@@ -10,14 +10,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from crackfront.analysis.run_measures import RunMeasures
+from crackfront.analysis.steady_adhesion import SteadyAdhesion
 from crackfront.core.adhesion import chemical_adhesion
 from crackfront.core.cycle.record import Checkpoint, CycleRecord, Recorder
 from crackfront.core.resources import peak_memory
 from crackfront.core.solver.relax import SOLVERS
 from crackfront.core.solver.window import HALF_BAND
-from crackfront.simulate.contact import Schedule
+from crackfront.simulate.contact import Problem, Schedule
 from crackfront.simulate.simulation import Simulation, simulation_adhesion, simulation_field
-from crackfront.simulate.sphere.full_cycle import FullCycle
+from crackfront.simulate.tiles import Resolution
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,6 +28,16 @@ class SimulationResult:
     simulation: Simulation
     record: CycleRecord
     measures: RunMeasures
+
+    @property
+    def mean_adhesion(self) -> float:
+        """Mean work of adhesion of the tile (Units: w_int)."""
+        return 1 - self.measures.e_el if self.simulation.kind == "roughness" else 1.0
+
+    @property
+    def steady_adhesion(self) -> SteadyAdhesion:
+        """Apparent works of adhesion of both branches, as its kind of contact averages them."""
+        return self.simulation.schedule.steady_adhesion(self)
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,7 +74,11 @@ def run_simulation(
             keep(lambda: PartialRun(simulation, recorder.checkpoint(), *costs()))
 
     adhesion = simulation_adhesion(simulation)
-    field = simulation_field(simulation, adhesion)
+    problem = Problem(
+        simulation_field(simulation, adhesion),
+        simulation.correlation_length,
+        simulation.elastic_energy,
+    )
     measured = adhesion.e_el, adhesion.w_rms, float(np.mean(adhesion.work_of_adhesion < 0))
     # The run holds the splines alone, not the tile as well.
     del adhesion
@@ -73,25 +88,20 @@ def run_simulation(
         observers=[observe],
         resume=None if resume is None else resume.checkpoint,
     )
-    record = simulation.schedule.run(
-        field,
-        simulation.solver,
-        recorder,
-        correlation_length=simulation.correlation_length,
-        elastic_energy=simulation.elastic_energy,
-    )
+    record = simulation.schedule.run(problem, simulation.solver, recorder)
     measures = RunMeasures(*measured, *costs(), peak_memory())
     return SimulationResult(simulation, record, measures)
 
 
 @functools.cache
-def compile_solver(name: str, kind: type[Schedule] = FullCycle) -> None:
+def compile_solver(name: str, kind: type[Schedule]) -> None:
     """Compile what a simulation of a kind calls, or load it, once a process, on a smooth tile.
 
     The front is longer than those that are left to the reference.
     """
     schedule = kind.smallest()
     smooth = chemical_adhesion(np.zeros((4, 4)), pixel=1.0)
-    field = schedule.field(smooth, 4 * HALF_BAND, 0.1, "cubic")
+    sizes = Resolution(4 * HALF_BAND, 0.1, "cubic", tile_side=4.0, n_point=4)
+    problem = Problem(schedule.field(smooth, sizes), correlation_length=1.0, elastic_energy=0.0)
     solver, recorder = SOLVERS[name](1e-3), Recorder(energy=True)
-    schedule.run(field, solver, recorder, correlation_length=1.0, elastic_energy=0.0)
+    schedule.run(problem, solver, recorder)

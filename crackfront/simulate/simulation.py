@@ -4,41 +4,25 @@ from __future__ import annotations
 
 import hashlib
 import json
-import math
 from collections.abc import Collection
 from dataclasses import dataclass, fields
 from typing import Any, Literal
 
 import numpy as np
-from scipy.fft import next_fast_len
 
 from crackfront.core.adhesion import (
     AdhesionMap,
     FieldKind,
     correlation_length,
 )
-from crackfront.core.field.fields import Interpolation, TileField
+from crackfront.core.field.fields import TileField
 from crackfront.core.geometry.base import Geometry
 from crackfront.core.solver.relax import Solver, named_solver
 from crackfront.core.spectrum import Spectrum
 from crackfront.simulate.contact import Schedule
 from crackfront.simulate.numerics import Numerics
 from crackfront.simulate.settings import Settings
-from crackfront.simulate.tiles import RandomSurface
-
-
-@dataclass(frozen=True, slots=True)
-class Resolution:
-    """Sizes that the numerics give to one spectrum: sites, samples along a ray, points of the tile.
-
-    `spacing` is the distance of samples, `tile_side` the side. (Units: reduced lateral length)
-    """
-
-    n_angle: int
-    spacing: float
-    interpolation: Interpolation
-    tile_side: float
-    n_point: int
+from crackfront.simulate.tiles import Fineness, RandomSurface, Resolution
 
 
 @dataclass(frozen=True, slots=True)
@@ -120,7 +104,7 @@ class Simulation:
     @property
     def tile(self) -> tuple[tuple[int, int], tuple[float, float]]:
         """Points and sides of the tile, along x and y (Units: reduced lateral length)."""
-        return self.schedule.tile(self.resolution.n_point, self.resolution.tile_side)
+        return self.schedule.tile(self.resolution)
 
     @property
     def surface(self) -> RandomSurface:
@@ -164,14 +148,13 @@ def simulation_field(simulation: Simulation, adhesion: AdhesionMap | None = None
     """Field of a simulation, on its tile if that has been made already."""
     if adhesion is None:
         adhesion = simulation_adhesion(simulation)
-    sizes = simulation.resolution
-    return simulation.schedule.field(adhesion, sizes.n_angle, sizes.spacing, sizes.interpolation)
+    return simulation.schedule.field(adhesion, simulation.resolution)
 
 
 def resolution(
     spectrum: Spectrum, numerics: Numerics, settings: Settings, schedule: Schedule
 ) -> Resolution:
-    """Sizes of the front and of the tile for one spectrum; those of a line are of its schedule.
+    """Sizes of the front and of the tile for one spectrum.
 
     Examples
     --------
@@ -183,20 +166,8 @@ def resolution(
     >>> resolution(flat, numerics, settings, FullCycle(max_penetration=1.0, step=0.1))
     Resolution(n_angle=240, spacing=0.025, interpolation='cubic', tile_side=2.0, n_point=80)
     """
-    cutoff = spectrum.short_cutoff
-    sites = schedule.front_length / cutoff * settings.angles_per_cutoff
-    side, spacing = schedule.fitted(
-        numerics.tile_side(spectrum), cutoff / settings.samples_per_cutoff
-    )
-    points = math.ceil(side / cutoff * settings.pixels_per_cutoff * (1 - 1e-12))
-    n_point = next_fast_len(points, real=True)
-    return Resolution(
-        n_angle=schedule.site_count(settings.angles, sites, n_point),
-        spacing=spacing,
-        interpolation=settings.interpolation,
-        tile_side=side,
-        n_point=n_point,
-    )
+    fineness = Fineness(spectrum.short_cutoff, numerics.tile_side(spectrum), settings)
+    return schedule.resolution(fineness)
 
 
 def simulation_of(

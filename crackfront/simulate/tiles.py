@@ -1,4 +1,4 @@
-"""Random surfaces: heights and works of adhesion on periodic tiles."""
+"""Random surfaces on periodic tiles, their works of adhesion, and the sizes of front and tile."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.fft import next_fast_len
 
 from crackfront.core.adhesion import (
     AdhesionMap,
@@ -15,8 +16,50 @@ from crackfront.core.adhesion import (
     rough_adhesion,
 )
 from crackfront.core.arrays import Array
+from crackfront.core.field.fields import Interpolation
+from crackfront.core.geometry.base import fast_site_count
 from crackfront.core.spectrum import Spectrum
 from crackfront.core.synthesis import gaussian_field, uncorrelated_rows
+from crackfront.simulate.settings import Settings
+
+
+@dataclass(frozen=True, slots=True)
+class Resolution:
+    """Sizes that the numerics give to one spectrum: sites, samples along a ray, points of the tile.
+
+    `spacing` is the distance of samples, `tile_side` the side. (Units: reduced lateral length)
+    """
+
+    n_angle: int
+    spacing: float
+    interpolation: Interpolation
+    tile_side: float
+    n_point: int
+
+
+@dataclass(frozen=True, slots=True)
+class Fineness:
+    """How finely the numerics resolve one spectrum."""
+
+    short_cutoff: float
+    """Shortest wavelength. (Units: reduced lateral length)"""
+    tile_side: float
+    """Least side of the tile. (Units: reduced lateral length)"""
+    settings: Settings
+    """Sites, samples and points per short cutoff."""
+
+    def sizes(self, side: float, front_length: float) -> Resolution:
+        """Sizes on a tile of a side along the front, for a front of a length (Units: length)."""
+        settings, cutoff = self.settings, self.short_cutoff
+        points = math.ceil(side / cutoff * settings.pixels_per_cutoff * (1 - 1e-12))
+        sites = front_length / cutoff * settings.angles_per_cutoff
+        return Resolution(
+            n_angle=settings.angles or fast_site_count(sites),
+            spacing=cutoff / settings.samples_per_cutoff,
+            interpolation=settings.interpolation,
+            tile_side=side,
+            n_point=next_fast_len(points, real=True),
+        )
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,4 +1,17 @@
-"""What a run on a user's surface begins with, whatever the kind of contact."""
+"""The interface of a kind of contact with a user's surface, and how to add a kind.
+
+`run_loop` and `crackfront cycle` run a :class:`LoopContact`. A new kind must provide:
+
+1. A frozen dataclass that derives from :class:`LoopContact`, with the surface and what else
+   determines the contact. Its method `setup` raises a ValueError for what the kind cannot do.
+2. A frozen dataclass that derives from :class:`LoopSetup`: what `setup` returns, and how the states
+   of a run are averaged.
+3. A function for users that checks its arguments, such as
+   :func:`crackfront.surfaces.straight_front.straight_front`, and its options in
+   `cli/cycle_command.py`.
+4. If its states have variables of their own, their class in `_LOOP_STATES` of
+   `simulate/cycle_files.py`, by which files are read.
+"""
 
 from __future__ import annotations
 
@@ -9,6 +22,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 from numbers import Integral
 
+from crackfront.analysis.steady_adhesion import SteadyAdhesion
 from crackfront.core.arguments import refuse_no_numbers, refuse_other_type
 from crackfront.core.arrays import Array
 from crackfront.core.bounds import (
@@ -19,18 +33,15 @@ from crackfront.core.bounds import (
     refuse_outside,
 )
 from crackfront.core.cycle.follow import Load
+from crackfront.core.cycle.record import CycleRecord
 from crackfront.core.field.fields import TileField
-from crackfront.simulate.contact import Schedule
-from crackfront.simulate.simulation import Simulation
 from crackfront.surfaces.random_surface import TileMeasures, refuse_no_fraction
 
 
 @dataclass(frozen=True, slots=True)
-class LoopSetup:
+class LoopSetup(ABC):
     """Field, first front and loads of a run, with what is known of it beforehand."""
 
-    kind: type[Schedule]
-    """Loads whose kernels serve this run."""
     field: TileField
     front: Array
     """First front, (n_site,). (Units: reduced lateral length)"""
@@ -44,15 +55,20 @@ class LoopSetup:
     """Tolerance of the solver."""
     measures: TileMeasures
     """Measures of the tile."""
-    period: float | None = None
-    """Period of the tile over which the branches are averaged at most; None for steady parts."""
-    simulation: Simulation | None = None
-    """One of the same sizes, whose numerical errors are known; where the spectrum is stated."""
-    load_stiffness: float | None = None
-    """Stiffness of the load against a front that is held, where a load step loses half of it times
-    the square of the step. (Units: reduced energy / length**2)"""
-    remark: str = ""
+    remark: str
     """A reservation about the result, as a sentence; empty if there is none."""
+
+    @abstractmethod
+    def steady_adhesion(self, record: CycleRecord) -> SteadyAdhesion:
+        """Apparent works of adhesion of both branches, or a sentence that says why not."""
+
+    def numerical_errors(self, steady: SteadyAdhesion) -> tuple[float, float]:
+        """Standard errors of w_appr and w_retr by the numerics (Units: w_int); NaN if unknown."""
+        return math.nan, math.nan
+
+    def comment_on_energy(self, record: CycleRecord, dissipated: Array) -> str:
+        """Which part of the dissipated energies the loads cause, as a sentence, or nothing."""
+        return ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,15 +115,11 @@ class LoopContact(ABC):
 
     @abstractmethod
     def setup(
-        self,
-        loads: tuple[float, ...] | None,
-        max_penetration: float | None,
-        step: float,
-        numerics: LoopNumerics,
+        self, loads: tuple[float, ...] | None, step: float, numerics: LoopNumerics
     ) -> LoopSetup:
-        """What a run begins with; arguments as of :func:`crackfront.run_loop`.
+        """What a run begins with.
 
-        Loads that are None lead up to the largest penetration and to pull-off. The step is the
+        Loads that are None are those of a full cycle, if the kind has one. The step is the
         largest difference of loads; infinity leaves them as they are.
         """
 

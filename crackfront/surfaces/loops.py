@@ -11,20 +11,13 @@ import numpy as np
 from xarray import DataArray, Dataset
 
 from crackfront.analysis.estimate import with_error
-from crackfront.analysis.steady_adhesion import (
-    SteadyAdhesion,
-    SteadyMeasures,
-    passing_adhesion,
-    steady_adhesion,
-)
+from crackfront.analysis.steady_adhesion import SteadyAdhesion, SteadyMeasures
 from crackfront.analysis.table import SweepAxes, SweepRow
 from crackfront.core.arguments import refuse_no_numbers, refuse_other_type
-from crackfront.core.arrays import Array
 from crackfront.core.cycle.follow import Load, front_at
 from crackfront.core.cycle.load_schedule import LoadSchedule
 from crackfront.core.cycle.record import CycleRecord, Recorder
 from crackfront.core.cycle.touch import first_touch
-from crackfront.core.geometry.base import State
 from crackfront.core.geometry.sphere import ContactState
 from crackfront.core.outcome import Direction
 from crackfront.core.resources import refuse_beyond_memory
@@ -34,9 +27,7 @@ from crackfront.core.variables import variables
 from crackfront.core.versions import PHYSICS_VERSION
 from crackfront.simulate.cycle_files import cycle_dataset
 from crackfront.simulate.labels import labelled, labelled_fields
-from crackfront.simulate.numerical_errors import stated_error
 from crackfront.simulate.provenance import __version__
-from crackfront.simulate.run_simulation import compile_solver
 from crackfront.surfaces.instabilities import measured_instabilities, resolved_motion
 from crackfront.surfaces.loop_setup import (
     LoopContact,
@@ -143,20 +134,19 @@ def run_loop(
     if not callable(progress):
         refuse_other_type("progress", progress, type(None), "a function of a state")
     visited = None if loads is None else load_values(loads)
-    if visited is None and max_penetration is None:
+    if visited is None and max_penetration is None and not isinstance(surface, LoopContact):
         max_penetration = 1.0
     if step is None:
         step = 0.02 if visited is None else math.inf
     solution = named_solver(solver, DEFAULT_TOLERANCE)
-    contact = surface if isinstance(surface, LoopContact) else PressedSphere(surface)
-    setup = contact.setup(visited, max_penetration, step, LoopNumerics(error, sites, samples))
+    contact = loop_contact(surface, max_penetration)
+    setup = contact.setup(visited, step, LoopNumerics(error, sites, samples))
     if fronts:
         refuse_beyond_memory(
             f"{setup.expected} fronts of {setup.front.size} sites",
             8.0 * setup.expected * setup.front.size,
             "set fronts=False, or take larger steps or a smaller max_penetration",
         )
-    compile_solver(solver, setup.kind)
     observers = [] if progress is None else [lambda recorder: progress(recorder.states[-1])]
     recorder = Recorder(fronts=fronts, energy=energy, observers=observers)
     solution = replace(solution, tolerance=setup.tolerance)
@@ -169,23 +159,31 @@ def run_loop(
     )
 
 
+def loop_contact(surface: DataArray | LoopContact, max_penetration: float | None) -> LoopContact:
+    """Contact of a loop; a sphere if it is a surface alone.
+
+    ValueError if another contact than a sphere has a largest penetration.
+    """
+    if not isinstance(surface, LoopContact):
+        return PressedSphere(surface, max_penetration)
+    if max_penetration is not None:
+        raise ValueError(
+            f"max_penetration is {max_penetration:g}, but only a sphere has one; give loads in "
+            "its place"
+        )
+    return surface
+
+
 def loop_dataset(record: CycleRecord, setup: LoopSetup) -> Dataset:
     """Labelled curves of a run, and measures of the whole."""
-    measures, simulation = setup.measures, setup.simulation
+    measures = setup.measures
     curves = cycle_dataset(record, setup.field.geometry)
     lost = record.dissipated_energy
-    if lost is not None and setup.load_stiffness is not None and np.nansum(lost) > 0:
-        comment = _comment_on_steps(record.states, lost, setup.load_stiffness)
+    if lost is not None and (comment := setup.comment_on_energy(record, lost)):
         curves["dissipated_energy"] = curves.dissipated_energy.assign_attrs(comment=comment)
     values = {name: getattr(measures, name) for name in ("e_el", "w_rms", "correlation_length")}
-    length = measures.correlation_length
-    if setup.period is None:
-        steady = steady_adhesion(record, length)
-    else:
-        steady = passing_adhesion(record, length, measures.mean, setup.period)
-    numerical = (math.nan, math.nan)
-    if simulation is not None and not steady.sentence:
-        numerical = stated_error(simulation, steady, length)
+    steady = setup.steady_adhesion(record)
+    numerical = setup.numerical_errors(steady)
     values["w_appr_numerical_error"], values["w_retr_numerical_error"] = numerical
     values |= {item.name: getattr(steady, item.name) for item in variables(SteadyMeasures)}
     result = _result_sentence(record, steady, setup.remark)
@@ -194,16 +192,6 @@ def loop_dataset(record: CycleRecord, setup: LoopSetup) -> Dataset:
         {name: labelled(replace(_KNOWN[name], dims=()), value) for name, value in values.items()}
     )
     return whole.drop_attrs(deep=False).assign_attrs(sentences | curves.attrs, kind=measures.kind)
-
-
-def _comment_on_steps(states: State, dissipated: Array, stiffness: float) -> str:
-    """How much of the dissipated energies is due to the size of the load steps, in words."""
-    loads = getattr(states, variables(type(states))[0].name)
-    added = stiffness / 2 * np.sum(np.diff(loads) ** 2)
-    return (
-        f"load steps add {added / np.nansum(dissipated):.2g} of the sum: half of the stiffness of "
-        "the springs times the square of each step, which smaller steps lower"
-    )
 
 
 def _result_sentence(record: CycleRecord, steady: SteadyAdhesion, remark: str) -> str:
@@ -289,7 +277,7 @@ def find_instabilities(
     if not 0 < travel < math.inf:
         raise ValueError(f"travel is {travel:g}; it must be positive and finite")
     numerics = LoopNumerics(error, sites, samples, usual_error=0.05)
-    contact = PressedSphere(surface).setup(None, max_penetration, step, numerics)
+    contact = PressedSphere(surface, max_penetration).setup(None, step, numerics)
     reach = travel * contact.measures.correlation_length
     if precision is None:
         precision = min(2e-5, step / 10, max(reach**2, _round_off(contact)))
@@ -300,7 +288,6 @@ def find_instabilities(
             f"{step / 10:g}"
         )
     _refuse_unresolved_motion(contact, travel, precision, direction)
-    compile_solver("newton")
     field, solver = contact.field, Newton(min(contact.tolerance, precision / 10))
     start = 0.0 if direction > 0 else max_penetration
     touched = front_at(field, first_touch(field), Load(start, 1), solver)

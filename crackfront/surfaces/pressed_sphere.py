@@ -8,15 +8,17 @@ from dataclasses import dataclass, replace
 
 from xarray import DataArray
 
+from crackfront.analysis.steady_adhesion import SteadyAdhesion, steady_adhesion
 from crackfront.core import jkr
 from crackfront.core.cycle.follow import Load
 from crackfront.core.cycle.load_schedule import LoadSchedule, protocol
+from crackfront.core.cycle.record import CycleRecord
 from crackfront.core.cycle.touch import checked_touch
 from crackfront.core.geometry.sphere import contact_field
 from crackfront.core.solver import DEFAULT_TOLERANCE
 from crackfront.simulate.costs import affordable_seconds
-from crackfront.simulate.numerical_errors import missed_error
-from crackfront.simulate.simulation import simulation_field
+from crackfront.simulate.numerical_errors import missed_error, stated_error
+from crackfront.simulate.simulation import Simulation, simulation_field
 from crackfront.simulate.sphere.full_cycle import FullCycle
 from crackfront.surfaces.given_surface import surface_adhesion
 from crackfront.surfaces.loop_setup import (
@@ -35,27 +37,44 @@ _SAMPLES = 2.0
 
 
 @dataclass(frozen=True, slots=True)
+class SphereSetup(LoopSetup):
+    """Setup of a sphere."""
+
+    simulation: Simulation | None
+    """One of the same sizes, whose numerical errors are known; None if no spectrum is stated."""
+
+    def steady_adhesion(self, record: CycleRecord) -> SteadyAdhesion:
+        """Means over the states of which every site has travelled a correlation length."""
+        return steady_adhesion(record, self.measures.correlation_length)
+
+    def numerical_errors(self, steady: SteadyAdhesion) -> tuple[float, float]:
+        """Errors by the laws of the spectrum, where the surface states it."""
+        if self.simulation is None or steady.sentence:
+            return math.nan, math.nan
+        return stated_error(self.simulation, steady, self.measures.correlation_length)
+
+
+@dataclass(frozen=True, slots=True)
 class PressedSphere(LoopContact):
     """A sphere, its apex above the centre of the periodic surface."""
 
     surface: DataArray
     """The surface, in reduced units."""
+    max_penetration: float | None = None
+    """Largest penetration of a full cycle, in place of loads. (Units: reduced vertical length)"""
 
     def setup(
-        self,
-        loads: tuple[float, ...] | None,
-        max_penetration: float | None,
-        step: float,
-        numerics: LoopNumerics,
-    ) -> LoopSetup:
+        self, loads: tuple[float, ...] | None, step: float, numerics: LoopNumerics
+    ) -> SphereSetup:
         """As :meth:`crackfront.surfaces.loop_setup.LoopContact.setup`."""
-        if (loads is None) == (max_penetration is None):
+        deepest = self.max_penetration
+        if (loads is None) == (deepest is None):
             raise ValueError("a sphere needs max_penetration or loads; give one of the two")
-        if max_penetration is not None:
-            way = LoadSchedule(max_penetration, step).loads()
+        if deepest is not None:
+            way = LoadSchedule(deepest, step).loads()
             # A smooth sphere comes off there; a rough one goes somewhat further.
-            n_state = 3 + (2 * max_penetration - jkr.pull_off_penetration()) / step
-            return self._setup(max_penetration, way, n_state, numerics)
+            n_state = 3 + (2 * deepest - jkr.pull_off_penetration()) / step
+            return self._setup(deepest, way, n_state, numerics)
         if loads is None or loads[0] < 0:
             raise ValueError(
                 f"loads begin with {(loads or (0.0,))[0]:g}; a sphere touches at penetration 0, so "
@@ -65,7 +84,7 @@ class PressedSphere(LoopContact):
 
     def _setup(
         self, deepest: float, way: Iterator[Load], n_state: float, numerics: LoopNumerics
-    ) -> LoopSetup:
+    ) -> SphereSetup:
         """Resolve the contact by the measured laws of errors, or else by the pixels of the tile."""
         adhesion = surface_adhesion(self.surface)
         radius, samples = jkr.equilibrium_radius(deepest), numerics.samples or _SAMPLES
@@ -109,8 +128,7 @@ class PressedSphere(LoopContact):
         if simulation is None:
             length = 2 * math.pi * radius
             remarks.append(remark_on_sites(field.geometry.n_site, length, measures))
-        return LoopSetup(
-            kind=FullCycle,
+        return SphereSetup(
             field=field,
             front=checked_touch(field, deepest),
             loads=way,

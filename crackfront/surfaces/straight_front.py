@@ -9,15 +9,18 @@ from itertools import chain
 import numpy as np
 from xarray import DataArray
 
+from crackfront.analysis.steady_adhesion import SteadyAdhesion, passing_adhesion
 from crackfront.core.adhesion import AdhesionMap
 from crackfront.core.arguments import refuse_no_numbers
+from crackfront.core.arrays import Array
 from crackfront.core.bounds import NUMBER, refuse_outside
 from crackfront.core.cycle.load_schedule import protocol
+from crackfront.core.cycle.record import CycleRecord
 from crackfront.core.geometry.line import initial_front, line_field
 from crackfront.core.solver import DEFAULT_TOLERANCE
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.simulate.costs import affordable_seconds
-from crackfront.simulate.line.line_loads import LAW_LENGTH, LineSchedule
+from crackfront.simulate.line.line_loads import LAW_LENGTH
 from crackfront.surfaces.given_surface import surface_adhesion, surface_kind
 from crackfront.surfaces.loop_setup import (
     LoopContact,
@@ -40,6 +43,32 @@ _LINE_ROUND_OFF = 10.0
 
 
 @dataclass(frozen=True, slots=True)
+class StraightSetup(LoopSetup):
+    """Setup of a straight front."""
+
+    load_stiffness: float
+    """Stiffness of the load against a front that does not move.
+    (Units: reduced energy / length**2)"""
+
+    def steady_adhesion(self, record: CycleRecord) -> SteadyAdhesion:
+        """Means over the last period of the tile, or less, in which the start is forgotten."""
+        tile = self.measures
+        return passing_adhesion(record, tile.correlation_length, tile.mean, tile.period)
+
+    def comment_on_energy(self, record: CycleRecord, dissipated: Array) -> str:
+        """Which part of the dissipated energies is due to the size of the load steps."""
+        lost = np.nansum(dissipated)
+        if lost <= 0:
+            return ""
+        # A load step on a front that is pinned loses this much even if the front moves smoothly.
+        added = self.load_stiffness / 2 * np.sum(np.diff(record.states.spring_position) ** 2)
+        return (
+            f"load steps add {added / lost:.2g} of the sum: half of the stiffness of "
+            "the springs times the square of each step, which smaller steps lower"
+        )
+
+
+@dataclass(frozen=True, slots=True)
 class StraightFront(LoopContact):
     """A straight front on a surface, its contact at smaller x, pulled by springs along x."""
 
@@ -49,23 +78,14 @@ class StraightFront(LoopContact):
     """Length of the springs, w_int / kappa. (Units: reduced lateral length)"""
 
     def setup(
-        self,
-        loads: tuple[float, ...] | None,
-        max_penetration: float | None,
-        step: float,
-        numerics: LoopNumerics,
-    ) -> LoopSetup:
+        self, loads: tuple[float, ...] | None, step: float, numerics: LoopNumerics
+    ) -> StraightSetup:
         """What a run begins with, as of :meth:`crackfront.surfaces.loop_setup.LoopContact.setup`.
 
         By default the front has a site for every y, and a sample a pixel along a ray.
         """
         if loads is None:
             raise ValueError("a straight front needs loads; give loads, and no max_penetration")
-        if max_penetration is not None:
-            raise ValueError(
-                f"max_penetration is {max_penetration:g}, but a straight front is at its loads; "
-                "leave max_penetration out"
-            )
         if numerics.error is not None:
             raise ValueError(
                 f"error is {numerics.error:g}, but errors of straight fronts on a given surface "
@@ -95,8 +115,7 @@ class StraightFront(LoopContact):
         )
         front = initial_front(field, adhesion, loads[0])
         few_sites = remark_on_sites(field.geometry.n_site, field.geometry.length, measures)
-        return LoopSetup(
-            kind=LineSchedule,
+        return StraightSetup(
             field=field,
             front=front,
             # A branch begins with a front of its own: making contact has no energy here.
@@ -105,7 +124,6 @@ class StraightFront(LoopContact):
             seconds=seconds,
             tolerance=DEFAULT_TOLERANCE,
             measures=measures,
-            period=measures.period,
             load_stiffness=field.geometry.length * field.geometry.stiffness,
             remark="; ".join(filter(None, (remark, remark_on_mean(measures), few_sites))),
         )

@@ -10,6 +10,7 @@ from crackfront.analysis.law import mean_w_loc
 from crackfront.analysis.law_spheres import held_factors
 from crackfront.analysis.standard_error import FEWEST_STATES
 from crackfront.core.adhesion import force_correlation_length, larkin_length
+from crackfront.simulate.contact import Pressed
 from crackfront.simulate.line.line_loads import front_rms
 from crackfront.simulate.simulation import Simulation
 from crackfront.sweep.sweep import Sweep
@@ -43,22 +44,31 @@ def expectation(simulation: Simulation) -> Expectation:
         larkin = larkin_length(kind, spectrum, disorder)
         return Expectation(disorder, schedule.spring_at(1.0) / larkin, None)
     size, factor = factors.size, factors.both.value
-    if _needed_penetration(simulation, size, factor, FEWEST_STATES) <= schedule.max_penetration:
+    if not isinstance(schedule, Pressed):
+        return Expectation(disorder, size, factor)
+
+    def needed_penetration(n_state: int) -> float:
+        works, way = _expected_works(simulation, factor), _steady_travel(simulation, size)
+        return schedule.steady_penetration(simulation.surface, works, way, n_state)
+
+    if needed_penetration(FEWEST_STATES) <= schedule.max_penetration:
         return Expectation(disorder, size, factor)
     # Rather some states more than the fewest: surfaces differ.
-    needed = _needed_penetration(simulation, size, factor, 3 * FEWEST_STATES)
+    needed = needed_penetration(3 * FEWEST_STATES)
     return Expectation(disorder, size, factor, float(f"{needed:.2g}"))
 
 
-def _needed_penetration(simulation: Simulation, size: float, factor: float, n_state: int) -> float:
-    """Penetration from which on so many states are steady on both branches."""
-    length = simulation.correlation_length
+def _steady_travel(simulation: Simulation, size: float) -> float:
+    """Travel of a front of a size g after which every site has forgotten its start."""
     rough = front_rms(force_correlation_length(simulation.kind, simulation.spectrum), size)
-    way = length + _LAST_SITE * rough
+    return simulation.correlation_length + _LAST_SITE * rough
+
+
+def _expected_works(simulation: Simulation, factor: float) -> tuple[float, float]:
+    """Expected works of adhesion of approach and retraction (Units: w_int)."""
     mean = mean_w_loc(simulation.kind, simulation.elastic_energy)
     low = max(mean - factor * simulation.elastic_energy, 0.0)
-    high = mean + factor * simulation.elastic_energy
-    return simulation.schedule.steady_load(simulation.surface, (low, high), way, n_state)
+    return low, mean + factor * simulation.elastic_energy
 
 
 def expectations(sweep: Sweep) -> dict[str, list[Expectation]]:
@@ -79,6 +89,8 @@ def expectations(sweep: Sweep) -> dict[str, list[Expectation]]:
 
 def steady_part_warnings(sweep: Sweep) -> Iterator[str]:
     """A sentence for each spectrum that may have no steady part, with the penetration it needs."""
+    if not isinstance(sweep.schedule, Pressed):
+        return
     vertical, name = (1.0, "") if sweep.scales is None else (sweep.scales.vertical, " m")
     for spectrum, expected in expectations(sweep).items():
         needed = {

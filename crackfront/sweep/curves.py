@@ -24,8 +24,6 @@ from crackfront.analysis.run_measures import RunMeasures
 from crackfront.analysis.table import SweepRow
 from crackfront.core.cycle.record import CycleRecord
 from crackfront.core.geometry.base import State
-from crackfront.core.geometry.line import LineState
-from crackfront.core.geometry.sphere import ContactState
 from crackfront.core.outcome import Status
 from crackfront.core.variables import ADHESION, ENERGY, Variable, variables
 from crackfront.simulate.checksums import stated_digest
@@ -46,9 +44,6 @@ SIMULATION, STATE, FRONT_SITE = "simulation", "state", "front_site"
 
 _COUNTS = {"n_state": STATE, "n_front_site": FRONT_SITE}
 """Variables that count the entries of each simulation along a ragged dimension."""
-
-_STATES: tuple[type[State], ...] = (ContactState, LineState)
-"""Records of the states of all geometries."""
 
 _CYCLE_STATUSES = tuple(status.name.lower() for status in Status)
 
@@ -131,7 +126,8 @@ def curves_dataset(finished: Sequence[FinishedSimulation]) -> xr.Dataset:
     columns |= _state_columns(begun)
     if any(record.fronts is not None for record in begun):
         columns["front"] = np.concatenate([_fronts(record).ravel() for record in begun])
-    return _labelled(columns).assign_attrs({PARAMETERS: parameters_text(simulations)})
+    state_types = {type(record.states) for record in begun}
+    return _labelled(columns, state_types).assign_attrs({PARAMETERS: parameters_text(simulations)})
 
 
 def parameters_text(simulations: Iterable[Simulation]) -> str:
@@ -187,10 +183,10 @@ def _state_columns(records: Sequence[CycleRecord]) -> dict[str, NDArray[Any]]:
     return columns
 
 
-def _labelled(columns: dict[str, Any]) -> xr.Dataset:
-    """Dataset of columns with their units and meanings."""
+def _labelled(columns: dict[str, Any], state_types: Iterable[type[State]]) -> xr.Dataset:
+    """Dataset of columns with their units and meanings; states are of some types."""
     of_states: dict[str, Variable] = {}
-    for kind in (*_STATES, CycleRecord):
+    for kind in (*state_types, CycleRecord):
         of_states |= {_state_name(item.name): item for item in variables(kind)}
     labelled: dict[str, Any] = {}
     for item in (*variables(SweepRow, SIMULATION), *IDENTITY, *_CYCLE):
@@ -303,7 +299,7 @@ def _result(dataset: xr.Dataset, simulation: Simulation) -> SimulationResult | N
     record = CycleRecord(
         status=Status[_CYCLE_STATUSES[int(row["cycle_status"])].upper()],
         end_load=float(row["end_load"]),
-        states=_states_of(dataset),
+        states=_states_of(dataset, simulation.geometry.state_type),
         dissipated_energy=None if energies is None else energies.values,
         pull_off_energy=None if math.isnan(pull_off) else pull_off,
         fronts=None if fronts is None or not n_site else fronts.values.reshape(-1, n_site),
@@ -311,7 +307,6 @@ def _result(dataset: xr.Dataset, simulation: Simulation) -> SimulationResult | N
     return SimulationResult(simulation, record, RunMeasures(**costs))
 
 
-def _states_of(dataset: xr.Dataset) -> State:
+def _states_of(dataset: xr.Dataset, kind: type[Any]) -> State:
     """States of a dataset of one simulation."""
-    kind = next(kind for kind in _STATES if variables(kind)[0].name in dataset)
     return kind(**{item.name: dataset[_state_name(item.name)].values for item in variables(kind)})

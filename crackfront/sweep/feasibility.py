@@ -7,10 +7,8 @@ import sys
 from itertools import product
 from pathlib import Path
 
-from crackfront.analysis.standard_error import FEWEST_STATES
-from crackfront.core.adhesion import larkin_length
 from crackfront.core.resources import refuse_beyond_memory, refuse_beyond_time
-from crackfront.core.words import counted
+from crackfront.simulate.contact import Pressed, SurfaceLoads
 from crackfront.simulate.costs import expected_cost, refuse_oversized
 from crackfront.simulate.numerical_errors import missed_error
 from crackfront.simulate.settings import Settings
@@ -50,6 +48,8 @@ def check_feasible(sweep: Sweep, path: Path) -> None:
         _check_costs(sweep)
         for item in sweep.spectra:
             for simulation in sweep.one_per_amplitude(item):
+                if isinstance(sweep.schedule, SurfaceLoads):
+                    sweep.schedule.refuse_unresolved(simulation)
                 _check_resolution(simulation)
                 _check_tolerance_and_error(simulation, sweep.numerics.settings)
     except ValueError as error:
@@ -72,10 +72,11 @@ def _check_numbers(sweep: Sweep) -> None:
 
 def _check_sizes(sweep: Sweep) -> None:
     """Raise ValueError if a tile, a front or a length is beyond what any machine computes."""
+    deepest = sweep.schedule.max_penetration if isinstance(sweep.schedule, Pressed) else 0.0
     for item, elastic_energy in product(sweep.spectra, sweep.elastic_energies):
         usual_size = sweep.schedule.usual_size(item.spectrum)
         settings = sweep.numerics.settings_of(sweep.kind, item.spectrum, elastic_energy, usual_size)
-        refuse_oversized(item.spectrum, sweep.numerics, settings, sweep.schedule.max_penetration)
+        refuse_oversized(item.spectrum, sweep.numerics, settings, deepest)
 
 
 def _check_costs(sweep: Sweep) -> None:
@@ -93,17 +94,7 @@ def _check_costs(sweep: Sweep) -> None:
 def _check_resolution(simulation: Simulation) -> None:
     """Raise ValueError if sites, states or samples are too few for the spectrum."""
     resolution, schedule = simulation.resolution, simulation.schedule
-    name, elastic_energy = simulation.spectrum_name, simulation.elastic_energy
-    larkin = larkin_length(simulation.kind, simulation.spectrum, 2 * math.sqrt(elastic_energy))
-    site = resolution.tile_side / resolution.n_angle
-    schedule.refuse_few_sites(f"{name} at e_el {elastic_energy:g}", larkin, site)
-    n_state = schedule.n_period
-    if n_state is not None and n_state < FEWEST_STATES:
-        raise ValueError(
-            f"load.line: the period of {name} at e_el {elastic_energy:g} has "
-            f"{counted(n_state, 'state')}, and errors need {FEWEST_STATES} or more; lower step or "
-            "raise period"
-        )
+    name = simulation.spectrum_name
     short_cutoff, front_length = simulation.spectrum.short_cutoff, schedule.front_length
     if (density := resolution.n_angle * short_cutoff / front_length) < _FEWEST_SITES:
         raise ValueError(

@@ -11,7 +11,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from crackfront.analysis.steady_adhesion import SteadyAdhesion, SteadyMeasures, mean_adhesion
+from crackfront.analysis.steady_adhesion import SteadyAdhesion, SteadyMeasures
 from crackfront.analysis.table import PLACE, SweepRow
 from crackfront.core.cycle.record import CycleRecord
 from crackfront.core.outcome import Status
@@ -38,8 +38,7 @@ def sweep_row(result: SimulationResult) -> SweepRow:
     """What the file of a sweep says about one simulation."""
     record, simulation = result.record, result.simulation
     length = simulation.correlation_length
-    mean = 1 - result.measures.e_el if simulation.kind == "roughness" else 1.0
-    steady = mean_adhesion(record, length, simulation.schedule.n_period, mean)
+    steady = result.steady_adhesion
     status, sentence = _status(record, steady)
     complete, cycle = status in COMPLETE, status == COMPLETE[0]
     numerical = stated_error(simulation, steady, length) if complete else (np.nan, np.nan)

@@ -12,7 +12,7 @@ from crackfront.core.adhesion import FieldKind
 from crackfront.core.arguments import nearest_name
 from crackfront.core.spectrum import Spectrum
 from crackfront.core.units import Scales
-from crackfront.simulate.contact import SweepLoad
+from crackfront.simulate.contact import SurfaceLoads, SweepLoad
 from crackfront.simulate.numerics import Numerics
 from crackfront.simulate.simulation import Simulation, simulation_of
 
@@ -89,15 +89,15 @@ class Sweep:
         self, item: NamedSpectrum, elastic_energy: float, realisation: int
     ) -> Simulation:
         """One simulation of the sweep, with the settings that its numerics choose."""
-        schedule = self.schedule.for_surface(
-            self.kind, item.spectrum, elastic_energy, item.spring, self.numerics
-        )
+        kind, loads, numerics = self.kind, self.schedule, self.numerics
+        if isinstance(loads, SurfaceLoads):
+            loads = loads.for_surface(kind, item.spectrum, elastic_energy, item.spring, numerics)
         return simulation_of(
-            self.kind,
+            kind,
             item.spectrum,
             elastic_energy,
-            schedule,
-            self.numerics,
+            loads,
+            numerics,
             seed=self.seed,
             realisation=realisation,
             name=item.name,

@@ -21,6 +21,7 @@ from crackfront.analysis.steady_adhesion import STEADY_DEFINITION
 from crackfront.analysis.table import SweepAxes, SweepRow, SweepTable
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.variables import variables
+from crackfront.simulate.contact import OnSprings, Schedule
 from crackfront.simulate.labels import flag_words, labelled_fields
 from crackfront.simulate.provenance import Provenance
 from crackfront.simulate.storage import UnreadableFileError, read_derived, write_derived
@@ -133,7 +134,7 @@ def _axes(sweep: Sweep, realisations: range) -> SweepAxes:
         roll_off=np.array([spectrum.longest_feature for spectrum in spectra]),
         hurst=np.array([getattr(spectrum, "hurst", math.nan) for spectrum in spectra]),
         correlation_length=each("correlation_length")[:, 0],
-        spring=each("schedule.spring"),
+        spring=np.array([[_spring(one.schedule) for one in row] for row in one_per_amplitude]),
         n_angle=each("resolution.n_angle"),
         sample_spacing=each("resolution.spacing"),
         tile_side=each("resolution.tile_side"),
@@ -145,6 +146,11 @@ def _axes(sweep: Sweep, realisations: range) -> SweepAxes:
         realisation=np.array(realisations),
         parameters=None if self_affine else np.array(texts),
     )
+
+
+def _spring(schedule: Schedule) -> float:
+    """Length of the springs of a front (Units: reduced lateral length); NaN without springs."""
+    return schedule.spring if isinstance(schedule, OnSprings) else math.nan
 
 
 def _attributes(sweep: Sweep) -> dict[str, str | float]:

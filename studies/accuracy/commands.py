@@ -23,6 +23,7 @@ from crackfront.plots.style import save_figure
 from crackfront.simulate.checksums import forget_sums
 from crackfront.simulate.provenance import provenance
 from crackfront.simulate.run_simulation import compile_solver
+from crackfront.simulate.sphere.full_cycle import FullCycle
 from crackfront.simulate.storage import read_attributes, write_dataset, write_text
 from crackfront.sweep.integrity import write_sums
 from studies.accuracy import energies as synthetic
@@ -70,7 +71,7 @@ def scene(scene: str, output: Path, study: str, realisations: int) -> None:
     refuse_unwritable(output)
     announce_cost(realisations * STUDIES[study].seconds(SCENES[scene]))
     announce_compilation()
-    compile_solver("newton")
+    compile_solver("newton", FullCycle)
     found = STUDIES[study].measured(SCENES[scene], realisations, click.echo)
     path = output / f"{study}-{scene}.nc"
     forget_sums(output)

@@ -148,7 +148,7 @@ def law_cells(sweep: Sweep, dataset: xr.Dataset) -> list[LawCell]:
                 spectrum=name if sweep.kind == "roughness" else f"{name}-{sweep.kind}",
                 breadth=spectral_breadth(sweep.kind, item.spectrum),
                 disorder=0.0 if load.uncorrelated else 2 * math.sqrt(found.elastic_energy),
-                size=simulation.schedule.spring / larkin,
+                size=simulation.schedule.spring_at(1.0) / larkin,
                 realisations=found.realisations,
                 approach=found.approach,
                 retraction=found.retraction,

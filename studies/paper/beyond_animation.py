@@ -18,6 +18,7 @@ from crackfront.plots.parts import FORCE_LABEL, RADIUS_LABEL
 from crackfront.plots.style import BLACK, BLUE, PAGE, VERMILION, blank_figure, explain, house_style
 from crackfront.simulate.run_simulation import compile_solver
 from crackfront.simulate.simulation import simulation_adhesion, simulation_field
+from crackfront.simulate.sphere.full_cycle import FullCycle
 from studies.paper.drawing import BRANCHES, Animation
 from studies.paper.figure import Check, Figure, Integers, Progress, close_to, values_of
 from studies.paper.rough import RoughCycleParameters, patch_of, whole_cycle
@@ -53,7 +54,7 @@ def motion(parameters: RoughCycleParameters, progress: Progress) -> AnimatedCycl
     simulation = parameters.simulation()
     adhesion = simulation_adhesion(simulation)
     field = simulation_field(simulation, adhesion)
-    compile_solver(simulation.solver.name)
+    compile_solver(simulation.solver.name, FullCycle)
     recorder = Recorder(fronts=True, energy=True)
     record = run_cycle(field, parameters.schedule, simulation.solver, recorder)
     progress(f"{record.states.penetration.size} states: {record.status.value}")

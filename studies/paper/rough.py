@@ -22,6 +22,7 @@ from crackfront.core.outcome import Direction, Status
 from crackfront.core.solver.relax import Newton, Solver
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.units import WORK_OF_ADHESION
+from crackfront.simulate.contact import Pressed
 from crackfront.simulate.costs import expected_cost
 from crackfront.simulate.laws import measured_energies
 from crackfront.simulate.numerical_errors import missed_error
@@ -145,7 +146,7 @@ class DisorderParameters(Section):
         )
         sizes, n_angle = simulation.resolution, max(simulation.resolution.n_angle, least_angles)
         simulation = replace(simulation, resolution=replace(sizes, n_angle=n_angle))
-        compile_solver(simulation.solver.name)
+        compile_solver(simulation.solver.name, FullCycle)
         adhesion = simulation_adhesion(simulation)
         return RoughContact(
             field=simulation_field(simulation, adhesion),
@@ -232,8 +233,9 @@ def recorded(
     simulation: Simulation, field: TileField, loads: Iterable[Load], recorder: Recorder
 ) -> CycleRecord:
     """States of a front that begins in contact that is just made and follows loads."""
-    refuse_outgrown(field, simulation.schedule.max_penetration)
-    compile_solver(simulation.solver.name)
+    if isinstance(simulation.schedule, Pressed):
+        refuse_outgrown(field, simulation.schedule.max_penetration)
+    compile_solver(simulation.solver.name, FullCycle)
     recorder.run(field, first_touch(field), loads, simulation.solver)
     return recorder.record()
 

@@ -25,6 +25,7 @@ import click
 from crackfront.analysis.run_measures import RunMeasures
 from crackfront.core.cycle.record import Recorder
 from crackfront.core.variables import variable
+from crackfront.simulate.contact import Problem
 from crackfront.simulate.provenance import provenance
 from crackfront.simulate.run_simulation import SimulationResult, compile_solver
 from crackfront.simulate.simulation import Simulation, simulation_adhesion, simulation_field
@@ -158,17 +159,15 @@ def _timed(simulation: Simulation, tell: Callable[[str], None]) -> tuple[float, 
     compile_solver(simulation.solver.name, type(simulation.schedule))
     begin = time.process_time()
     adhesion = simulation_adhesion(simulation)
-    field = simulation_field(simulation, adhesion)
+    problem = Problem(
+        simulation_field(simulation, adhesion),
+        simulation.correlation_length,
+        simulation.elastic_energy,
+    )
     made = time.process_time() - begin
     tell("enable")
     begin = time.process_time()
-    record = simulation.schedule.run(
-        field,
-        simulation.solver,
-        Recorder(),
-        correlation_length=simulation.correlation_length,
-        elastic_energy=simulation.elastic_energy,
-    )
+    record = simulation.schedule.run(problem, simulation.solver, Recorder())
     loaded = time.process_time() - begin
     tell("disable")
     measures = RunMeasures(adhesion.e_el, adhesion.w_rms, 0.0, 0.0, 0.0, 0.0)

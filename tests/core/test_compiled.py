@@ -110,6 +110,18 @@ def test_a_second_process_compiles_nothing_unless_a_callee_in_another_file_chang
     assert answer(started(package, NUMBA_DISABLE_JIT="1")) == ("40 False ''", "")
 
 
+def test_kernels_of_a_geometry_outside_of_the_core_are_compiled_by_each_process(package):
+    pair = "from typing import NamedTuple\n\n\nclass Pair(NamedTuple):\n    value: float\n"
+    kernel = "from crackfront.core.compiled import jit\n\n\n@jit\ndef outer(a):\n    return a[0]\n"
+    (package / "crackfront/core/outer.py").write_text(kernel)
+    for place, kept in (("crackfront/core/pair.py", True), ("pair.py", False)):
+        (package / place).write_text(pair)
+        module = place.removesuffix(".py").replace("/", ".")
+        code = f"from {module} import Pair\n" + ASKED.replace("outer(2)", "outer(Pair(3.0))")
+        answer(started(package, code))
+        assert answer(started(package, code)) == (f"3.0 {not kept} ''", "")
+
+
 def test_processes_that_compile_at_once_agree_and_leave_a_whole_cache(package):
     together = [started(package) for _ in range(3)]
     assert {answer(process)[0].split()[0] for process in together} == {"30"}

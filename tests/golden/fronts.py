@@ -23,9 +23,10 @@ from crackfront.core.solver.relax import Solver, front_force
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.simulate.line.line_loads import LineSchedule
 from crackfront.simulate.run_simulation import run_simulation
-from crackfront.simulate.simulation import Resolution, Simulation
+from crackfront.simulate.simulation import Simulation
 from crackfront.simulate.sphere.full_cycle import FullCycle
 from crackfront.simulate.sphere.steady_branches import SteadySchedule
+from crackfront.simulate.tiles import Resolution
 from tests.golden.closed_forms import FLAT, FRACTAL, TABLE
 from tests.golden.golden import Values
 

@@ -182,7 +182,7 @@ MUTATIONS = [
         "front at which a branch begins",
     ),
     Mutation(
-        "core/cycle/schedule.py",
+        "core/cycle/load_schedule.py",
         "if k * self.step >= self.max_penetration * (1 - 1e-12):",
         "if False:",
         "the largest penetration is visited twice",
@@ -200,26 +200,28 @@ MUTATIONS = [
         "simulate/tiles.py", "math.sqrt(8 * surface", "math.sqrt(8.000008 * surface", "rows by 5e-7"
     ),
     Mutation(
-        "simulate/sphere/steady.py",
+        "simulate/sphere/steady_branches.py",
         "mean + 0.8 * (mean",
         "mean + 0.8000008 * (mean",
         "start of the retraction by 1e-6",
     ),
     Mutation(
-        "simulate/line/schedule.py",
+        "simulate/line/line_loads.py",
         "step * np.arange(n_step + 1, dtype=float)",
         "step * np.arange(n_step, dtype=float)",
         "last load dropped",
     ),
-    Mutation("analysis/steady.py", "midpoint=(w_retr + w", "midpoint=(w_retr - w", "midpoint"),
     Mutation(
-        "analysis/steady.py",
+        "analysis/steady_adhesion.py", "midpoint=(w_retr + w", "midpoint=(w_retr - w", "midpoint"
+    ),
+    Mutation(
+        "analysis/steady_adhesion.py",
         "inside = (place >= window[0])",
         "inside = (place > window[0])",
         "lower end of the window left out",
     ),
     Mutation(
-        "analysis/steady.py",
+        "analysis/steady_adhesion.py",
         "jkr.equilibrium_force(radius, 1.0)",
         "jkr.equilibrium_force(radius, 1.000001)",
         "w from force by 1e-6",
@@ -231,13 +233,16 @@ MUTATIONS = [
         "one independent state fewer",
     ),
     Mutation(
-        "analysis/sweep.py",
+        "analysis/sweep_fit.py",
         "factor=(w_retr - w_appr) / (2 * energy)",
         "factor=(w_retr - w_appr) / (2.000002 * energy)",
         "k by 1e-6",
     ),
     Mutation(
-        "analysis/sweep.py", "depression=1 - (w_retr", "depression=1 + (w_retr", "sign of midpoint"
+        "analysis/sweep_fit.py",
+        "depression=1 - (w_retr",
+        "depression=1 + (w_retr",
+        "sign of midpoint",
     ),
     Mutation(
         "analysis/sweep_law.py",
@@ -247,9 +252,9 @@ MUTATIONS = [
     ),
     Mutation("analysis/estimate.py", "_CONFIDENCE = 0.95", "_CONFIDENCE = 0.950001", "intervals"),
     Mutation(
-        "sweep/rows.py",
-        "mean = 1 - result.measures.e_el if",
-        "mean = 1 if",
+        "simulate/run_simulation.py",
+        "return 1 - self.measures.e_el if",
+        "return 1 if",
         "lowering of the mean of w_loc dropped",
     ),
     Mutation(

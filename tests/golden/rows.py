@@ -22,9 +22,10 @@ from crackfront.core.solver.relax import Newton
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.simulate.line.line_loads import LineSchedule
 from crackfront.simulate.run_simulation import SimulationResult, run_simulation
-from crackfront.simulate.simulation import Resolution, Simulation
+from crackfront.simulate.simulation import Simulation
 from crackfront.simulate.sphere.full_cycle import FullCycle
 from crackfront.simulate.sphere.steady_branches import SteadySchedule
+from crackfront.simulate.tiles import Resolution
 from crackfront.sweep.rows import sweep_row
 from tests.golden.golden import Scenes, Values
 
@@ -145,7 +146,7 @@ def _fit(
         correlation_length=np.array([spectrum.correlation_length for spectrum in spectra]),
         amplitude=np.array(ENERGIES),
         contact_radius=(column("lowest_radius") + column("highest_radius")) / 2,
-        spring=np.full(shape[:2], first.schedule.spring),
+        spring=np.full(shape[:2], getattr(first.schedule, "spring", np.nan)),
         **{
             name: column(name)
             for name in (

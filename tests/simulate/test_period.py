@@ -16,6 +16,7 @@ from crackfront.core.outcome import Status
 from crackfront.core.solver.relax import SOLVERS
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.units import WORK_OF_ADHESION
+from crackfront.simulate.contact import Problem
 from crackfront.simulate.line.line_loads import LineSchedule
 from crackfront.simulate.simulation import simulation_adhesion, simulation_field
 from crackfront.sweep.parameters import load_sweep
@@ -44,12 +45,9 @@ def longer(simulation, periods):
 def run(simulation, adhesion=None):
     """Record with its fronts, of a tile that may be another than the simulation's own."""
     adhesion = simulation_adhesion(simulation) if adhesion is None else adhesion
-    return simulation.schedule.run(
-        simulation_field(simulation, adhesion),
-        SOLVERS["newton"](1e-10),
-        Recorder(fronts=True),
-        elastic_energy=simulation.elastic_energy,
-    )
+    field = simulation_field(simulation, adhesion)
+    problem = Problem(field, simulation.correlation_length, simulation.elastic_energy)
+    return simulation.schedule.run(problem, SOLVERS["newton"](1e-10), Recorder(fronts=True))
 
 
 @pytest.mark.parametrize("energy", [0.04, 0.16])
@@ -117,7 +115,8 @@ def test_without_disorder_no_force_is_needed():
     schedule = LineSchedule(spring=4.0, length=16.0, period=12.0, lead_in=3.0, step=0.5)
     tile = AdhesionMap(WORK_OF_ADHESION * np.ones((24, 32)), 0.5, 0.0, 0.0)
     field = line_field(tile, 4.0, (0.0, float(schedule.loads[-1])))
-    record = schedule.run(field, SOLVERS["newton"](1e-12), Recorder(), elastic_energy=0.0)
+    problem = Problem(field, correlation_length=1.0, elastic_energy=0.0)
+    record = schedule.run(problem, SOLVERS["newton"](1e-12), Recorder())
     found = period_adhesion(record, schedule.n_period, 1.0, 1.0)
     assert (found.w_appr, found.w_retr) == pytest.approx((1.0, 1.0), abs=1e-11)
     assert found.front_rms < 1e-11

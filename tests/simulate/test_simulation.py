@@ -19,13 +19,13 @@ from crackfront.simulate.numerics import Numerics
 from crackfront.simulate.run_simulation import run_simulation
 from crackfront.simulate.settings import Settings
 from crackfront.simulate.simulation import (
-    Resolution,
     Simulation,
     resolution,
     simulation_adhesion,
 )
 from crackfront.simulate.sphere.full_cycle import FullCycle
 from crackfront.simulate.sphere.steady_branches import SteadySchedule
+from crackfront.simulate.tiles import Resolution
 
 SETTINGS = Settings(None, 2, 4, "cubic", 4, 1e-6)
 NUMERICS = Numerics(SETTINGS, 10, 20, max_sweeps=100_000, solver="reference")

@@ -18,8 +18,9 @@ from crackfront.core.outcome import Status
 from crackfront.core.solver.relax import Newton
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.units import WORK_OF_ADHESION
+from crackfront.simulate.contact import Problem
 from crackfront.simulate.run_simulation import run_simulation
-from crackfront.simulate.simulation import Resolution, Simulation, simulation_adhesion
+from crackfront.simulate.simulation import Simulation, simulation_adhesion
 from crackfront.simulate.sphere.full_cycle import FullCycle
 from crackfront.simulate.sphere.steady_branches import (
     SteadySchedule,
@@ -27,6 +28,7 @@ from crackfront.simulate.sphere.steady_branches import (
     own_part,
     standard_error,
 )
+from crackfront.simulate.tiles import Resolution
 
 SPECTRUM = SelfAffineSpectrum(short_cutoff=0.1, roll_off=0.1, hurst=1.0)
 LENGTH = correlation_length("roughness", SPECTRUM)
@@ -194,7 +196,8 @@ def test_contact_that_is_lost_on_the_way_back_is_told():
     strength = 1 + np.sin(2 * np.pi * radii[:, None] / 0.02 + phase)
     field = polar_field(radii, WORK_OF_ADHESION * strength)
     schedule = SteadySchedule(0.0, 1.0, 2.0, 1e-9)
-    record = schedule.run(field, None, Recorder(), correlation_length=0.05, elastic_energy=0.25)
+    problem = Problem(field, correlation_length=0.05, elastic_energy=0.25)
+    record = schedule.run(problem, None, Recorder())
     assert record.status is Status.LOST_CONTACT
     assert record.states.mean_radius[0] < record.states.mean_radius[-1]
     assert -1.8 < record.end_load < record.states.penetration[-1] < -1

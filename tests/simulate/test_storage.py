@@ -21,7 +21,7 @@ from crackfront.analysis.sweep_fit import fit_sweep
 from crackfront.analysis.table import SweepAxes, SweepRow
 from crackfront.core.adhesion import AdhesionMap
 from crackfront.core.cycle.record import CycleRecord
-from crackfront.core.geometry.sphere import ContactState
+from crackfront.core.geometry.sphere import ContactState, sphere
 from crackfront.core.outcome import Status
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.core.variables import variables
@@ -83,13 +83,13 @@ def without_states(record: CycleRecord, status: Status):
 
 def test_a_cycle_without_fronts_and_energy_is_read_back(tmp_path, result):
     record = replace(result.record, fronts=None, dissipated_energy=None)
-    write_dataset(tmp_path / "cycle.nc", cycle_dataset(record), ORIGIN)
+    write_dataset(tmp_path / "cycle.nc", cycle_dataset(record, sphere(32)), ORIGIN)
     assert_same(cycle_record(read_dataset(tmp_path / "cycle.nc")), record)
 
 
 def test_a_cycle_without_states_is_read_back(tmp_path, result):
     record = without_states(result.record, Status.STEP_LIMIT)
-    write_dataset(tmp_path / "cycle.nc", cycle_dataset(record), ORIGIN)
+    write_dataset(tmp_path / "cycle.nc", cycle_dataset(record, sphere(32)), ORIGIN)
     assert_same(cycle_record(read_dataset(tmp_path / "cycle.nc")), record)
 
 
@@ -118,7 +118,7 @@ def test_a_file_of_curves_says_what_it_has_in_which_units_and_of_which_simulatio
 
 
 def test_every_file_says_where_it_comes_from(tmp_path, result):
-    write_dataset(tmp_path / "cycle.nc", cycle_dataset(result.record), ORIGIN)
+    write_dataset(tmp_path / "cycle.nc", cycle_dataset(result.record, sphere(32)), ORIGIN)
     attributes = xr.load_dataset(tmp_path / "cycle.nc").attrs
     for item in fields(Provenance):
         assert attributes[item.name] == getattr(ORIGIN, item.name)
@@ -150,7 +150,7 @@ def test_a_file_of_something_else_is_refused(tmp_path):
 
 def test_a_failed_write_leaves_the_old_file_and_no_other(tmp_path, result, monkeypatch):
     path = tmp_path / "cycle.nc"
-    write_dataset(path, cycle_dataset(result.record), ORIGIN)
+    write_dataset(path, cycle_dataset(result.record, sphere(32)), ORIGIN)
     before = path.read_bytes()
 
     def fail(*args, **options):
@@ -159,7 +159,7 @@ def test_a_failed_write_leaves_the_old_file_and_no_other(tmp_path, result, monke
 
     monkeypatch.setattr(xr.Dataset, "to_netcdf", fail)
     with pytest.raises(OSError, match="no space"):
-        write_dataset(path, cycle_dataset(result.record), ORIGIN)
+        write_dataset(path, cycle_dataset(result.record, sphere(32)), ORIGIN)
     assert path.read_bytes() == before
     assert [item.name for item in tmp_path.iterdir()] == ["cycle.nc"]
 

@@ -6,6 +6,21 @@ A site of a front moves along its ray; its place is its distance along it. At re
 
 with a weight :math:`\omega`, the restoring force f under the load X and the stiffness K of the
 line, which is diagonal in the modes of the front.
+
+A new geometry, such as :mod:`crackfront.core.geometry.line`, must provide the following:
+
+1. A named tuple of numbers and arrays that has the members of :class:`Geometry`. It is all that
+   kernels know of the contact. It need not be in `core`, but then each process compiles its
+   kernels.
+2. A frozen dataclass that has the members of :class:`State`: the record of a front at rest.
+3. An implementation of each dispatched function of this module for the named tuple, registered by
+   :func:`crackfront.core.compiled.implements`. numba compiles it, so it has no keyword arguments.
+4. The restoring force increases with the place, and so does its slope: solvers find the first
+   equilibrium only then. A weight can make it so, as the radius of a sphere.
+5. The restoring force falls where the load increases: an increasing load lets the front advance.
+6. `stored_energy` is the energy whose derivative by the places is :math:`f + K u`, summed over the
+   perimeter. The recorder computes dissipated energies from it. The energies of making and losing
+   contact also assume that the front is closed, with a perimeter of 2 pi.
 """
 
 from __future__ import annotations
@@ -25,8 +40,8 @@ from crackfront.core.variables import Variable
 class State(Protocol):
     """Record of one front at rest, or of all fronts of a cycle: a dataclass of numbers or arrays.
 
-    Its fields are made by :func:`crackfront.core.variables.variable`. The first is the load; others
-    are `direction`, `least_travel`, `iterations`, `updates` and `residual`.
+    Its fields are made by :func:`crackfront.core.variables.variable`. The first is the load. Those
+    of any kind of contact are below; a kind that loses contact also has a `force`.
     """
 
     load_noun: ClassVar[str]
@@ -37,6 +52,26 @@ class State(Protocol):
     """Name of the fronts in files."""
 
     @property
+    def direction(self) -> Any:
+        """Direction in which the load was reached, +1 or -1."""
+
+    @property
+    def least_travel(self) -> Any:
+        """Smallest way of a site since its branch began."""
+
+    @property
+    def iterations(self) -> Any:
+        """Sweeps of the solver."""
+
+    @property
+    def updates(self) -> Any:
+        """Updates of single sites by the solver."""
+
+    @property
+    def residual(self) -> Any:
+        """Largest force along the motion that is left, per front length."""
+
+    @property
     def summary(self) -> str:
         """One state in words."""
 
@@ -45,7 +80,7 @@ class State(Protocol):
 
 
 class Geometry(Protocol):
-    """Properties and methods of a geometry, beside the compiled functions of this module."""
+    """Properties and methods of a geometry; the compiled functions of this module complete it."""
 
     @property
     def n_site(self) -> int:
@@ -85,7 +120,7 @@ def restoring_force(geometry: Any, place: float, load: float) -> float:
 
 @dispatched
 def restoring_slope(geometry: Any, place: float, load: float) -> float:
-    """Slope of the restoring force, which bounds that at all smaller places."""
+    """Slope of the restoring force, an upper bound of the slope at all smaller places."""
     raise NotImplementedError
 
 

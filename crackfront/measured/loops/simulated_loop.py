@@ -64,8 +64,8 @@ def simulated_loop(cycle: Dataset, name: str = "the cycle") -> MeasuredLoop:
     MeasuredLoop
         In the units of the cycle, those of works of adhesion w_int where it is in reduced ones. The
         works and their standard errors are as of
-        :func:`crackfront.analysis.steady_adhesion.mean_adhesion`. Radius and modulus are exact, so
-        that neither is fitted, and nothing bends but the contact.
+        :func:`crackfront.analysis.steady_adhesion.steady_adhesion`. Radius and modulus are exact,
+        so that neither is fitted, and nothing bends but the contact.
 
     Raises
     ------

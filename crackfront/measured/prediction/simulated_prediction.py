@@ -11,7 +11,6 @@ from dataclasses import astuple, dataclass, replace
 import numpy as np
 
 from crackfront.analysis.estimate import Estimate, mean_estimate
-from crackfront.analysis.steady_adhesion import mean_adhesion
 from crackfront.core import jkr
 from crackfront.core.adhesion import larkin_length
 from crackfront.core.spectrum import TabulatedSpectrum
@@ -159,9 +158,7 @@ def simulated(plan: SimulationPlan, scales: Scales) -> Simulated:
     rows, failed = [], []
     for simulation in plan.simulations:
         result = run_simulation(simulation)
-        e_el = result.measures.e_el
-        mean, length = 1 - e_el, simulation.correlation_length
-        steady = mean_adhesion(result.record, length, simulation.schedule.n_period, mean)
+        e_el, steady = result.measures.e_el, result.steady_adhesion
         if steady.sentence:
             failed.append(f"{simulation.label}: {steady.sentence}")
             continue

@@ -7,12 +7,14 @@ forgotten: a mean over the next period is the exact mean over the tile.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar, Literal
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 from scipy.fft import next_fast_len
 
+from crackfront.analysis.standard_error import FEWEST_STATES
+from crackfront.analysis.steady_adhesion import SteadyAdhesion, period_adhesion
 from crackfront.core.adhesion import (
     AdhesionMap,
     FieldKind,
@@ -23,21 +25,35 @@ from crackfront.core.adhesion import (
 from crackfront.core.arrays import Array
 from crackfront.core.cycle.follow import Load
 from crackfront.core.cycle.record import CycleRecord, Recorder
-from crackfront.core.field.fields import Interpolation, TileField, first_place, last_place
-from crackfront.core.geometry.base import Geometry, fast_site_count
+from crackfront.core.field.fields import TileField, first_place, last_place
+from crackfront.core.geometry.base import Geometry
 from crackfront.core.geometry.line import Line, line_field
 from crackfront.core.outcome import Direction, Status
 from crackfront.core.resources import refuse_beyond_memory
 from crackfront.core.solver.relax import Solver
 from crackfront.core.spectrum import Spectrum
 from crackfront.core.units import WORK_OF_ADHESION
-from crackfront.simulate.contact import ExpectedMotion, Schedule
+from crackfront.core.words import counted
+from crackfront.simulate.contact import (
+    ExpectedMotion,
+    OnSprings,
+    Problem,
+    Schedule,
+    SurfaceLoads,
+)
 from crackfront.simulate.laws import LAW_SIZE
 from crackfront.simulate.numerics import Numerics
-from crackfront.simulate.tiles import RandomSurface, gaussian_adhesion, uncorrelated_adhesion
+from crackfront.simulate.tiles import (
+    Fineness,
+    RandomSurface,
+    Resolution,
+    gaussian_adhesion,
+    uncorrelated_adhesion,
+)
 
 if TYPE_CHECKING:
-    from crackfront.analysis.steady_adhesion import SteadyAdhesion
+    from crackfront.simulate.run_simulation import SimulationResult
+    from crackfront.simulate.simulation import Simulation
 
 _BEHIND = 1.3
 """Pinning force of the first front over that of second-order theory; none is larger."""
@@ -60,7 +76,7 @@ _LEAD_IN = 3.0
 
 
 @dataclass(frozen=True, slots=True)
-class LineSchedule(Schedule):
+class LineSchedule(Schedule, OnSprings):
     """Loads of a straight front on a tile, first forward, then back over the same places.
 
     ValueError if a length is not positive and finite.
@@ -80,7 +96,6 @@ class LineSchedule(Schedule):
     """Whether sites are independent of each other, the limit of weak disorder."""
 
     load_name = "straight front"
-    max_penetration = 0.0
 
     def __post_init__(self) -> None:
         for name in ("spring", "length", "period", "lead_in", "step"):
@@ -105,21 +120,21 @@ class LineSchedule(Schedule):
         """Period of the front (Units: length)."""
         return self.length
 
-    def usual_size(self, spectrum: Spectrum) -> float:
-        """Size of a front for which settings are chosen, whatever its spectrum."""
-        return LAW_SIZE
+    def resolution(self, fineness: Fineness) -> Resolution:
+        """Sizes on a tile as long as the front.
 
-    def site_count(self, requested: int | None, least: float, n_point: int) -> int:
-        """As many sites as are needed, or one a point where they are independent."""
-        return n_point if self.uncorrelated else requested or fast_site_count(least)
+        A period has whole samples, so that a period further on all is the same. Independent sites
+        lie at the points of the tile.
+        """
+        sizes = fineness.sizes(self.length, self.front_length)
+        n_site = sizes.n_point if self.uncorrelated else sizes.n_angle
+        spacing = self.period / math.ceil(self.period / sizes.spacing)
+        return replace(sizes, n_angle=n_site, spacing=spacing)
 
-    def fitted(self, side: float, spacing: float) -> tuple[float, float]:
-        """Period of the front, and whole samples, so that a period further on all is the same."""
-        return self.length, self.period / math.ceil(self.period / spacing)
-
-    def tile(self, n_point: int, side: float) -> tuple[tuple[int, int], tuple[float, float]]:
+    def tile(self, sizes: Resolution) -> tuple[tuple[int, int], tuple[float, float]]:
         """One period along the motion and one of the front."""
-        return (round(self.period * n_point / side), n_point), (self.period, side)
+        n_period = round(self.period * sizes.n_point / sizes.tile_side)
+        return (n_period, sizes.n_point), (self.period, sizes.tile_side)
 
     def geometry(self, n_site: int) -> Geometry:
         """Line on springs that do not pull at w_int."""
@@ -131,35 +146,24 @@ class LineSchedule(Schedule):
             return uncorrelated_adhesion(surface)
         return gaussian_adhesion(surface)
 
-    def field(
-        self, adhesion: AdhesionMap, n_site: int, spacing: float, interpolation: Interpolation
-    ) -> TileField:
+    def field(self, adhesion: AdhesionMap, sizes: Resolution) -> TileField:
         """Field of a tile over all loads."""
         return line_field(
             adhesion,
             self.spring,
             (0.0, float(self.loads[-1])),
-            n_site=n_site,
-            spacing=spacing,
-            interpolation=interpolation,
+            n_site=sizes.n_angle,
+            spacing=sizes.spacing,
+            interpolation=sizes.interpolation,
             band_limited=not self.uncorrelated,
         )
 
-    def run(
-        self,
-        field: TileField,
-        solver: Solver | None,
-        recorder: Recorder,
-        *,
-        correlation_length: float = math.nan,
-        elastic_energy: float,
-    ) -> CycleRecord:
+    def run(self, problem: Problem, solver: Solver | None, recorder: Recorder) -> CycleRecord:
         """Both branches over the lead-in and a period, `STEADY` where both are whole.
 
-        Parameters are those of :meth:`crackfront.simulate.contact.Schedule.run`; e_el decides
-        how far behind the load a branch begins, and the correlation length has no effect.
+        e_el decides how far behind the load a branch begins.
         """
-        pinned = _BEHIND * 4 * elastic_energy * self.spring
+        field, pinned = problem.field, _BEHIND * 4 * problem.elastic_energy * self.spring
         # As far behind as the field allows, never less than pinning may hold the front.
         inside = min(-first_place(field), last_place(field) - float(self.loads[-1]))
         behind = min(pinned + self.step, max(inside, pinned))
@@ -168,7 +172,7 @@ class LineSchedule(Schedule):
         for direction in directions:
             first, *others = self.loads[::direction].tolist()
             start = np.full(field.geometry.n_site, first - direction * behind)
-            loads += [Load(first, direction, start), *(Load(one, direction) for one in others)]
+            loads += [Load(first, direction, start), *(Load(place, direction) for place in others)]
         recorder.run(field, np.full(field.geometry.n_site, -behind), loads, solver)
         return recorder.record(Status.STEADY if recorder.status is Status.CONVERGED else None)
 
@@ -185,17 +189,14 @@ class LineSchedule(Schedule):
         """Length of the springs, whatever the work of adhesion."""
         return self.spring
 
-    def steady_load(self, *_: object) -> float:
-        """Minus infinity: the lead-in is long enough."""
-        return -math.inf
+    def steady_adhesion(self, result: SimulationResult) -> SteadyAdhesion:
+        """Means over the last period of each branch."""
+        length = result.simulation.correlation_length
+        return period_adhesion(result.record, self.n_period, result.mean_adhesion, length)
 
-    def refuse_few_sites(self, name: str, larkin_length: float, site: float) -> None:
-        """Raise ValueError if the Larkin length has fewer than two sites."""
-        if larkin_length < 2 * site:
-            raise ValueError(
-                f"numerics: the Larkin length of {name} is {larkin_length:.3g}, below two sites "
-                f"({2 * site:.3g}); lower the amplitude or use more sites"
-            )
+    def usual_size(self, spectrum: Spectrum) -> float:
+        """Size of a front for which settings are chosen, whatever its spectrum."""
+        return LAW_SIZE
 
     def averaged_sizes(
         self, steady: SteadyAdhesion, correlation_length: float, short_cutoff: float
@@ -206,7 +207,7 @@ class LineSchedule(Schedule):
 
 
 @dataclass(frozen=True, slots=True)
-class LineLoad:
+class LineLoad(SurfaceLoads):
     """How the straight fronts of a sweep are held and pulled."""
 
     spring_unit: SpringUnit
@@ -221,8 +222,6 @@ class LineLoad:
     """Largest load step, in correlation lengths."""
     uncorrelated: bool = False
     """Whether sites are independent of each other, the limit of weak disorder."""
-
-    max_penetration: ClassVar[float] = 0.0
 
     def usual_size(self, spectrum: Spectrum) -> float:
         """Size of a front for which settings are chosen, whatever its spectrum."""
@@ -255,6 +254,24 @@ class LineLoad:
             step=self.step * length,
             uncorrelated=self.uncorrelated,
         )
+
+    def refuse_unresolved(self, simulation: Simulation) -> None:
+        """Raise ValueError if a Larkin length has few sites, or a period few states."""
+        sizes, schedule = simulation.resolution, simulation.schedule
+        name, energy = simulation.spectrum_name, simulation.elastic_energy
+        larkin = larkin_length(simulation.kind, simulation.spectrum, 2 * math.sqrt(energy))
+        site = sizes.tile_side / sizes.n_angle
+        if larkin < 2 * site:
+            raise ValueError(
+                f"numerics: the Larkin length of {name} at e_el {energy:g} is {larkin:.3g}, below "
+                f"two sites ({2 * site:.3g}); lower the amplitude or use more sites"
+            )
+        if isinstance(schedule, LineSchedule) and schedule.n_period < FEWEST_STATES:
+            raise ValueError(
+                f"load.line: the period of {name} at e_el {energy:g} has "
+                f"{counted(schedule.n_period, 'state')}, and errors need {FEWEST_STATES} or more; "
+                "lower step or raise period"
+            )
 
 
 def front_rms(force_correlation_length: float, size: float) -> float:

@@ -6,49 +6,60 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from crackfront.analysis.steady_adhesion import SteadyAdhesion, steady_adhesion
 from crackfront.core import jkr
 from crackfront.core.adhesion import AdhesionMap
 from crackfront.core.cycle.load_schedule import LoadSchedule
 from crackfront.core.cycle.record import CycleRecord, Recorder
 from crackfront.core.cycle.run import run_cycle
-from crackfront.core.field.fields import Field, Interpolation, TileField
+from crackfront.core.field.fields import TileField
 from crackfront.core.geometry.base import Geometry
 from crackfront.core.geometry.sphere import contact_field, sphere
 from crackfront.core.solver.relax import Solver
-from crackfront.simulate.contact import ExpectedMotion, Schedule
-from crackfront.simulate.tiles import RandomSurface
+from crackfront.core.spectrum import Spectrum
+from crackfront.simulate.contact import ExpectedMotion, Pressed, Problem, Schedule
+from crackfront.simulate.laws import sphere_size
+from crackfront.simulate.tiles import Fineness, RandomSurface, Resolution, gaussian_adhesion
 
 if TYPE_CHECKING:
-    from crackfront.analysis.steady_adhesion import SteadyAdhesion
+    from crackfront.simulate.run_simulation import SimulationResult
 
 
-class SphereSchedule(Schedule):
+class SphereSchedule(Schedule, Pressed):
     """Loads of a sphere on a square tile, up to a largest penetration."""
 
     __slots__ = ()
-
-    uncorrelated = False
-    spring = math.nan
-
-    @property
-    def n_period(self) -> None:
-        """None: a branch is steady once every site has travelled far enough."""
 
     @property
     def front_length(self) -> float:
         """Length of the longest front that is smooth (Units: length)."""
         return 2 * math.pi * float(jkr.equilibrium_radius(self.max_penetration))
 
+    def resolution(self, fineness: Fineness) -> Resolution:
+        """Sizes on the least tile, which the contact may exceed."""
+        return fineness.sizes(fineness.tile_side, self.front_length)
+
+    def tile(self, sizes: Resolution) -> tuple[tuple[int, int], tuple[float, float]]:
+        """A square."""
+        return (sizes.n_point, sizes.n_point), (sizes.tile_side, sizes.tile_side)
+
     def geometry(self, n_site: int) -> Geometry:
         """Sphere with so many rays."""
         return sphere(n_site)
 
-    def field(
-        self, adhesion: AdhesionMap, n_site: int, spacing: float, interpolation: Interpolation
-    ) -> TileField:
+    def adhesion(self, surface: RandomSurface) -> AdhesionMap:
+        """Work of adhesion of a Gaussian surface."""
+        return gaussian_adhesion(surface)
+
+    def field(self, adhesion: AdhesionMap, sizes: Resolution) -> TileField:
         """Field of a tile up to the largest penetration."""
         return contact_field(
-            adhesion, self.max_penetration, n_site, spacing, interpolation, band_limited=True
+            adhesion,
+            self.max_penetration,
+            sizes.n_angle,
+            sizes.spacing,
+            sizes.interpolation,
+            band_limited=True,
         )
 
     @classmethod
@@ -60,8 +71,13 @@ class SphereSchedule(Schedule):
         """Length L_kappa over which the edge of the largest smooth contact is held."""
         return jkr.spring(jkr.equilibrium_radius(self.max_penetration), work_of_adhesion)
 
-    def refuse_few_sites(self, *_: object) -> None:
-        """Refuse nothing: the numerics decide the sites of a sphere."""
+    def steady_adhesion(self, result: SimulationResult) -> SteadyAdhesion:
+        """Means over the states of which every site has travelled a correlation length."""
+        return steady_adhesion(result.record, result.simulation.correlation_length)
+
+    def usual_size(self, spectrum: Spectrum) -> float:
+        """Size of the front of a sphere of mean radius 1.6 in eight states."""
+        return sphere_size(spectrum)
 
     def averaged_sizes(
         self, steady: SteadyAdhesion, correlation_length: float, short_cutoff: float
@@ -84,11 +100,9 @@ class FullCycle(SphereSchedule, LoadSchedule):
 
     load_name = "full cycle"
 
-    def run(
-        self, field: Field, solver: Solver | None, recorder: Recorder, **_: float
-    ) -> CycleRecord:
+    def run(self, problem: Problem, solver: Solver | None, recorder: Recorder) -> CycleRecord:
         """States from first contact to pull-off."""
-        return run_cycle(field, self, solver, recorder)
+        return run_cycle(problem.field, self, solver, recorder)
 
     def expected_motion(self, surface: RandomSurface) -> ExpectedMotion:
         """States of both branches, until contact is lost."""
@@ -98,7 +112,7 @@ class FullCycle(SphereSchedule, LoadSchedule):
         n_state = (2 * self.max_penetration - lost_at) / self.step
         return ExpectedMotion(n_state, travel / surface.correlation_length)
 
-    def steady_load(
+    def steady_penetration(
         self, surface: RandomSurface, works: tuple[float, float], travel: float, n_state: int
     ) -> float:
         """Penetration that leaves both branches so many steady states at the same radii."""

@@ -27,7 +27,7 @@ from crackfront.core.outcome import Direction, Status
 from crackfront.core.solver.relax import Solver
 from crackfront.core.spectrum import SelfAffineSpectrum, Spectrum
 from crackfront.core.units import WORK_OF_ADHESION
-from crackfront.simulate.contact import ExpectedMotion
+from crackfront.simulate.contact import ExpectedMotion, Problem
 from crackfront.simulate.sphere.full_cycle import SphereSchedule
 from crackfront.simulate.tiles import RandomSurface
 
@@ -85,15 +85,7 @@ class SteadySchedule(SphereSchedule):
                 f"penetration {self.max_penetration}: lower it or penetrate deeper"
             )
 
-    def run(
-        self,
-        field: Field,
-        solver: Solver | None,
-        recorder: Recorder,
-        *,
-        correlation_length: float,
-        elastic_energy: float,
-    ) -> CycleRecord:
+    def run(self, problem: Problem, solver: Solver | None, recorder: Recorder) -> CycleRecord:
         """Approach and retraction over the radii that an estimate of the hysteresis needs.
 
         Each branch begins at the circle of `forward_circle`. The approach goes on until k has the
@@ -101,19 +93,16 @@ class SteadySchedule(SphereSchedule):
         its largest radius until it has left the radii over which the approach was steady, which a
         branch is once every site has travelled a correlation length. The status is `STEADY` where
         both branches were measured. The energy that the first step of a branch dissipates has no
-        meaning and is NaN. Parameters are those of
-        :meth:`crackfront.simulate.contact.Schedule.run`. ValueError if a smooth sphere would
-        outgrow the field.
+        meaning and is NaN. ValueError if a smooth sphere would outgrow the field.
         """
-        refuse_outgrown(field, self.max_penetration)
-        loads = self._loads(field, recorder, correlation_length, elastic_energy)
-        recorder.run(field, first_touch(field), loads, solver)
+        refuse_outgrown(problem.field, self.max_penetration)
+        loads = self._loads(problem, recorder)
+        recorder.run(problem.field, first_touch(problem.field), loads, solver)
         return recorder.record(Status.STEADY if recorder.status is Status.CONVERGED else None)
 
-    def _loads(
-        self, field: Field, recorder: Recorder, correlation_length: float, elastic_energy: float
-    ) -> Iterator[Load]:
+    def _loads(self, problem: Problem, recorder: Recorder) -> Iterator[Load]:
         """Loads of both branches, each chosen by the states recorded before it."""
+        field, correlation_length = problem.field, problem.correlation_length
         step = self.travel * correlation_length * jkr.penetration_slope(self.start)
         n_step = math.floor((self.max_penetration - self.start) / step)
         near = jkr.equilibrium_radius(self.start) - correlation_length
@@ -130,7 +119,7 @@ class SteadySchedule(SphereSchedule):
             known = columns(steady, ContactState)
             own = own_part(known.apparent_work_of_adhesion, np.array(shared))
             spread = standard_error(own, known.mean_radius, known.rms_radius, correlation_length)
-            wanted = self.standard_error * elastic_energy
+            wanted = self.standard_error * problem.elastic_energy
             if len(steady) >= _FEWEST_TO_TURN and spread / math.sqrt(2) <= wanted:
                 break
         lowest = min((item.mean_radius for item in steady), default=math.inf)
@@ -154,7 +143,7 @@ class SteadySchedule(SphereSchedule):
         n_state = max(_FEWEST_STATES, 1 + variance / self.standard_error**2)
         return ExpectedMotion(2 * min(n_most, n_state), self.travel)
 
-    def steady_load(
+    def steady_penetration(
         self, surface: RandomSurface, works: tuple[float, float], travel: float, n_state: int
     ) -> float:
         """Penetration that leaves the approach so many steady states."""

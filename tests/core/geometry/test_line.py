@@ -259,7 +259,7 @@ def test_the_command_writes_a_cycle_of_the_line(command):
         ({"loads": None}, "a straight front needs loads"),
         ({"loads": "3,x"}, "a load is 'x'; write numbers alone"),
         ({"step": 0}, "load step is 0.0; it must be positive"),
-        ({"max_penetration": 1}, "max_penetration is 1, but a straight front is at its loads"),
+        ({"max_penetration": 1}, "max_penetration is 1, but only a sphere has one; give loads"),
     ],
 )
 def test_options_that_do_not_fit_the_geometry_are_refused(command, changes, sentence):

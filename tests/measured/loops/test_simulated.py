@@ -9,7 +9,7 @@ from click.testing import CliRunner
 
 import crackfront as cf
 from crackfront import measured_loop
-from crackfront.analysis.steady_adhesion import mean_adhesion
+from crackfront.analysis.steady_adhesion import steady_adhesion
 from crackfront.cli import main
 from crackfront.simulate.cycle_files import cycle_record
 
@@ -48,7 +48,7 @@ def loop(*arguments):
 
 def test_a_cycle_has_the_works_of_adhesion_of_its_simulation(cycle):
     found = measured_loop(cycle)
-    expected = mean_adhesion(cycle_record(cycle), float(cycle.correlation_length), None, np.nan)
+    expected = steady_adhesion(cycle_record(cycle), float(cycle.correlation_length))
     for name in WORKS:
         estimate = getattr(found, name)
         assert estimate.value == pytest.approx(getattr(expected, name), rel=1e-12)
