@@ -209,12 +209,11 @@ reproduce-scans: env
 	$(IN_ENV) .venv/bin/python -m studies accuracy energy-balance --keep
 
 law: env  ## The law of k, from its straight fronts, into results/law (an hour of one core)
-	set -e; for name in $(FRONTS_OF_LAW); do \
-	  $(SNAKE) --config sweep=config/$$name.yaml; done
-	$(IN_ENV) .venv/bin/python -m studies law fit $(FRONTS_OF_LAW:%=config/%.yaml)
+	$(IN_ENV) .venv/bin/python -m studies law configurations
+	set -e; for sweep in $(FRONTS_OF_LAW); do $(SNAKE) --config sweep=$$sweep; done
+	$(IN_ENV) .venv/bin/python -m studies law fit $(FRONTS_OF_LAW)
 
-FRONTS_OF_LAW = line line-strong line-long line-long-strong line-chemical line-chemical-strong line-weak \
-  line-weak-long line-held-out
+FRONTS_OF_LAW = config/line.yaml results/law/configurations/*.yaml
 KEPT = docs/reference
 PAPER = main-3cd main-5bc si-5 beyond-avalanches beyond-roughness
 LARGE = 512 1024 series strong fine edges
