@@ -616,10 +616,10 @@ print(heavy & set(sys.modules), file=sys.stderr)
 @pytest.mark.slow
 def test_the_library_changes_no_setting_of_the_program_that_imports_it():
     code = """
-import gc, signal, sys
+import signal, sys
 def settings():
     handlers = [signal.getsignal(number) for number in signal.valid_signals()]
-    return gc.get_threshold(), gc.get_freeze_count(), handlers, sys.meta_path[:]
+    return handlers, sys.meta_path[:]
 before = settings()
 import crackfront as cf
 [getattr(cf, name) for name in cf.__all__]
