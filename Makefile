@@ -262,12 +262,12 @@ lint: env  ## Style, format, types, import layers, format of the rules
 	.venv/bin/lint-imports
 	.venv/bin/snakefmt --check Snakefile workflow
 
-lock:  ## Resolve requirements.in and pyproject.toml anew into requirements.lock
+lock:  ## Resolve pyproject.toml anew into requirements.lock
 	@tools=$$(mktemp -d) && trap 'rm -rf "$$tools"' EXIT \
 	&& "$(PYTHON)" -m venv "$$tools" && "$$tools/bin/pip" install --quiet uv \
 	&& "$$tools/bin/uv" pip compile --quiet --no-config --upgrade --universal --python-version 3.11 --fork-strategy fewest \
 	  --generate-hashes --no-emit-index-url --no-annotate --no-header \
-	  --output-file requirements.lock requirements.in pyproject.toml >/dev/null
+	  --extra dev --extra mpich --output-file requirements.lock pyproject.toml >/dev/null
 	@echo "Locked: requirements.lock"
 
 clean:  ## Remove .venv and caches, never results
