@@ -423,7 +423,7 @@ def test_machines_read_how_a_cycle_ended(smooth_tile, tmp_path):
 
 
 def test_a_cycle_tells_in_a_line_what_it_found_and_draws_it(rough_surface, tmp_path, monkeypatch):
-    monkeypatch.setattr(sys.modules["crackfront.cli.cycle_command"], "_SECONDS_IN_LOG", 0.0)
+    monkeypatch.setattr("crackfront.sweep.watching._SECONDS_IN_LOG", 0.0)
     result = cycle(rough_surface, tmp_path, "--figure", tmp_path / "pictures/loop", step=0.02)
     assert result.exit_code == 0, result.output
     found = xr.load_dataset(tmp_path / "out.nc")
@@ -477,7 +477,7 @@ def stopped_cycle(monkeypatch, signal_number, *arguments):
     with monkeypatch.context() as patched:
         shown = nullcontext(interrupted)
         patched.setattr(
-            sys.modules["crackfront.cli.cycle_command"], "_progress", lambda *_, **__: shown
+            sys.modules["crackfront.cli.cycle_command"], "cycle_progress", lambda *_, **__: shown
         )
         return cycle(*arguments)
 
