@@ -209,12 +209,11 @@ reproduce-scans: env
 	$(IN_ENV) .venv/bin/python -m studies accuracy energy-balance --keep
 
 law: env  ## The law of k, from its straight fronts, into results/law (an hour of one core)
-	set -e; for name in $(FRONTS_OF_LAW); do \
-	  $(SNAKE) --config sweep=config/$$name.yaml; done
-	$(IN_ENV) .venv/bin/python -m studies law fit $(FRONTS_OF_LAW:%=config/%.yaml)
+	$(IN_ENV) .venv/bin/python -m studies law configurations
+	set -e; for sweep in $(FRONTS_OF_LAW); do $(SNAKE) --config sweep=$$sweep; done
+	$(IN_ENV) .venv/bin/python -m studies law fit $(FRONTS_OF_LAW)
 
-FRONTS_OF_LAW = line line-strong line-long line-long-strong line-chemical line-chemical-strong line-weak \
-  line-weak-long line-held-out
+FRONTS_OF_LAW = config/line.yaml results/law/configurations/*.yaml
 KEPT = docs/reference
 PAPER = main-3cd main-5bc si-5 beyond-avalanches beyond-roughness
 LARGE = 512 1024 series strong fine edges
@@ -263,12 +262,12 @@ lint: env  ## Style, format, types, import layers, format of the rules
 	.venv/bin/lint-imports
 	.venv/bin/snakefmt --check Snakefile workflow
 
-lock:  ## Resolve requirements.in and pyproject.toml anew into requirements.lock
+lock:  ## Resolve pyproject.toml anew into requirements.lock
 	@tools=$$(mktemp -d) && trap 'rm -rf "$$tools"' EXIT \
 	&& "$(PYTHON)" -m venv "$$tools" && "$$tools/bin/pip" install --quiet uv \
 	&& "$$tools/bin/uv" pip compile --quiet --no-config --upgrade --universal --python-version 3.11 --fork-strategy fewest \
 	  --generate-hashes --no-emit-index-url --no-annotate --no-header \
-	  --output-file requirements.lock requirements.in pyproject.toml >/dev/null
+	  --extra dev --extra mpich --output-file requirements.lock pyproject.toml >/dev/null
 	@echo "Locked: requirements.lock"
 
 clean:  ## Remove .venv and caches, never results

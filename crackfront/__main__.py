@@ -1,15 +1,10 @@
 """The command `crackfront`, which is `python -m crackfront`, from its first import on."""
 
-import atexit
-import gc
 import sys
 
 
 def main() -> None:
     """Run the command line of the process; Ctrl-C ends it in a sentence while it is imported."""
-    # Imports leave no garbage; a collection after them is as slow as a short command.
-    gc.set_threshold(100_000)
-    atexit.register(gc.freeze)
     try:
         from crackfront.cli import main as commands
     except KeyboardInterrupt:

@@ -1,7 +1,5 @@
 """What every test shares: floating-point errors raise, random numbers are seeded."""
 
-import atexit
-import gc
 import os
 import signal
 from collections.abc import Iterator
@@ -21,10 +19,6 @@ from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.plots.style import STYLE
 from crackfront.simulate.run_simulation import compile_solver
 from crackfront.simulate.sphere.full_cycle import FullCycle
-
-# As of the command: Python looks for garbage among what is imported, also as it ends.
-gc.set_threshold(1_000_000)
-atexit.register(gc.freeze)
 
 SEED = 20240229
 AS_PRINTED = STYLE.copy()

@@ -37,7 +37,7 @@ def verify(place: Path, as_json: bool) -> None:
         ("missing", found.missing),
         ("not in the list", found.unlisted),
     ):
-        lines += [f"{kind}: {name!r}" for name in names]
+        lines += [f"{kind}: {name}" for name in names]
     echo_answer(asdict(found), lines, as_json=as_json)
     if not found.is_whole:
         raise click.ClickException(

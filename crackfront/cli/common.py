@@ -5,11 +5,9 @@ from __future__ import annotations
 import json
 import math
 import os
-import sys
-import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any
 
 import click
 from click.core import ParameterSource
@@ -19,7 +17,6 @@ from crackfront.core.words import in_time
 from crackfront.measured.options import PER_SCAN, REPEATED, Options
 from crackfront.simulate.jsonable import to_jsonable
 
-T = TypeVar("T")
 Command = Callable[..., None]
 
 
@@ -120,31 +117,6 @@ def announce_cost(seconds: float, *, err: bool = True) -> None:
 
 _MOMENT = 20.0
 """Time that needs no announcement. (Units: s)"""
-
-
-def with_progress(things: Iterable[T], total: int, unit: str) -> Iterator[T]:
-    """The things one by one, with a bar on a terminal once they take more than a few seconds.
-
-    Elsewhere lines on standard error count them, each after twice the time of the one before. The
-    unit is the plural of a thing.
-    """
-    from tqdm import tqdm
-
-    began, due, terminal = time.monotonic(), _PATIENCE, sys.stderr.isatty()
-    with tqdm(
-        total=total, unit=unit, delay=_PATIENCE, disable=not terminal, file=sys.stderr
-    ) as bar:
-        for number, thing in enumerate(things, start=1):
-            yield thing
-            bar.update()
-            passed = time.monotonic() - began
-            if not terminal and passed > due and number < total:
-                click.echo(f"{number} of {total} {unit}", err=True)
-                due = 2 * passed
-
-
-_PATIENCE = 5.0
-"""Time after which a command shows how far it is. (Units: s)"""
 
 
 def refuse_unwritable(folder: Path) -> None:

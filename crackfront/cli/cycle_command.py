@@ -2,13 +2,9 @@
 
 from __future__ import annotations
 
-import hashlib
 import math
 import re
-import sys
-import time
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -40,23 +36,24 @@ from crackfront.core.solver import DEFAULT_TOLERANCE
 from crackfront.core.words import counted
 from crackfront.sweep.checkpoints import CheckpointTimer
 from crackfront.sweep.parallel import deferring_stops
+from crackfront.sweep.watching import cycle_progress
 
 if TYPE_CHECKING:
     from xarray import Dataset
 
-    from crackfront.core.cycle.record import Checkpoint, Observer, Recorder
-    from crackfront.core.geometry.base import Geometry
+    from crackfront.core.cycle.record import Observer, Recorder
+    from crackfront.core.solver.relax import Solver
+    from crackfront.simulate.cycle_files import CycleCheckpoint
+    from crackfront.surfaces.loop_setup import LoopSetup
 
 _SECONDS_BETWEEN_CHECKPOINTS = 60.0
-
-_SECONDS_IN_LOG = 10.0
-"""Time between two lines of a log."""
+"""As of `crackfront simulate`: a kill loses at most a minute of work. (Units: s)"""
 
 _PLACE = Range(-NUMBER.most, NUMBER.most)
-"""Loads and their steps; what is negative is refused where it cannot be."""
+"""Loads and their steps; the contact rejects negative ones where they are not allowed."""
 
 _MOST_BYTES = 1e8
-"""Size of a file of loads."""
+"""Largest size of a file of loads. (Units: byte)"""
 
 
 def _loads(_: click.Context, __: click.Parameter, given: str | None) -> tuple[float, ...] | None:
@@ -175,22 +172,17 @@ def cycle(
     the same command continues from there.
     """
     from crackfront.core.cycle.load_schedule import DEFAULT_STEP
-    from crackfront.core.cycle.record import Recorder
     from crackfront.core.outcome import Status
     from crackfront.core.solver.relax import named_solver
+    from crackfront.simulate.cycle_files import CycleCheckpoint, checkpoint_path, cycle_key
     from crackfront.simulate.provenance import provenance
-    from crackfront.simulate.storage import refuse_no_file, write_dataset
+    from crackfront.simulate.storage import write_dataset
     from crackfront.surfaces.given_surface import read_field
     from crackfront.surfaces.loop_setup import LoopNumerics
     from crackfront.surfaces.loops import loop_contact, loop_dataset
     from crackfront.surfaces.straight_front import straight_front
 
-    refuse_no_file(output)
-    written = {"--output": output, "--figure": figure, "the checkpoint": _checkpoint(output)}
-    refuse_overwriting([field_file], written)
-    refuse_foreign_netcdf("--output", output)
-    for path in (output, figure or output):
-        refuse_unwritable(path.parent)
+    _refuse_outputs(field_file, output, figure)
     solution = named_solver(solver, DEFAULT_TOLERANCE)
     surface = read_field(field_file)
     pressed = surface if spring is None else straight_front(surface, spring)
@@ -199,39 +191,79 @@ def cycle(
     numerics = LoopNumerics(error, sites, samples)
     setup = contact.setup(loads, step, numerics)
     solution = replace(solution, tolerance=setup.tolerance)
-    key = _key(field_file, spring, loads, max_penetration, step, numerics, solver, record)
-    keeper = _States(output, key, setup.field.geometry)
+    key = cycle_key(field_file, spring, loads, max_penetration, step, numerics, solver, record)
+    checkpoint = CycleCheckpoint(checkpoint_path(output), key, setup.field.geometry)
     announce_compilation(err=as_json)
     announce_cost(setup.seconds)
-    with deferring_stops(), _progress(setup.expected, every_state=watch) as shown:
-        recorder = Recorder(
-            fronts="fronts" in record,
-            energy="energy" in record,
-            observers=[shown, keeper],
-            resume=keeper.found(),
-        )
-        recorder.run(setup.field, setup.front, setup.loads, solution)
-    found = loop_dataset(recorder.record(), setup)
-    write_dataset(output, found, provenance())
-    keeper.remove()
-    drawn = () if figure is None else _draw(found, figure)
+    recorder = _recorded(setup, solution, checkpoint, record, every_state=watch)
+    loop = loop_dataset(recorder.record(), setup)
+    write_dataset(output, loop, provenance())
+    checkpoint.remove()
+    drawn = () if figure is None else _draw(loop, figure)
     end = f"{recorder.load_noun} {recorder.load:.6g}"
     lines = [
         f"{counted(len(recorder.states), 'state')}: {output}",
         *(f"figure: {path}" for path in drawn),
     ]
-    lines.append(found.attrs["result"])
+    lines.append(loop.attrs["result"])
     if recorder.status is Status.LOST_CONTACT:
         lines.append(f"contact was lost at {end}")
-    echo_answer(_content(recorder, found, output), lines, as_json=as_json)
+    echo_answer(_content(recorder, loop, output), lines, as_json=as_json)
     if recorder.status not in (Status.LOST_CONTACT, None if loads is None else Status.CONVERGED):
         raise click.ClickException(f"at {end} {recorder.status.value}")
 
 
-def _content(recorder: Recorder, found: Dataset, output: Path) -> dict[str, object]:
-    """How a cycle ended and what it found, for JSON."""
-    forces = found["force"].values.tolist() if "force" in found else []
-    from_contact = bool(forces) and found["penetration"].values[0] == 0
+def _refuse_outputs(field_file: Path, output: Path, figure: Path | None) -> None:
+    """Raise if an output cannot be written, or would overwrite a file of something else."""
+    from crackfront.simulate.cycle_files import checkpoint_path
+    from crackfront.simulate.storage import refuse_no_file
+
+    refuse_no_file(output)
+    written = {"--output": output, "--figure": figure, "the checkpoint": checkpoint_path(output)}
+    refuse_overwriting([field_file], written)
+    refuse_foreign_netcdf("--output", output)
+    for path in (output, figure or output):
+        refuse_unwritable(path.parent)
+
+
+def _recorded(
+    setup: LoopSetup,
+    solver: Solver,
+    checkpoint: CycleCheckpoint,
+    quantities: Sequence[str],
+    *,
+    every_state: bool,
+) -> Recorder:
+    """Run a cycle, from its checkpoint if there is one; StoppedError at a signal."""
+    from crackfront.core.cycle.record import Recorder
+
+    stored = checkpoint.read(lambda sentence: click.echo(sentence, err=True))
+    if stored is not None:
+        count = stored.record.states.direction.size
+        click.echo(f"going on from {checkpoint.path}, after state {count}", err=True)
+    with deferring_stops(), cycle_progress(setup.expected, every_state=every_state) as progress:
+        recorder = Recorder(
+            fronts="fronts" in quantities,
+            energy="energy" in quantities,
+            observers=[progress, _storing(checkpoint)],
+            resume=stored,
+        )
+        recorder.run(setup.field, setup.front, setup.loads, solver)
+    return recorder
+
+
+def _draw(loop: Dataset, figure: Path) -> tuple[Path, ...]:
+    """Draw the figure of a loop; its files."""
+    from crackfront.plots.figures import loop_figure
+    from crackfront.plots.style import save_figure
+
+    return save_figure(loop_figure(loop), figure)
+
+
+def _content(recorder: Recorder, loop: Dataset, output: Path) -> dict[str, object]:
+    """How a cycle ended and its measures, for JSON."""
+    forces = loop["force"].values.tolist() if "force" in loop else []
+    from_contact = bool(forces) and loop["penetration"].values[0] == 0
     return {
         "output": output,
         "states": len(recorder.states),
@@ -239,104 +271,19 @@ def _content(recorder: Recorder, found: Dataset, output: Path) -> dict[str, obje
         f"end_{recorder.load_name}": recorder.load,
         "lowest_force": min(forces, default=None),
         "jump_in_force": forces[0] if from_contact else None,
-        **{name: float(found.get(name, "nan")) for name in ("w_appr", "w_retr", "hysteresis")},
+        **{name: float(loop.get(name, "nan")) for name in ("w_appr", "w_retr", "hysteresis")},
     }
 
 
-@contextmanager
-def _progress(expected: int, *, every_state: bool) -> Iterator[Observer]:
-    """What shows new states: a bar on a terminal, now and then a line in a log, or one for each."""
-    from tqdm import tqdm
+def _storing(checkpoint: CycleCheckpoint) -> Observer:
+    """Observer that stores the states from time to time, and ends the cycle at a signal."""
+    timer = CheckpointTimer(checkpoint.path, _SECONDS_BETWEEN_CHECKPOINTS)
 
-    with tqdm(total=expected, unit="state", disable=not sys.stderr.isatty()) as bar:
-        following = time.monotonic() + _SECONDS_IN_LOG
-
-        def shown(recorder: Recorder) -> None:
-            nonlocal following
-            count, last = len(recorder.states), recorder.states[-1]
-            bar.set_postfix_str(last.summary, refresh=False)
-            bar.update(count - bar.n)
-            if every_state or (bar.disable and time.monotonic() >= following):
-                following = time.monotonic() + _SECONDS_IN_LOG
-                branch = last.branch_names[last.direction]
-                bar.write(f"state {count}, {branch}: {last.summary}", file=sys.stderr)
-
-        yield shown
-
-
-class _States:
-    """The states of a cycle in a file beside its output, from which the same command goes on."""
-
-    def __init__(self, output: Path, key: str, geometry: Geometry) -> None:
-        self.path = _checkpoint(output)
-        self._key, self._geometry = key, geometry
-        self._file = CheckpointTimer(self.path, _SECONDS_BETWEEN_CHECKPOINTS)
-
-    def found(self) -> Checkpoint | None:
-        """Checkpoint of an earlier run of the same cycle, if there is one."""
-        from crackfront.simulate.cycle_files import known_checkpoint
-        from crackfront.simulate.storage import read_dataset, set_aside_if_damaged
-
-        if not self.path.exists():
-            return None
-        if sentence := set_aside_if_damaged(self.path):
-            click.echo(f"{sentence}; the cycle begins anew", err=True)
-            return None
-        states = self._geometry.state_type
-        found = known_checkpoint(read_dataset(self.path), self._key, states, self.path)
-        if found is None:
-            raise ValueError(
-                f"{self.path} holds the states of another cycle, of another field, other options "
-                "or of another version; remove it, or name another --output"
-            )
-        count = found.record.states.direction.size
-        click.echo(f"going on from {self.path}, after state {count}", err=True)
-        return found
-
-    def remove(self) -> None:
-        """Remove the file and its checksum, when the cycle has ended."""
-        from crackfront.simulate.checksums import digest_path
-
-        for path in (self.path, digest_path(self.path)):
-            path.unlink(missing_ok=True)
-
-    def __call__(self, recorder: Recorder) -> None:
-        """Store the states when it is time for that; end the cycle when a stop is requested."""
-        from crackfront.simulate.cycle_files import checkpoint_dataset
-        from crackfront.simulate.provenance import provenance
-        from crackfront.simulate.storage import write_derived
-
-        def write(path: Path) -> None:
-            kept = checkpoint_dataset(recorder.checkpoint(), self._key, self._geometry)
-            write_derived(path, kept, provenance())
-
-        if self._file.keep(write):
-            count = len(recorder.states)
+    def store(recorder: Recorder) -> None:
+        if timer.keep(lambda _: checkpoint.write(recorder.checkpoint())):
             raise StoppedError(
-                f"{count} states are stored in {self.path}; run the same command to continue"
+                f"{len(recorder.states)} states are stored in {checkpoint.path}; run the same "
+                "command to continue"
             )
 
-
-def _checkpoint(output: Path) -> Path:
-    """File beside an output that keeps the states of an interrupted cycle."""
-    return output.with_name(f"{output.stem}.checkpoint.nc")
-
-
-def _key(field_file: Path, *options: object) -> str:
-    """Digits that change with the field, the options of a cycle and the version of the physics."""
-    from crackfront.core.versions import PHYSICS_VERSION
-
-    with field_file.open("rb") as file:
-        content = hashlib.file_digest(file, "sha256").hexdigest()
-    return hashlib.sha256(repr((content, *options, PHYSICS_VERSION)).encode()).hexdigest()
-
-
-def _draw(found: Dataset, stem: Path) -> tuple[Path, ...]:
-    """Draw the figure of a loop."""
-    from crackfront.plots.figures import plot_loop
-    from crackfront.plots.style import COLUMN, blank_figure, house_style, save_figure
-
-    with house_style():
-        figure = blank_figure(COLUMN, 0.82 * COLUMN)
-        plot_loop(found, figure.add_subplot())
-        return save_figure(figure, stem)
+    return store

@@ -16,9 +16,8 @@ from typing import Any
 def output_that_may_close() -> Iterator[None]:
     """Discard output once the reader of a pipe or a terminal is gone.
 
-    Names of files are printed as they are, also where they are no UTF-8. A stream that was closed
-    before the start is opened on the null device, as a file that is opened later would otherwise
-    get its number and the output.
+    A stream that was closed before the start is opened on the null device, as a file that is opened
+    later would otherwise get its number and the output.
     """
     for number in range(3):
         try:
@@ -26,18 +25,12 @@ def output_that_may_close() -> Iterator[None]:
         except OSError:
             os.open(os.devnull, os.O_RDWR)  # takes the lowest number, which is this
     before = sys.stdout, sys.stderr
-    text = sys.stdout if isinstance(sys.stdout, io.TextIOWrapper) else None
-    errors = text.errors if text else None
-    sys.stdout, sys.stderr = (None if one is None else _Output(one) for one in before)
+    sys.stdout, sys.stderr = (None if stream is None else _Output(stream) for stream in before)
     try:
-        if text and errors == "strict":
-            text.reconfigure(errors="surrogateescape")
         yield
     finally:
-        for one in filter(None, (sys.stdout, sys.stderr)):
-            one.flush()
-        if text and errors == "strict":
-            text.reconfigure(errors="strict")
+        for stream in filter(None, (sys.stdout, sys.stderr)):
+            stream.flush()
         sys.stdout, sys.stderr = before
 
 

@@ -14,9 +14,9 @@ from crackfront.cli.common import (
     announce_cost,
     as_json,
     examples,
-    with_progress,
 )
 from crackfront.cli.sweep_commands import configuration_argument, output_option, warn
+from crackfront.sweep.watching import with_progress
 
 if TYPE_CHECKING:
     from crackfront.analysis.result import SweepFit

@@ -11,6 +11,7 @@ from numbers import Integral
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from xarray import DataArray, Dataset
 
@@ -22,7 +23,7 @@ from crackfront.plots.density_axes import draw_spectrum
 from crackfront.plots.fronts import draw_field, draw_fronts, draw_heights, draw_straight_fronts
 from crackfront.plots.instability_maps import draw_instabilities
 from crackfront.plots.loop_figures import draw_loop, draw_pinning
-from crackfront.plots.style import shown_axes
+from crackfront.plots.style import COLUMN, blank_figure, house_style, shown_axes
 from crackfront.simulate.cycle_files import cycle_record
 from crackfront.surfaces.given_surface import surface_adhesion, surface_kind
 from crackfront.surfaces.random_surface import stated_spectrum, tile_modes
@@ -205,6 +206,14 @@ def plot_loop(loop: Dataset, axes: Axes | None = None) -> Axes:
     with _drawing(axes) as drawn:
         draw_loop(drawn, states, *measures, elastic_energy=energy, kind=kind, units=units)
     return drawn
+
+
+def loop_figure(loop: Dataset) -> Figure:
+    """Figure of :func:`plot_loop` for print, a column wide."""
+    with house_style():
+        figure = blank_figure(COLUMN, 0.82 * COLUMN)
+        plot_loop(loop, figure.add_subplot())
+        return figure
 
 
 def plot_fronts(

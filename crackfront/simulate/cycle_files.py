@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+import hashlib
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -15,13 +17,16 @@ from crackfront.core.geometry.sphere import ContactState
 from crackfront.core.outcome import Status
 from crackfront.core.variables import STEP, Variable, variables
 from crackfront.core.versions import PHYSICS_VERSION
+from crackfront.simulate.checksums import digest_path, file_digest
 from crackfront.simulate.labels import labelled, labelled_fields
-from crackfront.simulate.provenance import Provenance
+from crackfront.simulate.provenance import Provenance, provenance
 from crackfront.simulate.run_simulation import PartialRun
 from crackfront.simulate.simulation import Simulation
 from crackfront.simulate.storage import (
     UnreadableFileError,
     read_dataset,
+    set_aside_if_damaged,
+    write_derived,
     write_named_by_digest,
 )
 
@@ -35,6 +40,57 @@ _LOOP_STATES: tuple[type[State], ...] = (ContactState, LineState)
 """Records of the states of loops on a user's surface; a file has the load of one of them."""
 
 _STEP = Variable(STEP, (STEP,), "1", "number of the state")
+
+
+@dataclass(frozen=True, slots=True)
+class CycleCheckpoint:
+    """File with the states of an interrupted cycle, from which the same cycle continues."""
+
+    path: Path
+    key: str
+    """Digest of all that determines the cycle."""
+    geometry: Geometry
+
+    def read(self, warn: Callable[[str], None]) -> Checkpoint | None:
+        """Stored checkpoint; None if there is none, or if it is damaged, of which a sentence warns.
+
+        ValueError if the file is the checkpoint of another cycle.
+        """
+        if not self.path.exists():
+            return None
+        if sentence := set_aside_if_damaged(self.path):
+            warn(f"{sentence}; the cycle begins anew")
+            return None
+        states = self.geometry.state_type
+        checkpoint = known_checkpoint(read_dataset(self.path), self.key, states, self.path)
+        if checkpoint is None:
+            raise ValueError(
+                f"{self.path} has the states of another cycle: the field, an option or the version "
+                "differs; remove it, or name another --output"
+            )
+        return checkpoint
+
+    def write(self, checkpoint: Checkpoint) -> None:
+        """Write a checkpoint, in place of an earlier one."""
+        write_derived(
+            self.path, checkpoint_dataset(checkpoint, self.key, self.geometry), provenance()
+        )
+
+    def remove(self) -> None:
+        """Remove the file and its checksum."""
+        for path in (self.path, digest_path(self.path)):
+            path.unlink(missing_ok=True)
+
+
+def checkpoint_path(output: Path) -> Path:
+    """Path of the checkpoint of a cycle whose states are written into an output."""
+    return output.with_name(f"{output.stem}.checkpoint.nc")
+
+
+def cycle_key(field_file: Path, *options: object) -> str:
+    """Digest of a field, the options of a cycle and the version of the physics."""
+    content = file_digest(field_file)
+    return hashlib.sha256(repr((content, *options, PHYSICS_VERSION)).encode()).hexdigest()
 
 
 def write_checkpoint(folder: Path, name: str, partial: PartialRun, origin: Provenance) -> Path:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import functools
 import hashlib
-import os
 import platform
 import shlex
 import subprocess
@@ -96,12 +95,10 @@ def provenance(configuration: str = "") -> Provenance:
     program = Path(sys.argv[0])
     # Without its folder, which is that of one machine.
     name = program.parent.name if program.name == "__main__.py" else program.name
-    # Names of files are bytes, of which files of results hold what is UTF-8.
-    words = os.fsencode(shlex.join([name, *sys.argv[1:]]))
     return Provenance(
         crackfront_version=__version__,
         git_commit=git_commit(),
-        command=words.decode("utf-8", "backslashreplace"),
+        command=shlex.join([name, *sys.argv[1:]]),
         configuration=configuration,
     )
 

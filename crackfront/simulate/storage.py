@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import contextlib
 import errno
 import fcntl
 import os
 import secrets
 import tempfile
 import time
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Collection
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -117,23 +116,7 @@ def _write_netcdf(path: Path, dataset: xr.Dataset, origin: Provenance) -> None:
     """Write a dataset as netCDF with its origin."""
     stamped = _stamped(dataset, origin)
     encoding = {str(name): _encoding(values) for name, values in stamped.variables.items()}
-    with utf8_path(path) as named:
-        stamped.to_netcdf(named, engine="netcdf4", encoding=encoding)
-
-
-@contextlib.contextmanager
-def utf8_path(path: Path) -> Iterator[Path]:
-    """Path of a file for netCDF4, which reads UTF-8 alone, also in a folder of another encoding."""
-    try:
-        str(path).encode()
-    except UnicodeEncodeError:
-        folder = os.open(path.parent, os.O_RDONLY)
-        try:
-            yield Path(f"/proc/self/fd/{folder}", path.name)
-        finally:
-            os.close(folder)
-    else:
-        yield path
+    stamped.to_netcdf(path, engine="netcdf4", encoding=encoding)
 
 
 def _stamped(dataset: xr.Dataset, origin: Provenance) -> xr.Dataset:
@@ -156,9 +139,8 @@ def _encoding(values: xr.Variable) -> dict[str, Any]:
 
 
 def write_text(path: Path, text: str) -> None:
-    """Write a text file atomically; names of files in the text stay the bytes that they are."""
-    content = text.encode("utf-8", "surrogateescape")
-    replace_atomically(path, lambda part: part.write_bytes(content))
+    """Write a text file atomically, in UTF-8."""
+    replace_atomically(path, lambda part: part.write_text(text, encoding="utf-8"))
 
 
 def replace_atomically(
@@ -232,10 +214,7 @@ def read_dataset(
         what = "is no file" if path.exists() else "does not exist"
         raise UnreadableFileError(f"{path} {what}; check the name")
     try:
-        with (
-            utf8_path(path) as named,
-            xr.open_dataset(named, engine="netcdf4", decode_times=False) as dataset,
-        ):
+        with xr.open_dataset(path, engine="netcdf4", decode_times=False) as dataset:
             others = [] if names is None else [name for name in dataset if name not in names]
             chosen = dataset.drop_vars(others)
             refuse_beyond_memory(

@@ -34,7 +34,6 @@ from crackfront.simulate.simulation import Simulation
 from crackfront.simulate.storage import (
     UnreadableFileError,
     read_dataset,
-    utf8_path,
     write_named_by_digest,
 )
 from crackfront.sweep.rows import STATUSES, row_columns
@@ -223,7 +222,7 @@ def stored_rows(path: Path) -> StoredRows:
     """Rows of a file that :func:`write_curves` wrote; its checksum has been looked at."""
     names = [item.name for item in variables(SweepRow)]
     names += ["arithmetic", "series", "realisation"]
-    with utf8_path(path) as named, netCDF4.Dataset(named) as file:
+    with netCDF4.Dataset(path) as file:
         file.set_auto_mask(False)
         # Rows of an older version may lack columns, until they are made again.
         unknown = np.full(file.dimensions[SIMULATION].size, np.nan)

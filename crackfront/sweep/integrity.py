@@ -12,7 +12,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from zipfile import ZIP_DEFLATED, BadZipFile, ZipFile, ZipInfo
 
-from crackfront.core.words import in_bytes
 from crackfront.simulate.checksums import (
     SUMS,
     file_digest,
@@ -27,9 +26,6 @@ from crackfront.simulate.storage import replace_atomically, write_text
 
 _DERIVED = "hysteresis.nc", "fit.nc"
 """Files of a sweep that must have a checksum next to them, as those in its shards."""
-
-_MOST_EXPANSION = 1000
-"""How many times larger than an archive its files may be; those of sweeps are twice as large."""
 
 _UNREADABLE = BadZipFile, EOFError, NotImplementedError, RuntimeError, zlib.error
 """What a damaged, encrypted or unusual archive raises."""
@@ -56,8 +52,8 @@ class Verification:
 def verification(place: Path) -> Verification:
     """Compare the files of a folder of results, or of its archive, with their list.
 
-    An archive is read, not unpacked. ValueError if there is no list, or it is not whole; if the
-    place is neither a folder nor an archive; or if the archive would become far too large.
+    An archive is read, not unpacked. ValueError if there is no list, or it is not whole, or if the
+    place is neither a folder nor an archive.
     """
     if place.is_dir():
         sums = read_sums(place)
@@ -66,7 +62,7 @@ def verification(place: Path) -> Verification:
         raise ValueError(f"{place} is neither a folder of results nor its archive (ZIP)")
     try:
         with ZipFile(place) as archive:
-            digests = _archive_digests(place, archive)
+            digests = _archive_digests(archive)
             members = {_name(member): member for member in archive.infolist()}
             if SUMS not in members:
                 raise ValueError(f"{place} has no {SUMS}; pack it with crackfront archive")
@@ -88,15 +84,9 @@ def _compared(sums: Mapping[str, str], digests: Mapping[str, str]) -> Verificati
     )
 
 
-def _archive_digests(place: Path, archive: ZipFile) -> dict[str, str]:
+def _archive_digests(archive: ZipFile) -> dict[str, str]:
     """Checksums of the files in an archive but its list; empty where one cannot be read."""
     members = [member for member in archive.infolist() if not member.is_dir()]
-    size, packed = sum(member.file_size for member in members), place.stat().st_size
-    if size > _MOST_EXPANSION * packed:
-        raise ValueError(
-            f"{place} would grow from {in_bytes(packed)} to {in_bytes(size)}, which results do "
-            "not; do not unpack it"
-        )
     digests = {}
     for member in members:
         try:
@@ -118,7 +108,7 @@ def write_sums(folder: Path) -> Path:
     """Write the list of the checksums of a finished folder of results, and return its path.
 
     ValueError if the folder has no results, a file does not agree with the checksum in its name or
-    next to it, a file must have one and has none, or a list cannot state the name of a file.
+    next to it, or a file must have one and has none.
     """
     names = result_files(folder)
     if not names:
@@ -127,10 +117,6 @@ def write_sums(folder: Path) -> Path:
     digests = {}
     for name in names:
         path = folder / name
-        if not name.isprintable():
-            raise ValueError(
-                f"{folder} has a file {name!r}, whose name no list can state; rename it"
-            )
         derived = is_sweep and (name in _DERIVED or path.parent == folder / "shards")
         needs_digest = derived and path.suffix == ".nc"
         if (needs_digest or stated_digest(path) is not None) and not is_whole(path):

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import os
 import re
 import reprlib
 from collections.abc import Iterator
 from itertools import count
 from pathlib import Path
 from typing import Annotated, Any, TypeVar, get_args
-from urllib.parse import quote_from_bytes, unquote_to_bytes
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError, ValidationInfo
 from pydantic_core import ErrorDetails, PydanticCustomError
@@ -74,18 +72,13 @@ InputFile = Annotated[Path, Field(strict=False), AfterValidator(resolved_path)]
 _HOME = "# Relative paths begin in "
 """First line of a configuration that is stored in another folder than it was in."""
 
-_PRINTED = "".join(map(chr, range(32, 127))).replace("%", "")
-"""Letters that stand in it as they are."""
-
 
 def movable_text(path: Path) -> str:
     """Text of a configuration, its relative paths kept valid in whatever folder it is stored."""
     text = path.read_text(encoding="utf-8")
     if text.startswith(_HOME) or not re.search(r"\bsurface\s*:", text):
         return text
-    # Names of folders are bytes, of which texts hold what is printed.
-    home = quote_from_bytes(os.fsencode(path.resolve().parent), safe=_PRINTED)
-    return f"{_HOME}{home}\n{text}"
+    return f"{_HOME}{path.resolve().parent}\n{text}"
 
 
 class ConfigurationError(ValueError):
@@ -111,7 +104,7 @@ def validated(path: Path, content: object, schema: type[Kind]) -> Kind:
         first, *_ = path.read_text(encoding="utf-8").splitlines() or [""]
         folder = path.resolve().parent
         if first.startswith(_HOME):
-            folder = Path(os.fsdecode(unquote_to_bytes(first.removeprefix(_HOME))))
+            folder = Path(first.removeprefix(_HOME))
         return schema.model_validate(content, context=folder)
     except ValidationError as error:
         found = error.errors(include_url=False)

@@ -16,7 +16,7 @@ from crackfront.analysis.table import PLACE, SweepRow
 from crackfront.core.variables import variables
 from crackfront.core.versions import PHYSICS_VERSION, ROWS_VERSION
 from crackfront.simulate.provenance import Provenance
-from crackfront.simulate.storage import utf8_path, write_derived
+from crackfront.simulate.storage import write_derived
 from crackfront.sweep.curves import PARAMETERS, parameters_text
 from crackfront.sweep.requests import shard_request
 from crackfront.sweep.rows import AT_LIMIT, COMPLETE, STATUSES
@@ -104,7 +104,7 @@ def write_shard(
 
 def shard_summary(path: Path) -> ShardSummary:
     """What the attributes of a shard's file say; its checksum has been looked at."""
-    with utf8_path(path) as named, netCDF4.Dataset(named) as file:
+    with netCDF4.Dataset(path) as file:
         first, last = int(file.first_realisation), int(file.last_realisation)
         return ShardSummary(
             path=path,
@@ -132,7 +132,7 @@ def shard_columns(
     first = shard.realisations.start
     amplitudes = [shard.series.index(digest) for digest in series]
     columns = {}
-    with utf8_path(shard.path) as named, netCDF4.Dataset(named) as file:
+    with netCDF4.Dataset(shard.path) as file:
         file.set_auto_maskandscale(False)
         file.set_auto_chartostring(False)
         for item in variables(SweepRow):

@@ -1,4 +1,4 @@
-"""A bar on a terminal of a whole sweep, while jobs of a workflow fill its folder."""
+"""How far a computation is: bars on a terminal, lines in a log."""
 
 from __future__ import annotations
 
@@ -6,15 +6,74 @@ import re
 import sys
 import threading
 import time
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
+from typing import TYPE_CHECKING, TypeVar
 
-_SECONDS = 1.0
-"""Time between two looks at the logs. (Units: s)"""
+if TYPE_CHECKING:
+    from crackfront.core.cycle.record import Observer, Recorder
+
+Item = TypeVar("Item")
+
+_PATIENCE = 5.0
+"""Time after which a command shows how far it is. (Units: s)"""
+
+_SECONDS_IN_LOG = 10.0
+"""Time between two lines of a log on the states of a cycle. (Units: s)"""
+
+_SECONDS_BETWEEN_LOOKS = 1.0
+"""Time between two looks at the logs of jobs. (Units: s)"""
 
 _FINISHED = re.compile(rb"^\[\d+/\d+\] ", re.MULTILINE)
 _STORED = re.compile(rb": (\d+) of \d+ simulations are stored$", re.MULTILINE)
 """Lines of the log of a job: for each finished simulation, and for those that it finds stored."""
+
+
+def with_progress(items: Iterable[Item], total: int, unit: str) -> Iterator[Item]:
+    """Yield items, with a bar on a terminal once they take more than a few seconds.
+
+    Elsewhere lines on standard error count them, each after twice the time of the line before. The
+    unit is the plural of an item.
+    """
+    from tqdm import tqdm
+
+    began, due, terminal = time.monotonic(), _PATIENCE, sys.stderr.isatty()
+    with tqdm(
+        total=total, unit=unit, delay=_PATIENCE, disable=not terminal, file=sys.stderr
+    ) as bar:
+        for number, item in enumerate(items, start=1):
+            yield item
+            bar.update()
+            passed = time.monotonic() - began
+            if not terminal and passed > due and number < total:
+                bar.write(f"{number} of {total} {unit}", file=sys.stderr)
+                due = 2 * passed
+
+
+@contextmanager
+def cycle_progress(expected: int, *, every_state: bool) -> Iterator[Observer]:
+    """Observer of a cycle that is expected to have some number of states.
+
+    It draws a bar on a terminal, and elsewhere prints a line from time to time, or one for each
+    state.
+    """
+    from tqdm import tqdm
+
+    with tqdm(total=expected, unit="state", disable=not sys.stderr.isatty()) as bar:
+        due = time.monotonic() + _SECONDS_IN_LOG
+
+        def show(recorder: Recorder) -> None:
+            nonlocal due
+            count, last = len(recorder.states), recorder.states[-1]
+            bar.set_postfix_str(last.summary, refresh=False)
+            bar.update(count - bar.n)
+            if every_state or (bar.disable and time.monotonic() >= due):
+                due = time.monotonic() + _SECONDS_IN_LOG
+                branch = last.branch_names[last.direction]
+                bar.write(f"state {count}, {branch}: {last.summary}", file=sys.stderr)
+
+        yield show
 
 
 class SweepBar:
@@ -58,7 +117,7 @@ class SweepBar:
         total = sum(self._sizes.values())
         with tqdm(total=total, unit="simulation", smoothing=0, file=sys.stderr) as bar:
             while True:
-                ended = self._ended.wait(_SECONDS)
+                ended = self._ended.wait(_SECONDS_BETWEEN_LOOKS)
                 bar.update(sum(map(self._finished, self._sizes)) - bar.n)
                 if ended:
                     return

@@ -14,7 +14,6 @@ from crackfront.cli.common import (
     examples,
     refuse_unwritable,
     whole,
-    with_progress,
 )
 from crackfront.core.arguments import nearest_name
 from crackfront.core.bounds import Range
@@ -26,6 +25,7 @@ from crackfront.simulate.run_simulation import compile_solver
 from crackfront.simulate.sphere.full_cycle import FullCycle
 from crackfront.simulate.storage import read_attributes, write_dataset, write_text
 from crackfront.sweep.integrity import write_sums
+from crackfront.sweep.watching import with_progress
 from studies.accuracy import energies as synthetic
 from studies.accuracy import energy_balance as balance
 from studies.accuracy import measured_loops as rigs

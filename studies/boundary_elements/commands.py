@@ -12,8 +12,8 @@ from crackfront.cli.common import (
     announce_compilation,
     examples,
     refuse_unwritable,
-    with_progress,
 )
+from crackfront.sweep.watching import with_progress
 from studies.pages import keep_option, tell
 
 

@@ -21,6 +21,7 @@ from crackfront.sweep.sweep import Sweep
 from studies.law.cells import LawCell, Row, csv_rows, csv_text, law_cells, measured_cells
 from studies.law.drawing import law_figure, spectra_points
 from studies.law.fitting import fitted_law
+from studies.law.fronts import write_configurations
 from studies.law.page import law_numbers, law_parts
 from studies.law.spheres import (
     read_spheres,
@@ -31,8 +32,6 @@ from studies.law.spheres import (
     sphere_table,
 )
 from studies.pages import keep_option, output_option, tell
-
-_FRONTS = "config/line.yaml config/line-weak.yaml"
 
 commands = click.Group()
 
@@ -59,8 +58,22 @@ def _rows(configuration: Path, rows: Callable[[Sweep, xr.Dataset], Iterable[Row]
         raise ValueError(f"{configuration}: {error}") from error
 
 
+@commands.command(epilog=examples("python -m studies law configurations"))
+@_output
+def configurations(output: Path) -> None:
+    """Write the configurations of the straight fronts other than config/line.yaml.
+
+    They are in the subfolder configurations; studies/law/fronts.yaml states their differences.
+    """
+    for path in write_configurations(output / "configurations"):
+        click.echo(f"configuration: {path}")
+
+
 @commands.command(
-    epilog=examples("python -m studies law fit", f"python -m studies law fit {_FRONTS}")
+    epilog=examples(
+        "python -m studies law fit",
+        "python -m studies law fit config/line.yaml results/law/configurations/*.yaml",
+    )
 )
 @_configurations
 @_output

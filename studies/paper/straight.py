@@ -31,7 +31,7 @@ _SPECTRUM = flat_spectrum(1.0)
 
 _PERIOD, _TRANSIENT, _STEP = 25.0, 6.0, 0.5
 """Period of a tile and travel before it, over the expected rms of the front, and largest load step
-until then, in correlation lengths: those of config/line-weak.yaml."""
+until then, in correlation lengths, as in config/line.yaml."""
 
 _TILE_CUTOFFS = 60.0
 """Least sides of a tile."""

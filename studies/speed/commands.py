@@ -113,8 +113,8 @@ def needs(output: Path, keep: bool) -> None:
 def costs(output: Path, keep: bool) -> None:
     """Compare the expected processor time of simulations with the measured one."""
     refuse_unwritable(output)
-    folder = Path(__file__).parents[2] / "config"
-    measured = cost_model.measured_costs(cost_model.CONFIGURATIONS, folder, click.echo)
+    sweeps = cost_model.compared_sweeps(output / "configurations")
+    measured = cost_model.measured_costs(sweeps, click.echo)
     parts = {"costs": cost_model.ratio_table(measured)}
     _write(output / "costs", "Expected over measured processor time", parts, keep=keep)
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -11,10 +11,16 @@ import numpy as np
 from crackfront.simulate.costs import expected_cost
 from crackfront.simulate.run_simulation import run_simulation
 from crackfront.sweep.parameters import load_sweep
+from crackfront.sweep.sweep import Sweep
+from studies.law.fronts import front_sweeps
 from studies.pages import markdown_table
 
-CONFIGURATIONS = ("default", "test", "line-quick", "line", "line-strong", "line-chemical")
-"""Of config/: steady branches and full cycles of spheres, and straight fronts."""
+_CONFIG = Path(__file__).parents[2] / "config"
+
+_CONFIGURATIONS = ("default", "test", "line-quick", "line")
+"""Steady branches and full cycles of spheres, and straight fronts."""
+
+_FRONTS_OF_LAW = ("line-strong", "line-chemical")
 
 _LONGEST_SECONDS = 10.0
 """Simulations that are expected to take longer are left out. (Units: s)"""
@@ -28,13 +34,19 @@ class MeasuredCost:
     ratio: float
 
 
+def compared_sweeps(folder: Path) -> dict[str, Sweep]:
+    """Sweeps whose costs are compared, by name; configurations of the law go into a folder."""
+    fronts = front_sweeps(folder)
+    sweeps = {name: load_sweep(_CONFIG / f"{name}.yaml") for name in _CONFIGURATIONS}
+    return sweeps | {name: fronts[name] for name in _FRONTS_OF_LAW}
+
+
 def measured_costs(
-    names: Sequence[str], folder: Path, progress: Callable[[str], None]
+    sweeps: Mapping[str, Sweep], progress: Callable[[str], None]
 ) -> list[MeasuredCost]:
     """Costs of the first realisation of each spectrum at its weakest and strongest amplitude."""
     costs = []
-    for name in names:
-        sweep = load_sweep(folder / f"{name}.yaml")
+    for name, sweep in sweeps.items():
         for item in sweep.spectra:
             for energy in sorted(sweep.elastic_energies)[:: len(sweep.elastic_energies) - 1 or 1]:
                 simulation = sweep.simulation(item, energy, 0)

@@ -7,7 +7,7 @@ import time
 import pytest
 import tqdm
 
-from crackfront.cli.common import with_progress
+from crackfront.sweep.watching import with_progress
 
 
 class Terminal(io.StringIO):

@@ -50,14 +50,13 @@ print(cycle())
 """
 
 UNCHANGED = """
-import gc, os, signal, sys, warnings
+import os, signal, sys, warnings
 import numba, numpy as np, rocket_fft, scipy.interpolate, scipy.ndimage, scipy.special
 
 def settings():
     public = {name: repr(value) for name, value in vars(numba.config).items() if name.isupper()}
     handlers = {number: signal.getsignal(number) for number in signal.valid_signals()}
-    collector = gc.get_threshold(), gc.isenabled(), gc.get_freeze_count()
-    return (public, handlers, collector, list(warnings.filters), np.geterr(), dict(os.environ),
+    return (public, handlers, list(warnings.filters), np.geterr(), dict(os.environ),
             list(sys.path), sys.getswitchinterval(), np.get_printoptions())
 
 before = settings()

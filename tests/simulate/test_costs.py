@@ -16,6 +16,7 @@ from crackfront.simulate.run_simulation import run_simulation
 from crackfront.simulate.sphere.full_cycle import FullCycle
 from crackfront.simulate.sphere.steady_branches import integral_breadth
 from crackfront.sweep.parameters import load_sweep
+from studies.law.fronts import front_sweeps
 
 ROOT = Path(__file__).parents[2]
 SWEEP = load_sweep(ROOT / "config/test.yaml")
@@ -76,9 +77,19 @@ MEASURED = [
 ]
 
 
+@pytest.fixture(scope="module")
+def fronts(tmp_path_factory):
+    """Sweeps of the law of k."""
+    return front_sweeps(tmp_path_factory.mktemp("fronts"))
+
+
 @pytest.mark.parametrize(("configuration", "spectrum", "energy", "seconds"), MEASURED)
-def test_times_are_expected_within_a_factor_of_two(configuration, spectrum, energy, seconds):
-    sweep = load_sweep(ROOT / f"config/{configuration}.yaml")
+def test_times_are_expected_within_a_factor_of_two(
+    fronts, configuration, spectrum, energy, seconds
+):
+    sweep = fronts.get(configuration)
+    if sweep is None:
+        sweep = load_sweep(ROOT / f"config/{configuration}.yaml")
     [energy] = [value for value in sweep.elastic_energies if value == pytest.approx(energy)]
     expected = expected_cost(sweep.simulation(sweep.named(spectrum), energy, 0)).seconds
     assert 0.5 < expected / seconds < 2

@@ -16,8 +16,8 @@ from crackfront.simulate.sphere.steady_branches import SteadySchedule
 from crackfront.simulate.storage import UnreadableFileError
 from crackfront.sweep.parameters import load_sweep
 
-CONFIG = Path(__file__).parents[2] / "config"
-SWEEP, LINES = (load_sweep(CONFIG / name) for name in ("test.yaml", "line-test.yaml"))
+SWEEP = load_sweep(Path(__file__).parents[2] / "config/test.yaml")
+LINES = load_sweep(Path(__file__).parents[1] / "line-test.yaml")
 CYCLE = replace(
     SWEEP.simulation(SWEEP.spectra[1], 0.1, 0),
     schedule=FullCycle(0.5, 0.125),

@@ -23,9 +23,9 @@ from crackfront.sweep.parameters import load_sweep
 from crackfront.sweep.store import Store
 from crackfront.sweep.table_file import read_table
 
-CONFIG = Path(__file__).parents[2] / "config"
-TEXT = (CONFIG / "line-test.yaml").read_text(encoding="utf-8")
-SWEEP = load_sweep(CONFIG / "line-test.yaml")
+CONFIGURATION = Path(__file__).parents[1] / "line-test.yaml"
+TEXT = CONFIGURATION.read_text(encoding="utf-8")
+SWEEP = load_sweep(CONFIGURATION)
 ONE = SWEEP.simulation(SWEEP.spectra[1], 0.04, 0)
 SHAPES = {
     "flat": ("roughness", SelfAffineSpectrum(1.0, 1.0, 1.0)),
@@ -169,9 +169,8 @@ def test_springs_are_multiples_of_the_length_that_is_named():
 
 
 def test_a_sweep_of_lines_is_run_aggregated_and_fitted_as_one_of_spheres(tmp_path):
-    path = CONFIG / "line-test.yaml"
     for command in ("simulate", "aggregate", "fit"):
-        done = CliRunner().invoke(main, [command, str(path), "--output", str(tmp_path)])
+        done = CliRunner().invoke(main, [command, str(CONFIGURATION), "--output", str(tmp_path)])
         assert done.exit_code == 0, done.output
     table = read_table(tmp_path / "hysteresis.nc")
     assert table.spectrum.tolist() == ["flat-L2", "flat-L8"]

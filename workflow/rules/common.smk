@@ -1,5 +1,4 @@
 # What the rules share: the settings of a run, checked, and functions that say how a job is run.
-import gc
 import os
 import shlex
 import sys
@@ -7,8 +6,6 @@ from pathlib import Path
 
 from snakemake.exceptions import WorkflowError
 
-# As in the command: what is imported stays, and to look for garbage among it takes a while.
-gc.disable()
 BASE = Path(workflow.current_basedir).parents[1]
 sys.path.insert(0, str(BASE))  # where the studies stand
 
@@ -36,7 +33,6 @@ from studies.paper.figure import (
     sweep_of_figure,
 )
 
-gc.enable()
 unknown = set(config) - {"sweep", "ranks", "block", "scale", "validation"}
 if unknown:
     raise WorkflowError(

@@ -17,6 +17,7 @@ from crackfront.sweep.rows import failed_row
 from studies.__main__ import main
 from studies.law.cells import MEASURED, LawCell, _without_spacing, csv_rows, measured_cells
 from studies.law.fitting import fitted_law
+from studies.law.fronts import front_sweeps
 from tests.commands import dataset_of_rows
 
 ROOT = Path(__file__).parents[3]
@@ -83,8 +84,8 @@ def test_the_table_of_another_configuration_is_refused(tmp_path, monkeypatch, ve
     assert "hysteresis.nc is the table of another configuration than the one given" in done.output
 
 
-def test_spacings_are_extrapolated_to_none_in_either_order_of_the_amplitudes():
-    sweep = load_sweep(ROOT / "config/line-weak.yaml")
+def test_spacings_are_extrapolated_to_none_in_either_order_of_the_amplitudes(tmp_path):
+    sweep = front_sweeps(tmp_path)["line-weak"]
     cells = [replace(measured_cells()[0], both=value, error=0.1) for value in (3.0, 2.0)]
     energies = sweep.elastic_energies
     [found] = _without_spacing(sweep, cells)
