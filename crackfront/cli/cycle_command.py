@@ -180,11 +180,11 @@ def cycle(
     from crackfront.core.solver.relax import named_solver
     from crackfront.simulate.provenance import provenance
     from crackfront.simulate.storage import refuse_no_file, write_dataset
-    from crackfront.surfaces.given_surface import read_field
     from crackfront.surfaces.loop_setup import LoopContact, LoopNumerics
     from crackfront.surfaces.loops import loop_dataset
     from crackfront.surfaces.pressed_sphere import PressedSphere
     from crackfront.surfaces.straight_front import straight_front
+    from crackfront.surfaces.surface_array import read_field
 
     refuse_no_file(output)
     written = {"--output": output, "--figure": figure, "the checkpoint": _checkpoint(output)}

@@ -22,7 +22,8 @@ from crackfront.core.cycle.follow import Load
 from crackfront.core.field.fields import TileField
 from crackfront.simulate.contact import Schedule
 from crackfront.simulate.simulation import Simulation
-from crackfront.surfaces.random_surface import TileMeasures, refuse_no_fraction
+from crackfront.surfaces.random_surface import refuse_no_fraction
+from crackfront.surfaces.tile_measures import TileMeasures
 
 
 @dataclass(frozen=True, slots=True)

@@ -16,7 +16,7 @@ from crackfront.measured.loops.loop import MeasuredLoop, Rig, analyse_loop
 from crackfront.measured.loops.recording import UNITS, Recording, read_recording
 from crackfront.measured.loops.simulated_loop import is_netcdf, simulated_loop
 from crackfront.simulate.storage import read_dataset
-from crackfront.surfaces.si_units import in_si
+from crackfront.surfaces.scales import in_si
 from crackfront.surfaces.written_units import unit_value
 
 
