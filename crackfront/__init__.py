@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from crackfront.surfaces.random_surface import random_surface as random_surface
     from crackfront.surfaces.saving import load_result as load_result
     from crackfront.surfaces.saving import save_result as save_result
-    from crackfront.surfaces.si_units import Scales as Scales
+    from crackfront.surfaces.scales import Scales as Scales
     from crackfront.surfaces.si_units import in_reduced_units as in_reduced_units
     from crackfront.surfaces.si_units import in_si_units as in_si_units
     from crackfront.surfaces.straight_front import straight_front as straight_front

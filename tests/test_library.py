@@ -28,7 +28,8 @@ from crackfront.simulate.cycle_files import cycle_record
 from crackfront.simulate.run_simulation import run_simulation
 from crackfront.simulate.simulation import simulation_adhesion, simulation_field
 from crackfront.simulate.sphere.full_cycle import FullCycle
-from crackfront.surfaces.random_surface import chosen_simulation, tile_modes
+from crackfront.surfaces.random_surface import chosen_simulation
+from crackfront.surfaces.tile_measures import tile_modes
 from crackfront.sweep import parallel, tasks
 from tests.commands import curves, run
 

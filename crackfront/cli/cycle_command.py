@@ -177,10 +177,10 @@ def cycle(
     from crackfront.simulate.cycle_files import CycleCheckpoint, checkpoint_path, cycle_key
     from crackfront.simulate.provenance import provenance
     from crackfront.simulate.storage import write_dataset
-    from crackfront.surfaces.given_surface import read_field
     from crackfront.surfaces.loop_setup import LoopNumerics
     from crackfront.surfaces.loops import loop_contact, loop_dataset
     from crackfront.surfaces.straight_front import straight_front
+    from crackfront.surfaces.surface_array import read_field
 
     _refuse_outputs(field_file, output, figure)
     solution = named_solver(solver, DEFAULT_TOLERANCE)

@@ -1,7 +1,8 @@
-"""`crackfront loop`: works of adhesion of a loop, beside what is predicted for scans."""
+"""`crackfront loop`: works of adhesion of a loop, and their prediction from scans."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -28,24 +29,38 @@ from crackfront.measured.options import (
 from crackfront.surfaces.written_units import si_value
 
 if TYPE_CHECKING:
-    from crackfront.measured.loops.loop import MeasuredLoop
+    from crackfront.measured.loops.result import MeasuredLoop
     from crackfront.measured.prediction.prediction import Prediction
 
-_SHARE = Number(Range(0.0, 0.99))
+_ERROR = Number(Range(0.0, 0.99))
+"""Type of a relative standard error."""
 
-_COLUMNS = (("force", "N"), ("radius", "m"), ("displacement", "m"))
+_COLUMNS = {"force": "force", "radius": "contact_radius", "displacement": "displacement"}
+"""Options that name a column of a table, by the column."""
+
+_Callback = Callable[[click.Context, click.Parameter, str | None], Any]
 
 
-def _columns(command: Any) -> Any:
-    """Options that name the columns of a table and their units."""
-    for name, unit in reversed(_COLUMNS):
-        symbol = "mN" if unit == "N" else "um"
-        command = click.option(f"--{name}-unit", help=f"Unit of the {name}, as in {symbol}.")(
-            command
-        )
-        option = "--contact-radius" if name == "radius" else f"--{name}"
-        command = click.option(option, name, help=f"Heading of the column of the {name}.")(command)
-    return command
+def _in_si(unit: str) -> _Callback:
+    """Callback that gives an option its value in a unit of SI."""
+
+    def value(_: click.Context, option: click.Parameter, text: str | None) -> float | None:
+        return None if text is None else si_value(text, unit, what=option.opts[0])
+
+    return value
+
+
+def _window(
+    _: click.Context, option: click.Parameter, text: str | None
+) -> tuple[float, float] | None:
+    """Callback that gives an option two contact radii (Units: m)."""
+    if text is None:
+        return None
+    ends = text.split(":")
+    if len(ends) != 2:
+        raise ValueError(f"--window is {text!r}; give two contact radii, as in 50um:150um")
+    low, high = (si_value(end, "m", what=option.opts[0]) for end in ends)
+    return low, high
 
 
 @click.command(
@@ -57,8 +72,12 @@ def _columns(command: Any) -> Any:
     )
 )
 @click.argument("path", type=FILE, metavar="FILE")
-@click.option("--radius", "sphere", help="Radius of the sphere, as in 1.25mm.")
-@click.option("--modulus", help="Young's modulus, as in 0.7MPa; fitted if it is left out.")
+@click.option("--radius", callback=_in_si("m"), help="Radius of the sphere, as in 1.25mm.")
+@click.option(
+    "--modulus",
+    callback=_in_si("Pa"),
+    help="Young's modulus, as in 0.7MPa; fitted if it is left out.",
+)
 @click.option(
     "--poisson",
     type=Number(Range(-0.99, 0.5)),
@@ -67,14 +86,19 @@ def _columns(command: Any) -> Any:
     help="Poisson's ratio.",
 )
 @click.option(
-    "--modulus-error", type=_SHARE, default=0.0, help="Relative standard error of the modulus."
+    "--modulus-error", type=_ERROR, default=0.0, help="Relative standard error of the modulus."
 )
 @click.option(
-    "--radius-error", type=_SHARE, default=0.0, help="Relative standard error of the radius."
+    "--radius-error", type=_ERROR, default=0.0, help="Relative standard error of the radius."
 )
-@click.option("--stiffness", help="Stiffness of the machine, as in 200N/m.")
-@click.option("--window", help="Contact radii to average over, as in 50um:150um.")
-@_columns
+@click.option("--stiffness", callback=_in_si("N/m"), help="Stiffness of the machine, as in 200N/m.")
+@click.option("--window", callback=_window, help="Contact radii to average over, as in 50um:150um.")
+@click.option("--force", help="Heading of the column of the force.")
+@click.option("--force-unit", help="Unit of the force, as in mN.")
+@click.option("--contact-radius", help="Heading of the column of the radius.")
+@click.option("--radius-unit", help="Unit of the radius, as in um.")
+@click.option("--displacement", help="Heading of the column of the displacement.")
+@click.option("--displacement-unit", help="Unit of the displacement, as in um.")
 @click.option(
     "--scans",
     type=FILE,
@@ -82,7 +106,11 @@ def _columns(command: Any) -> Any:
     help="Scan of the surface, for a prediction. May be repeated.",
 )
 @options_of(ReadingOptions)
-@click.option("--work-of-adhesion", help="w_int of the prediction, as in 63mJ/m2.")
+@click.option(
+    "--work-of-adhesion",
+    callback=_in_si("J/m^2"),
+    help="w_int of the prediction, as in 63mJ/m2.",
+)
 @click.option("--figure", type=FILE, help="Figure of the loop; without suffix PDF and PNG.")
 @as_json
 @click.pass_context
@@ -90,11 +118,11 @@ def loop(
     context: click.Context,
     /,
     path: Path,
-    sphere: str | None,
-    modulus: str | None,
+    radius: float | None,
+    modulus: float | None,
     poisson: float,
     scans: tuple[Path, ...],
-    work_of_adhesion: str | None,
+    work_of_adhesion: float | None,
     figure: Path | None,
     as_json: bool,
     **options: Any,
@@ -115,96 +143,72 @@ def loop(
     if scans and work_of_adhesion is None:
         raise ValueError("a prediction for --scans needs w_int; give --work-of-adhesion")
     reading = _reading(scans, options)
-    of_rig = {name: options[name] for name in options if name not in ReadingOptions.model_fields}
+    rig = {name: options[name] for name in options if name not in ReadingOptions.model_fields}
     refuse_without(context, "modulus", "poisson")
     refuse_overwriting([path, *scans], {"--figure": figure})
     if figure is not None:
         refuse_unwritable(figure.parent)
-    radius = None if sphere is None else si_value(sphere, "m", what="--radius")
-    young = None if modulus is None else si_value(modulus, "Pa", what="--modulus")
-    contact_modulus = None if young is None else young / (1 - poisson**2)
-    adhesion = (
-        None
-        if work_of_adhesion is None
-        else si_value(work_of_adhesion, "J/m^2", what="--work-of-adhesion")
-    )
-    simulated = is_netcdf(path)
-    of_sphere = simulated and (sphere is not None or modulus is not None)
-    if adhesion is not None and not scans and not of_sphere:
-        sphere_too = ", or --radius and --modulus for SI units" if simulated else ""
-        raise ValueError(f"--work-of-adhesion is of a prediction; name --scans too{sphere_too}")
-    if simulated:
-        if given := [name for name, value in of_rig.items() if value]:
-            option = {"radius": "contact-radius"}.get(given[0], given[0].replace("_", "-"))
+    contact_modulus = None if modulus is None else modulus / (1 - poisson**2)
+    if is_netcdf(path):
+        if names := [name for name, value in rig.items() if value]:
+            option = names[0].replace("_", "-")
             raise ValueError(f"{path} is a simulated cycle without a rig; leave out --{option}")
-        found = _simulated(path, radius, contact_modulus, adhesion)
-        if scans and found.reduced:
-            raise ValueError(
-                f"{path} is in reduced units, and predictions are not; give --radius and --modulus"
-            )
+        result = _simulated(path, radius, contact_modulus, work_of_adhesion, bool(scans))
     else:
-        found = _measured(path, radius, contact_modulus, of_rig)
-    predicted, failure = None, None
-    if scans and adhesion is not None:
+        if work_of_adhesion is not None and not scans:
+            raise ValueError("--work-of-adhesion is of a prediction; name --scans too")
+        result = _measured(path, radius, contact_modulus, rig)
+    prediction, failure = None, None
+    if work_of_adhesion is not None and scans:
         try:
-            predicted = _predicted(scans, reading, found, adhesion)
+            prediction = _prediction(scans, reading, result, work_of_adhesion)
         except (ValueError, OSError) as error:
-            failure = error  # The loop is shown, drawn and printed all the same.
-    if as_json:
-        from crackfront.measured.loops.comparison import machine_readable
-
-        echo_json(machine_readable(found, predicted))
-    else:
-        from crackfront.measured.loops.comparison import comparison_lines
-
-        lines = [] if predicted is None else ["", *comparison_lines(found, predicted)]
-        click.echo("\n".join([repr(found), *lines]))
+            failure = error  # The loop is printed and drawn all the same.
+    _print(result, prediction, as_json=as_json)
     if figure is not None:
         from crackfront.measured.loops.loop_drawing import loop_figure
         from crackfront.plots.style import save_figure
 
-        for file in save_figure(loop_figure(found, predicted), figure):
+        for file in save_figure(loop_figure(result, prediction), figure):
             click.echo(f"figure: {file}", err=as_json)
     if failure is not None:
         raise failure
 
 
 def _reading(scans: tuple[Path, ...], options: dict[str, Any]) -> dict[str, Any]:
-    """Options of reading that a command names, refused where they are wrong or without scans."""
-    named = named_options(ReadingOptions, options)
-    if named and not scans:
-        raise ValueError(f"--{named[0].replace('_', '-')} is of scans; name --scans too")
-    given = for_files({name: options[name] for name in named}, scans)
-    reading_options(given, len(scans), "--")
-    return given
+    """Options of reading scans that the command names; ValueError without scans."""
+    names = named_options(ReadingOptions, options)
+    if names and not scans:
+        raise ValueError(f"--{names[0].replace('_', '-')} is of scans; name --scans too")
+    reading = for_files({name: options[name] for name in names}, scans)
+    reading_options(reading, len(scans), "--")
+    return reading
 
 
 def _measured(
-    path: Path, radius: float | None, contact_modulus: float | None, of_rig: dict[str, Any]
+    path: Path, radius: float | None, contact_modulus: float | None, options: dict[str, Any]
 ) -> MeasuredLoop:
     """Loop of a table, with the options of the rig and of the columns."""
-    from crackfront.measured.loops.loop import Rig, analyse_loop
+    from crackfront.measured.loops.analysis import analyse_loop
     from crackfront.measured.loops.recording import read_recording
+    from crackfront.measured.loops.rig import Rig
 
-    named = {name: of_rig[name] for name, _ in _COLUMNS if of_rig[name]}
-    units = {name: of_rig[f"{name}_unit"] for name, _ in _COLUMNS if of_rig[f"{name}_unit"]}
-    recording = read_recording(path, named, units)
+    heads = {name: options[option] for name, option in _COLUMNS.items() if options[option]}
+    units = {name: options[f"{name}_unit"] for name in _COLUMNS if options[f"{name}_unit"]}
+    recording = read_recording(path, heads, units)
     if radius is None:
         raise ValueError(f"{path} does not state the sphere; give its --radius, as in 1.25mm")
-    stiffness, window = of_rig["stiffness"], of_rig["window"]
-    rig = Rig(
-        radius=radius,
-        contact_modulus=contact_modulus,
-        modulus_error=of_rig["modulus_error"],
-        radius_error=of_rig["radius_error"],
-        stiffness=None if stiffness is None else si_value(stiffness, "N/m", what="--stiffness"),
-        window=None if window is None else _window(window),
-    )
+    known = ("modulus_error", "radius_error", "stiffness", "window")
+    rig = Rig(radius, contact_modulus, **{name: options[name] for name in known})
     return analyse_loop(recording, rig)
 
 
 def _simulated(
-    path: Path, radius: float | None, contact_modulus: float | None, adhesion: float | None
+    path: Path,
+    radius: float | None,
+    contact_modulus: float | None,
+    work_of_adhesion: float | None,
+    is_compared: bool,
 ) -> MeasuredLoop:
     """Loop of a simulated cycle, in SI units if its file or all three options state a sphere."""
     from crackfront.core.units import Scales
@@ -214,35 +218,47 @@ def _simulated(
 
     cycle = read_dataset(path)
     if "direction" not in cycle.variables:
-        raise ValueError(f"{path} holds no cycle; name a file of crackfront cycle or of a sweep")
+        raise ValueError(f"{path} is not a cycle; name a file of crackfront cycle or of a sweep")
+    is_in_si = stated_scales(cycle) is not None
     if radius is None and contact_modulus is None:
+        if work_of_adhesion is not None and not is_compared:
+            raise ValueError(
+                "--work-of-adhesion is of a prediction; name --scans too, or --radius and "
+                "--modulus for SI units"
+            )
+        if is_compared and not is_in_si:
+            raise ValueError(
+                f"{path} is in reduced units, and predictions are not; give --radius and --modulus"
+            )
         return simulated_loop(cycle, str(path))
-    if stated_scales(cycle) is not None:
+    if is_in_si:
         raise ValueError(f"{path} states its sphere; leave out --radius and --modulus")
-    if radius is None or contact_modulus is None or adhesion is None:
+    if radius is None or contact_modulus is None or work_of_adhesion is None:
         raise ValueError(
             f"{path} is in reduced units; give --radius, --modulus and --work-of-adhesion for "
-            "those of SI, or none of them"
+            "SI units, or none of them"
         )
-    scales = Scales(radius, adhesion, contact_modulus)
+    scales = Scales(radius, work_of_adhesion, contact_modulus)
     return simulated_loop(in_si_units(cycle, scales), str(path))
 
 
-def _window(text: str) -> tuple[float, float]:
-    """Two contact radii (Units: m)."""
-    ends = text.split(":")
-    if len(ends) != 2:
-        raise ValueError(f"--window is {text!r}; give two contact radii, as in 50um:150um")
-    low, high = (si_value(end, "m", what="--window") for end in ends)
-    return low, high
-
-
-def _predicted(
-    scans: tuple[Path, ...], reading: dict[str, Any], found: MeasuredLoop, adhesion: float
+def _prediction(
+    scans: tuple[Path, ...], reading: dict[str, Any], loop: MeasuredLoop, work_of_adhesion: float
 ) -> Prediction:
-    """What is predicted for the sphere on a surface of scans, by the modulus of the loop."""
+    """Prediction for the sphere on a surface of scans, with the modulus of the loop."""
     from crackfront.core.units import Scales
     from crackfront.measured.predict import predict
 
-    scales = Scales(found.sphere_radius, adhesion, found.contact_modulus.value)
+    scales = Scales(loop.sphere_radius, work_of_adhesion, loop.contact_modulus.value)
     return predict(scans, scales, **reading)
+
+
+def _print(loop: MeasuredLoop, prediction: Prediction | None, *, as_json: bool) -> None:
+    """Print a loop and its comparison with a prediction, as a page or as JSON."""
+    from crackfront.measured.loops.comparison import comparison_lines, machine_readable
+
+    if as_json:
+        echo_json(machine_readable(loop, prediction))
+        return
+    lines = [] if prediction is None else ["", *comparison_lines(loop, prediction)]
+    click.echo("\n".join([repr(loop), *lines]))

@@ -283,8 +283,8 @@ def surface(scans: tuple[Path, ...], as_json: bool, field: Path | None, **option
     if len(found.scans) > 1:
         raise ValueError(f"--field takes one scan, and {scans[0]} holds {len(found.scans)}")
     from crackfront.measured.tile import scan_surface
-    from crackfront.surfaces.given_surface import surface_adhesion
     from crackfront.surfaces.saving import save_result
+    from crackfront.surfaces.surface_adhesion import surface_adhesion
 
     pressed = scan_surface(found.scans[0], scales)
     energy = surface_adhesion(pressed).e_el

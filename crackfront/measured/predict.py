@@ -34,7 +34,7 @@ from crackfront.measured.spectrum.stated import (
     self_affine_surface_of,
 )
 from crackfront.measured.tile import scan_surface
-from crackfront.surfaces.si_units import refuse_no_scales
+from crackfront.surfaces.scales import refuse_no_scales
 
 File = str | PathLike[str]
 

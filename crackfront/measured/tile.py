@@ -36,7 +36,7 @@ def scan_surface(scan: Scan, sphere: Scales) -> DataArray:
     periodic is a tile as it stands. ValueError if the measurement is a line.
     """
     # A prediction needs the radius below, and no field.
-    from crackfront.surfaces.given_surface import surface_array
+    from crackfront.surfaces.surface_array import surface_array
 
     measurement = scan.trusted_measurement
     notes = scan_remarks([scan], zero_load_radius(sphere))

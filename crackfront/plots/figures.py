@@ -25,9 +25,11 @@ from crackfront.plots.instability_maps import draw_instabilities
 from crackfront.plots.loop_figures import draw_loop, draw_pinning
 from crackfront.plots.style import COLUMN, blank_figure, house_style, shown_axes
 from crackfront.simulate.cycle_files import cycle_record
-from crackfront.surfaces.given_surface import surface_adhesion, surface_kind
-from crackfront.surfaces.random_surface import stated_spectrum, tile_modes
+from crackfront.surfaces.random_surface import stated_spectrum
 from crackfront.surfaces.si_units import Labelled, in_reduced_units, stated_scales
+from crackfront.surfaces.surface_adhesion import surface_adhesion
+from crackfront.surfaces.surface_array import surface_kind
+from crackfront.surfaces.tile_measures import tile_modes
 
 _ORDERS = (0.0, 0.5, 1.0)
 _REST = 0.1

@@ -35,7 +35,8 @@ from crackfront.core.bounds import (
 from crackfront.core.cycle.follow import Load
 from crackfront.core.cycle.record import CycleRecord
 from crackfront.core.field.fields import TileField
-from crackfront.surfaces.random_surface import TileMeasures, refuse_no_fraction
+from crackfront.surfaces.random_surface import refuse_no_fraction
+from crackfront.surfaces.tile_measures import TileMeasures
 
 
 @dataclass(frozen=True, slots=True)

@@ -20,7 +20,6 @@ from crackfront.simulate.costs import affordable_seconds
 from crackfront.simulate.numerical_errors import missed_error, stated_error
 from crackfront.simulate.simulation import Simulation, simulation_field
 from crackfront.simulate.sphere.full_cycle import FullCycle
-from crackfront.surfaces.given_surface import surface_adhesion
 from crackfront.surfaces.loop_setup import (
     LoopContact,
     LoopNumerics,
@@ -30,7 +29,9 @@ from crackfront.surfaces.loop_setup import (
     remark_on_sites,
     state_count,
 )
-from crackfront.surfaces.random_surface import chosen_simulation, stated_spectrum, tile_measures
+from crackfront.surfaces.random_surface import chosen_simulation, stated_spectrum
+from crackfront.surfaces.surface_adhesion import surface_adhesion
+from crackfront.surfaces.tile_measures import tile_measures
 
 _SAMPLES = 2.0
 """Samples a pixel along a ray where no spectrum is stated."""

@@ -13,14 +13,17 @@ import xarray as xr
 from crackfront.core.arguments import refuse_other_type
 from crackfront.simulate.provenance import provenance
 from crackfront.simulate.storage import read_dataset, write_dataset
-from crackfront.surfaces.si_units import SURFACES, as_dataset
+from crackfront.surfaces.labelled import SURFACES, as_dataset
+
+_STORABLE = (str, bool, int, float, np.generic, np.ndarray, list, tuple)
+"""Types of attributes that netCDF can store, truth values as numbers."""
 
 
 def save_result(result: xr.DataArray | xr.Dataset, path: str | Path) -> None:
     """Save a surface or a loop as netCDF with checksums of its arrays, atomically.
 
-    An array that is damaged later is refused wherever it is read. What `to_netcdf` of xarray writes
-    can be read as well, but has no checksums.
+    Reading an array that was damaged later raises an error. Files by `to_netcdf` of xarray can be
+    read as well, but have no checksums.
 
     Parameters
     ----------
@@ -34,7 +37,7 @@ def save_result(result: xr.DataArray | xr.Dataset, path: str | Path) -> None:
     ValueError
         If the array has no name.
     TypeError
-        If the result is of another type, or netCDF cannot hold an attribute.
+        If the result is of another type, or netCDF cannot store an attribute.
     OSError
         If the file cannot be written.
     """
@@ -43,17 +46,17 @@ def save_result(result: xr.DataArray | xr.Dataset, path: str | Path) -> None:
     dataset.attrs = _storable(dataset.attrs)
     for part in dataset.variables.values():
         part.attrs = _storable(part.attrs)
-    # The library of netCDF would take ~ for the home folder, and nothing else here.
+    # netCDF would expand ~ to the home folder, other functions would not.
     write_dataset(Path(path).expanduser(), dataset, provenance())
 
 
 def _storable(attributes: Mapping[Any, Any]) -> dict[Any, Any]:
-    """Attributes as netCDF holds them: truth as 0 or 1; TypeError if it cannot hold one."""
-    known = (str, bool, int, float, np.generic, np.ndarray, list, tuple)
+    """Attributes as netCDF stores them, truth values as 0 or 1; TypeError if it cannot."""
+    storable = {}
     for name, value in attributes.items():
-        refuse_other_type(f"attribute {name}", value, known, "numbers or a text, or drop it")
-    truths = {key: int(one) for key, one in attributes.items() if isinstance(one, bool | np.bool_)}
-    return {**attributes, **truths}
+        refuse_other_type(f"attribute {name}", value, _STORABLE, "numbers or a text, or drop it")
+        storable[name] = int(value) if isinstance(value, bool | np.bool_) else value
+    return storable
 
 
 def load_result(path: str | Path) -> xr.DataArray | xr.Dataset:
@@ -72,11 +75,13 @@ def load_result(path: str | Path) -> xr.DataArray | xr.Dataset:
     Raises
     ------
     ValueError
-        If the file is missing, damaged, or no netCDF.
+        If the file is missing, damaged, or not netCDF.
     TypeError
         If an argument is of another type.
     """
     refuse_other_type("path", path, (str, PathLike), "the path of a file")
     dataset = read_dataset(Path(path).expanduser())
-    single = [one.name for one in SURFACES.values() if [*dataset] == [one.name]]
-    return dataset[single[0]] if single else dataset
+    names = [item.name for item in SURFACES.values()]
+    if len(dataset) == 1 and next(iter(dataset)) in names:
+        return dataset[next(iter(dataset))]
+    return dataset

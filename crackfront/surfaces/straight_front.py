@@ -21,7 +21,6 @@ from crackfront.core.solver import DEFAULT_TOLERANCE
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.simulate.costs import affordable_seconds
 from crackfront.simulate.line.line_loads import LAW_LENGTH
-from crackfront.surfaces.given_surface import surface_adhesion, surface_kind
 from crackfront.surfaces.loop_setup import (
     LoopContact,
     LoopNumerics,
@@ -31,7 +30,9 @@ from crackfront.surfaces.loop_setup import (
     remark_on_sites,
     state_count,
 )
-from crackfront.surfaces.random_surface import tile_measures
+from crackfront.surfaces.surface_adhesion import surface_adhesion
+from crackfront.surfaces.surface_array import surface_kind
+from crackfront.surfaces.tile_measures import tile_measures
 
 _ROUND_OFF = 1e-9
 

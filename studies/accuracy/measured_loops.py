@@ -14,12 +14,15 @@ from xarray import Dataset
 
 from crackfront.core.arrays import Array
 from crackfront.core.spectrum import SelfAffineSpectrum
-from crackfront.measured.loops.loop import MeasuredLoop, Rig, analyse_loop
+from crackfront.measured.loops.analysis import analyse_loop
 from crackfront.measured.loops.recording import Recording
+from crackfront.measured.loops.result import MeasuredLoop
+from crackfront.measured.loops.rig import Rig
 from crackfront.measured.loops.simulated_loop import simulated_loop
 from crackfront.surfaces.loops import run_loop
 from crackfront.surfaces.random_surface import random_surface
-from crackfront.surfaces.si_units import Scales, in_si_units
+from crackfront.surfaces.scales import Scales
+from crackfront.surfaces.si_units import in_si_units
 from studies.pages import markdown_table
 
 SPHERE = Scales(radius=1.25e-3, work_of_adhesion=63e-3, contact_modulus=0.7e6 / 0.75)

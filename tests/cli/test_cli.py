@@ -679,7 +679,7 @@ def test_a_link_to_itself_is_refused_in_a_sentence(tmp_path, monkeypatch, comman
 def test_a_cycle_that_could_not_be_written_is_not_computed(
     smooth_tile, monkeypatch, output, reason
 ):
-    monkeypatch.setattr("crackfront.surfaces.given_surface.read_field", None)
+    monkeypatch.setattr("crackfront.surfaces.surface_array.read_field", None)
     options = ("--field", smooth_tile, "--max-penetration", "0.5")
     assert f"cannot be used: {reason}" in refused("cycle", *options, "--output", output)
 

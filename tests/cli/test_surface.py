@@ -18,7 +18,8 @@ from crackfront.analysis.law import shipped_law
 from crackfront.analysis.validity import shipped_validity
 from crackfront.core.variables import variables
 from crackfront.measured.prediction.prediction import Prediction, predicted
-from crackfront.surfaces.given_surface import read_field, surface_adhesion
+from crackfront.surfaces.surface_adhesion import surface_adhesion
+from crackfront.surfaces.surface_array import read_field
 from tests.commands import refused, run
 from tests.measured.made import (
     DETAIL,

@@ -13,7 +13,7 @@ from crackfront.measured.density.bands import analysed_scan
 from crackfront.measured.options import ReadingOptions
 from crackfront.measured.scan.reading import read_measurements
 from crackfront.measured.tile import scan_surface
-from crackfront.surfaces.given_surface import surface_adhesion
+from crackfront.surfaces.surface_adhesion import surface_adhesion
 from studies.accuracy import scans
 from tests.measured.made import (
     SCENE,

@@ -38,7 +38,8 @@ from crackfront.simulate.storage import (
     write_derived,
     write_text,
 )
-from crackfront.surfaces.given_surface import read_field, surface_adhesion
+from crackfront.surfaces.surface_adhesion import surface_adhesion
+from crackfront.surfaces.surface_array import read_field
 from crackfront.sweep.curves import FinishedSimulation, curves_dataset, read_result, write_curves
 from crackfront.sweep.fit_files import write_fit
 from crackfront.sweep.parameters import load_sweep

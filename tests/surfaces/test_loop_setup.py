@@ -7,7 +7,7 @@ import pytest
 
 import crackfront as cf
 from crackfront.core.units import WORK_OF_ADHESION
-from crackfront.surfaces.given_surface import surface_adhesion
+from crackfront.surfaces.surface_adhesion import surface_adhesion
 
 
 @pytest.fixture(scope="module")

@@ -1,4 +1,4 @@
-"""A measured loop beside what is predicted for scans of its surface."""
+"""A measured loop next to the prediction for scans of its surface."""
 
 from __future__ import annotations
 
@@ -7,14 +7,14 @@ from collections.abc import Iterator
 from typing import Any
 
 from crackfront.analysis.estimate import Estimate
-from crackfront.core.variables import variables
-from crackfront.measured.loops.loop import MeasuredLoop
+from crackfront.measured.loops.page import loop_json
+from crackfront.measured.loops.result import MeasuredLoop
 from crackfront.measured.prediction.prediction import Prediction
 from crackfront.measured.prediction.remarks import remark_text
 from crackfront.simulate.jsonable import to_jsonable
 from crackfront.surfaces.written_units import prefixed
 
-_WHAT_IS_LEFT = (
+_NOT_PREDICTED = (
     "The predicted loop is quasi-static: no viscoelasticity, no ageing, and the preload does not "
     "enter. Neither interval covers the errors of modulus and radius in the prediction, nor what "
     "the model leaves out: roughness that is finer than the scans or outside of them, dissipation "
@@ -24,35 +24,41 @@ _WHAT_IS_LEFT = (
 )
 
 _FAR = 2.0
-"""Ratio of measured to predicted from which a page on the reasons is named."""
+"""Ratio of measured to predicted hysteresis from which a page on the reasons is named."""
 
 
-def hysteresis_ratio(found: MeasuredLoop, predicted: Prediction) -> Estimate[float]:
-    """Measured hysteresis over the predicted one, with the intervals of both.
+def hysteresis_ratio(loop: MeasuredLoop, prediction: Prediction) -> Estimate[float]:
+    """Measured over predicted hysteresis, whose interval combines both intervals.
 
-    Half-widths of the logarithms in quadrature; from 0 on where either interval reaches zero.
+    The half-widths of the logarithms add in quadrature. The interval starts at zero if the measured
+    one or the predicted one reaches zero.
     """
-    measured, expected = found.hysteresis, predicted.hysteresis
-    if not (measured.value > 0 and expected.value > 0):
+    measured, predicted = loop.hysteresis, prediction.hysteresis
+    if not (measured.value > 0 and predicted.value > 0):
         return Estimate(math.nan, math.nan, math.nan, math.nan)
-    ratio = measured.value / expected.value
-
-    def reach(up: float, down: float) -> float:
-        return math.hypot(math.log(up), math.log(down)) if min(up, down) > 0 else math.inf
-
-    higher = reach(measured.high / measured.value, expected.low / expected.value)
-    lower = reach(measured.low / measured.value, expected.high / expected.value)
-    return Estimate(ratio, math.nan, ratio * math.exp(-lower), ratio * math.exp(higher))
+    ratio = measured.value / predicted.value
+    above = _reach(measured.high / measured.value, predicted.low / predicted.value)
+    below = _reach(measured.low / measured.value, predicted.high / predicted.value)
+    return Estimate(ratio, math.nan, ratio * math.exp(-below), ratio * math.exp(above))
 
 
-def comparison_lines(found: MeasuredLoop, predicted: Prediction) -> Iterator[str]:
+def _reach(measured: float, predicted: float) -> float:
+    """Half-width of the logarithm of a ratio, from relative ends of two intervals."""
+    if min(measured, predicted) <= 0:
+        return math.inf
+    return math.hypot(math.log(measured), math.log(predicted))
+
+
+def comparison_lines(loop: MeasuredLoop, prediction: Prediction) -> Iterator[str]:
     """Lines on measured and predicted works of adhesion, and on what may explain a difference."""
     yield "Measured beside predicted"
     for name in ("hysteresis", "w_appr", "w_retr"):
-        ours, theirs = getattr(found, name), getattr(predicted, name)
-        texts = [prefixed("J/m2", one.value, one.low, one.high) for one in (ours, theirs)]
-        yield f"  {name:16}{texts[0]}; predicted {texts[1]}"
-    ratio = hysteresis_ratio(found, predicted)
+        measured, predicted = (
+            prefixed("J/m2", work.value, work.low, work.high)
+            for work in (getattr(loop, name), getattr(prediction, name))
+        )
+        yield f"  {name:16}{measured}; predicted {predicted}"
+    ratio = hysteresis_ratio(loop, prediction)
     if math.isfinite(ratio.value):
         yield f"  {'ratio':16}{ratio.value:.3g} ({ratio.low:.2g} to {ratio.high:.2g})"
     if ratio.value > _FAR:
@@ -61,28 +67,23 @@ def comparison_lines(found: MeasuredLoop, predicted: Prediction) -> Iterator[str
             "the page Questions of an experiment of the documentation (docs/questions.md) says "
             "which measurements distinguish the causes."
         )
-    yield f"{predicted.verdict.heading}."
-    yield from map(remark_text, predicted.verdict.of("undecided", "reservation"))
-    yield _WHAT_IS_LEFT
+    yield f"{prediction.verdict.heading}."
+    yield from _remarks(prediction)
+    yield _NOT_PREDICTED
 
 
-def machine_readable(found: MeasuredLoop, predicted: Prediction | None) -> dict[str, Any]:
-    """Numbers of a loop, and of its prediction where there is one, in the units of the loop."""
-    numbers = {
-        item.name: to_jsonable(getattr(found, item.name))
-        for item in variables(MeasuredLoop)
-        if not item.dims
-    }
-    units = "reduced" if found.reduced else "SI"
-    numbers |= {"units": units, "window": list(found.window), "remarks": list(found.remarks)}
-    if predicted is None:
+def machine_readable(loop: MeasuredLoop, prediction: Prediction | None) -> dict[str, Any]:
+    """Numbers of a loop, and of its prediction if there is one, in the units of the loop."""
+    numbers = loop_json(loop)
+    if prediction is None:
         return numbers
     names = ("e_el", "w_appr", "w_retr", "hysteresis")
-    return numbers | {
-        "predicted": {name: to_jsonable(getattr(predicted, name)) for name in names}
-        | {
-            "outcome": predicted.verdict.outcome,
-            "remarks": [*map(remark_text, predicted.verdict.of("undecided", "reservation"))],
-        },
-        "ratio": to_jsonable(hysteresis_ratio(found, predicted)),
-    }
+    predicted = {name: to_jsonable(getattr(prediction, name)) for name in names}
+    verdict = {"outcome": prediction.verdict.outcome, "remarks": _remarks(prediction)}
+    ratio = to_jsonable(hysteresis_ratio(loop, prediction))
+    return numbers | {"predicted": predicted | verdict, "ratio": ratio}
+
+
+def _remarks(prediction: Prediction) -> list[str]:
+    """Remarks on a prediction that concern whoever compares it with a loop."""
+    return [remark_text(remark) for remark in prediction.verdict.of("undecided", "reservation")]

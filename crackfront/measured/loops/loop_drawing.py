@@ -1,15 +1,15 @@
-"""Figure of a measured loop: its rows, the curves of its works of adhesion, predicted bands."""
+"""Figure of a loop: its rows, the JKR curves of its works of adhesion, and predicted bands."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from crackfront.core import jkr
 from crackfront.core.units import WORK_OF_ADHESION, Scales
 from crackfront.core.variables import FORCE, LATERAL
-from crackfront.measured.loops.loop import MeasuredLoop
+from crackfront.measured.loops.result import MeasuredLoop
 from crackfront.measured.prediction.prediction import Prediction
 from crackfront.plots.axis_units import AxisUnits
 from crackfront.plots.style import BLUE, COLUMN, VERMILION, blank_figure, house_style
@@ -18,27 +18,27 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-def loop_figure(found: MeasuredLoop, predicted: Prediction | None = None) -> Figure:
-    """Force against contact radius, the JKR curve of each branch, and those that are predicted.
+def loop_figure(loop: MeasuredLoop, prediction: Prediction | None = None) -> Figure:
+    """Force against contact radius, with the measured and the predicted JKR curves of each branch.
 
     It is in the units of the loop, SI or reduced.
     """
     # Works of adhesion are in J/m^2 or w_int.
-    unit = WORK_OF_ADHESION if found.reduced else 1.0
-    scales = Scales(found.sphere_radius, unit, found.contact_modulus.value)
-    units = AxisUnits() if found.reduced else AxisUnits(scales)
-    reach = np.linspace(0.0, 1.05 * float(np.nanmax(found.contact_radius)), 300) / scales.lateral
+    unit = WORK_OF_ADHESION if loop.reduced else 1.0
+    scales = Scales(loop.sphere_radius, unit, loop.contact_modulus.value)
+    units = AxisUnits() if loop.reduced else AxisUnits(scales)
+    radius = np.linspace(0.0, 1.05 * float(np.nanmax(loop.contact_radius)), 300) / scales.lateral
     with house_style():
         figure = blank_figure(COLUMN, 0.9 * COLUMN)
         axes = figure.add_subplot()
-        for sign, name, colour, marker in (
-            (1, "approach", BLUE, "o"),
-            (-1, "retraction", VERMILION, "s"),
+        for direction, work, name, colour, marker in (
+            (1, "w_appr", "approach", BLUE, "o"),
+            (-1, "w_retr", "retraction", VERMILION, "s"),
         ):
-            rows = found.direction == sign
+            rows = loop.direction == direction
             axes.plot(
-                found.contact_radius[rows],
-                found.force[rows],
+                loop.contact_radius[rows],
+                loop.force[rows],
                 linestyle="none",
                 marker=marker,
                 markersize=2,
@@ -47,25 +47,27 @@ def loop_figure(found: MeasuredLoop, predicted: Prediction | None = None) -> Fig
                 color=colour,
                 label=name,
             )
-            work = found.w_appr if sign > 0 else found.w_retr
+            measured = getattr(loop, work).value
             axes.plot(
-                reach * scales.lateral,
-                scales.force * jkr.equilibrium_force(reach, work.value),
+                radius * scales.lateral,
+                scales.force * jkr.equilibrium_force(radius, measured),
                 color=colour,
-                label=f"JKR, ${units.adhesion_text(work.value)}$",
+                label=f"JKR, ${units.adhesion_text(measured)}$",
             )
-            if predicted is not None:
-                band = predicted.w_appr if sign > 0 else predicted.w_retr
-                least, most = (
-                    scales.force * jkr.equilibrium_force(reach, max(end, 0.0))
-                    for end in (band.low, band.high)
+            if prediction is not None:
+                predicted = getattr(prediction, work)
+                axes.fill_between(
+                    radius * scales.lateral,
+                    scales.force * jkr.equilibrium_force(radius, max(predicted.low, 0.0)),
+                    scales.force * jkr.equilibrium_force(radius, max(predicted.high, 0.0)),
+                    color=colour,
+                    alpha=0.15,
+                    linewidth=0,
+                    label=f"predicted, {name}",
                 )
-                look: dict[str, Any] = {"color": colour, "alpha": 0.15, "linewidth": 0}
-                label = f"predicted, {name}"
-                axes.fill_between(reach * scales.lateral, least, most, label=label, **look)
-        low, high = float(np.nanmin(found.force)), float(np.nanmax(found.force))
+        low, high = float(np.nanmin(loop.force)), float(np.nanmax(loop.force))
         axes.set_ylim(low - 0.1 * (high - low), high + 0.1 * (high - low))
-        axes.axvspan(*found.window, color="0.93", linewidth=0, zorder=0, label="averaged")
+        axes.axvspan(*loop.window, color="0.93", linewidth=0, zorder=0, label="averaged")
         units.name(axes.xaxis, "contact radius", LATERAL)
         units.name(axes.yaxis, "normal force", FORCE)
         figure.legend(loc="outside upper center", ncols=2)

@@ -12,11 +12,13 @@ from xarray import DataArray, Dataset
 
 from crackfront.core.arguments import refuse_no_numbers, refuse_other_type
 from crackfront.core.arrays import Array
-from crackfront.measured.loops.loop import MeasuredLoop, Rig, analyse_loop
+from crackfront.measured.loops.analysis import analyse_loop
 from crackfront.measured.loops.recording import UNITS, Recording, read_recording
+from crackfront.measured.loops.result import MeasuredLoop
+from crackfront.measured.loops.rig import Rig
 from crackfront.measured.loops.simulated_loop import is_netcdf, simulated_loop
 from crackfront.simulate.storage import read_dataset
-from crackfront.surfaces.si_units import in_si
+from crackfront.surfaces.scales import in_si
 from crackfront.surfaces.written_units import unit_value
 
 
@@ -78,32 +80,17 @@ def measured_loop(
     >>> round(loop.w_appr.value, 6), round(loop.w_retr.value, 6)
     (0.03, 0.06)
     """
-    given = {
-        "radius": radius,
-        "contact_modulus": contact_modulus,
-        "modulus_error": modulus_error or None,
-        "radius_error": radius_error or None,
-        "stiffness": stiffness,
-        "window": window,
-    }
     if isinstance(loop, (str, PathLike)) and is_netcdf(Path(loop)):
         loop = read_dataset(Path(loop))
-    if isinstance(loop, Dataset) and not {"penetration", "pinning_force"} & {*loop}:
-        # Simulated cycles have one of these. Other columns, as a time, are left out.
-        named = {name: loop[name] for name in UNITS if name in loop}
-        if len(named) < 2:
-            raise ValueError(
-                f"the dataset has {', '.join(map(str, loop)) or 'no variables'}; a measured loop "
-                f"needs two of {', '.join(UNITS)}"
-            )
-        loop = named
-    if isinstance(loop, Dataset):
-        if without := [name for name, value in given.items() if value is not None]:
-            leave_out = ", ".join(without)
-            raise ValueError(
-                f"a simulated cycle states its sphere and has no rig; leave out {leave_out} "
-                "(crackfront.in_si_units gives a cycle in reduced units a sphere)"
-            )
+    if isinstance(loop, Dataset) and _SIMULATED & {*loop}:
+        _check_no_rig(
+            radius=radius,
+            contact_modulus=contact_modulus,
+            modulus_error=modulus_error or None,
+            radius_error=radius_error or None,
+            stiffness=stiffness,
+            window=window,
+        )
         return simulated_loop(loop)
     refuse_other_type(
         "loop", loop, (str, PathLike, Mapping), "the path of a table, or arrays by their names"
@@ -111,43 +98,73 @@ def measured_loop(
     if radius is None:
         raise ValueError("a measured loop does not state its sphere; give its radius in metres")
     refuse_no_numbers(modulus_error=modulus_error, radius_error=radius_error)
-    if window is not None:
-        refuse_other_type("window", window, (tuple, list), "a pair of contact radii")
-        if len(window) != 2:
-            raise ValueError(f"window has {len(window)} values; give two contact radii")
-        first, last = (in_si("a contact radius of window", one, "m") for one in window)
-        window = first, last
     rig = Rig(
-        in_si("radius", radius, "m"),
-        None if contact_modulus is None else in_si("contact_modulus", contact_modulus, "Pa"),
-        modulus_error,
-        radius_error,
-        None if stiffness is None else in_si("stiffness", stiffness, "N/m"),
-        window,
+        radius=in_si("radius", radius, "m"),
+        contact_modulus=_optional("contact_modulus", contact_modulus, "Pa"),
+        modulus_error=modulus_error,
+        radius_error=radius_error,
+        stiffness=_optional("stiffness", stiffness, "N/m"),
+        window=None if window is None else _window(window),
     )
-    if isinstance(loop, Mapping):
-        if unknown := set(map(str, loop)) - set(UNITS):
+    if isinstance(loop, (str, PathLike)):
+        return analyse_loop(read_recording(Path(loop), {}, {}), rig)
+    return analyse_loop(_recording(loop), rig)
+
+
+_SIMULATED = {"penetration", "pinning_force"}
+"""Variables one of which every simulated cycle has, and no measured loop."""
+
+
+def _check_no_rig(**arguments: object) -> None:
+    """Raise ValueError if an argument describes the rig of a simulated cycle, which has none."""
+    if names := [name for name, value in arguments.items() if value is not None]:
+        raise ValueError(
+            f"a simulated cycle states its sphere and has no rig; leave out {', '.join(names)} "
+            "(crackfront.in_si_units gives a cycle in reduced units a sphere)"
+        )
+
+
+def _optional(name: str, value: float | str | None, unit: str) -> float | None:
+    """Value in SI of an argument that may be left out."""
+    return None if value is None else in_si(name, value, unit)
+
+
+def _window(window: tuple[float | str, float | str]) -> tuple[float, float]:
+    """Contact radii of a window (Units: m)."""
+    refuse_other_type("window", window, (tuple, list), "a pair of contact radii")
+    if len(window) != 2:
+        raise ValueError(f"window has {len(window)} values; give two contact radii")
+    first, last = (in_si("a contact radius of window", end, "m") for end in window)
+    return first, last
+
+
+def _recording(arrays: Mapping[str, ArrayLike] | Dataset) -> Recording:
+    """Columns of arrays by their names; other variables of a dataset, as a time, are left out."""
+    columns = {name: arrays[name] for name in UNITS if arrays.get(name) is not None}
+    if isinstance(arrays, Dataset):
+        if len(columns) < 2:
             raise ValueError(
-                f"a loop has no {', '.join(sorted(unknown))}; give two of {', '.join(UNITS)}"
+                f"the dataset has {', '.join(map(str, arrays)) or 'no variables'}; a measured loop "
+                f"needs two of {', '.join(UNITS)}"
             )
-        columns = {
-            name: None if loop.get(name) is None else _column(name, loop[name]) for name in UNITS
-        }
-        return analyse_loop(Recording(**columns), rig)
-    return analyse_loop(read_recording(Path(loop), {}, {}), rig)
+    elif unknown := set(map(str, arrays)) - set(UNITS):
+        raise ValueError(
+            f"a loop has no {', '.join(sorted(unknown))}; give two of {', '.join(UNITS)}"
+        )
+    force, radius, displacement = (
+        _column(name, columns[name]) if name in columns else None for name in UNITS
+    )
+    return Recording(force, radius, displacement)
 
 
 def _column(name: str, values: ArrayLike) -> Array:
-    """A column in SI units, NaN where it is masked; refused where no row has a number.
-
-    An array that states its unit is converted.
-    """
-    given = values.attrs.get("units") if isinstance(values, DataArray) else None
-    factor = 1.0 if given is None else unit_value(given, UNITS[name])
+    """A column in SI units, NaN where it is masked; an array that states its unit is converted."""
+    unit = values.attrs.get("units") if isinstance(values, DataArray) else None
+    factor = 1.0 if unit is None else unit_value(unit, UNITS[name])
     try:
-        found: Array = factor * np.ma.array(values, dtype=float).filled(np.nan)
+        column: Array = factor * np.ma.array(values, dtype=float).filled(np.nan)
     except (TypeError, ValueError) as error:
         raise TypeError(f"the values of {name} are no array of numbers: {error}") from error
-    if not np.any(np.isfinite(found)):
+    if not np.any(np.isfinite(column)):
         raise ValueError(f"{name} has no finite value; leave the column out, or check the file")
-    return np.where(np.isfinite(found), found, np.nan)
+    return np.where(np.isfinite(column), column, np.nan)

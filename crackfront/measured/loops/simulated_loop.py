@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, get_args
 
@@ -10,7 +11,7 @@ import numpy as np
 from xarray import Dataset
 
 from crackfront.analysis.estimate import Estimate, normal_estimate
-from crackfront.analysis.steady_adhesion import SteadyAdhesion, steady_adhesion, steady_branches
+from crackfront.analysis.steady_adhesion import steady_adhesion, steady_branches
 from crackfront.core.adhesion import FieldKind, correlation_length
 from crackfront.core.arrays import Array
 from crackfront.core.cycle.record import CycleRecord
@@ -18,21 +19,23 @@ from crackfront.core.geometry.sphere import ContactState
 from crackfront.core.outcome import Status
 from crackfront.core.spectrum import Spectrum
 from crackfront.core.units import CONTACT_MODULUS, WORK_OF_ADHESION, Scales
-from crackfront.measured.loops.loop import MeasuredLoop, work_per_area
+from crackfront.measured.loops.energy import work_per_area
+from crackfront.measured.loops.result import MeasuredLoop
+from crackfront.measured.loops.stiffness import NO_ESTIMATE
 from crackfront.simulate.cycle_files import cycle_record
 from crackfront.surfaces.si_units import in_reduced_units, stated_scales
 
 _NETCDF = (b"CDF\x01", b"CDF\x02", b"CDF\x05", b"\x89HDF")
-"""First bytes of the files of netCDF."""
+"""First bytes of netCDF files."""
 
 _REDUCED = Scales(1.0, WORK_OF_ADHESION, CONTACT_MODULUS)
-"""The sphere whose lengths and forces in SI are those in reduced units."""
+"""The sphere whose lengths and forces in SI are the same numbers as in reduced units."""
 
 _ERRORS = (
     "The cycle was simulated: the works of adhesion are those along its rough front, and their "
     "intervals include the scatter of the states on this one surface."
 )
-_UNITS = (
+_REDUCED_UNITS = (
     "All numbers are in reduced units, R = 1, w_int = 1/pi, E' = 3/4; --radius, --modulus and "
     "--work-of-adhesion convert them to SI."
 )
@@ -43,7 +46,7 @@ _OPEN = (
 
 
 def is_netcdf(path: Path) -> bool:
-    """Whether a file is one of netCDF, as simulated cycles are; OSError if it cannot be opened."""
+    """Whether a file is netCDF, as simulated cycles are; OSError if it cannot be opened."""
     with path.open("rb") as file:
         return file.read(4).startswith(_NETCDF)
 
@@ -57,12 +60,12 @@ def simulated_loop(cycle: Dataset, name: str = "the cycle") -> MeasuredLoop:
         What :func:`crackfront.run_loop` returned, `crackfront cycle` wrote or a sweep stored, in
         reduced units or, with the sphere in its attributes, in SI.
     name : str, optional
-        What a refusal calls it.
+        Name of the cycle in messages.
 
     Returns
     -------
     MeasuredLoop
-        In the units of the cycle, those of works of adhesion w_int where it is in reduced ones. The
+        In the units of the cycle; in a cycle in reduced units, works of adhesion are in w_int. The
         works and their standard errors are as of
         :func:`crackfront.analysis.steady_adhesion.steady_adhesion`. Radius and modulus are exact,
         so that neither is fitted, and nothing bends but the contact.
@@ -70,7 +73,8 @@ def simulated_loop(cycle: Dataset, name: str = "the cycle") -> MeasuredLoop:
     Raises
     ------
     ValueError
-        If the dataset is no cycle of a sphere, states no correlation length, or has no steady part.
+        If the dataset is not a cycle of a sphere, states no correlation length, or has no steady
+        part.
 
     Examples
     --------
@@ -89,42 +93,37 @@ def simulated_loop(cycle: Dataset, name: str = "the cycle") -> MeasuredLoop:
     reduced = cycle if scales is None else in_reduced_units(cycle, scales)
     record = cycle_record(reduced, name)
     states: ContactState[Array] = record.states
-    length = _stated_length(reduced, name)
+    length = _correlation_length(reduced, name)
     steady = steady_adhesion(record, length)
     if steady.sentence:
         raise ValueError(f"{name} has no works of adhesion: {steady.sentence}")
     averaged, _, _ = steady_branches(states, states.mean_radius, "radii", length)
-    inside = np.zeros(states.direction.size, bool)
-    inside[np.concatenate(averaged)] = True
-    sphere, adhesion = (_REDUCED, 1.0) if scales is None else (scales, scales.work_of_adhesion)
-    w_appr, w_retr, hysteresis = (
-        _estimate(steady, work, adhesion) for work in ("w_appr", "w_retr", "hysteresis")
-    )
-    nothing, modulus = Estimate(*[math.nan] * 4), sphere.contact_modulus
-    lost, pull = _lost_energy(record), -float(np.min(states.force)) * sphere.force
-    remarks = _ERRORS, *([_UNITS] if scales is None else []), *([_OPEN] if lost is None else [])
+    in_window = np.zeros(states.direction.size, bool)
+    in_window[np.concatenate(averaged)] = True
+    sphere, unit = (_REDUCED, 1.0) if scales is None else (scales, scales.work_of_adhesion)
+    modulus, pull = sphere.contact_modulus, -float(np.min(states.force)) * sphere.force
     return MeasuredLoop(
         force=states.force * sphere.force,
         contact_radius=states.mean_radius * sphere.lateral,
-        work_of_adhesion=states.apparent_work_of_adhesion * adhesion,
+        work_of_adhesion=states.apparent_work_of_adhesion * unit,
         direction=states.direction,
-        in_window=inside,
-        w_appr=w_appr,
-        w_retr=w_retr,
-        hysteresis=hysteresis,
+        in_window=in_window,
+        w_appr=_estimate(steady.w_appr, steady.w_appr_error, unit),
+        w_retr=_estimate(steady.w_retr, steady.w_retr_error, unit),
+        hysteresis=_estimate(steady.hysteresis, steady.hysteresis_error, unit),
         contact_modulus=Estimate(modulus, 0.0, modulus, modulus),
-        fitted_modulus=nothing,
-        stiffness=nothing,
-        lost_energy=math.nan if lost is None else lost * adhesion,
+        fitted_modulus=NO_ESTIMATE,
+        stiffness=NO_ESTIMATE,
+        lost_energy=_lost_energy(record) * unit,
         pull_off_force=Estimate(pull, 0.0, pull, pull),
         sphere_radius=sphere.radius,
         window=(steady.lowest_radius * sphere.lateral, steady.highest_radius * sphere.lateral),
-        remarks=remarks,
+        remarks=tuple(_remarks(record, is_reduced=scales is None)),
         reduced=scales is None,
     )
 
 
-def _stated_length(cycle: Dataset, name: str) -> float:
+def _correlation_length(cycle: Dataset, name: str) -> float:
     """Correlation length of w_loc that a cycle in reduced units states, or its spectrum has."""
     if "correlation_length" in cycle:
         return float(cycle.correlation_length)
@@ -138,17 +137,29 @@ def _stated_length(cycle: Dataset, name: str) -> float:
     return correlation_length(kind, spectrum)
 
 
-def _estimate(steady: SteadyAdhesion, name: str, unit: float) -> Estimate[float]:
-    """A work of adhesion with the interval of its standard error, in a unit of w_int."""
-    return normal_estimate(getattr(steady, name), getattr(steady, f"{name}_error")).each(
-        lambda work: work * unit
-    )
+def _estimate(work: float, error: float, unit: float) -> Estimate[float]:
+    """A work of adhesion with the interval of its standard error, in a unit instead of w_int."""
+    return normal_estimate(work, error).each(lambda number: number * unit)
 
 
-def _lost_energy(record: CycleRecord) -> float | None:
-    """Energy lost per largest contact area, in w_int; None where the cycle is not closed."""
+def _is_closed(record: CycleRecord) -> bool:
+    """Whether a cycle leads from the first contact to the loss of contact."""
+    return record.status is Status.LOST_CONTACT and record.states.penetration[0] == 0
+
+
+def _lost_energy(record: CycleRecord) -> float:
+    """Energy lost per largest contact area, in w_int; NaN if the cycle is not closed."""
+    if not _is_closed(record):
+        return math.nan
     states = record.states
-    if record.status is not Status.LOST_CONTACT or states.penetration[0] != 0:
-        return None
-    columns = states.penetration, states.force, states.mean_radius
-    return work_per_area(*columns) / WORK_OF_ADHESION
+    energy = work_per_area(states.penetration, states.force, states.mean_radius)
+    return energy / WORK_OF_ADHESION
+
+
+def _remarks(record: CycleRecord, *, is_reduced: bool) -> Iterator[str]:
+    """Remarks on a simulated cycle."""
+    yield _ERRORS
+    if is_reduced:
+        yield _REDUCED_UNITS
+    if not _is_closed(record):
+        yield _OPEN

@@ -8,6 +8,7 @@ from crackfront.measured.loops.recording import Recording
 
 RADIUS, MODULUS = 1.25e-3, 0.7e6 / 0.75
 W_APPR, W_RETR = 0.03, 0.06
+TRUTH = {"w_appr": W_APPR, "w_retr": W_RETR, "hysteresis": W_RETR - W_APPR}
 
 
 def loop(
@@ -57,4 +58,14 @@ def loop(
         "radius": radius * (1 + radius_noise * random.normal(size=radius.size)) * scales.lateral,
         "displacement": penetration * scales.vertical + force * scales.force / stiffness + 1e-6,
     }
-    return Recording(**{name: None if name == without else one for name, one in columns.items()})
+    if without is not None:
+        columns[without] = None
+    return Recording(**columns)
+
+
+def in_contact(**options):
+    """Columns of a loop that begins and ends in contact, at radii of no jump."""
+    whole, scales = loop(0, **options), Scales(RADIUS, 1.0, MODULUS)
+    touching = np.flatnonzero(whole.radius > scales.lateral * jkr.equilibrium_radius(0.0, W_APPR))
+    rows = slice(touching[0], touching[-1] + 1)
+    return {name: getattr(whole, name)[rows] for name in ("force", "radius", "displacement")}

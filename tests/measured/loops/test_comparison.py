@@ -6,8 +6,9 @@ from types import SimpleNamespace
 import pytest
 
 from crackfront.analysis.estimate import Estimate
+from crackfront.measured.loops.analysis import analyse_loop
 from crackfront.measured.loops.comparison import comparison_lines, hysteresis_ratio
-from crackfront.measured.loops.loop import Rig, analyse_loop
+from crackfront.measured.loops.rig import Rig
 from crackfront.measured.prediction.remarks import Remark, Verdict
 from tests.measured.loops.made import MODULUS, RADIUS, loop
 

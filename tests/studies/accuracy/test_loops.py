@@ -8,7 +8,8 @@ from click.testing import CliRunner
 
 import crackfront as cf
 from crackfront.core import jkr
-from crackfront.measured.loops.loop import Rig, analyse_loop
+from crackfront.measured.loops.analysis import analyse_loop
+from crackfront.measured.loops.rig import Rig
 from crackfront.measured.loops.simulated_loop import simulated_loop
 from studies.__main__ import main
 from studies.accuracy import measured_loops

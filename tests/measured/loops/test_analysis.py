@@ -4,23 +4,15 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-import xarray as xr
 
 from crackfront import measured_loop
 from crackfront.core import jkr
 from crackfront.core.units import Scales
-from crackfront.measured.loops.contact import penetration_at, radius_at
-from crackfront.measured.loops.loop import (
-    Rig,
-    _refuse_lost_rows,
-    _touches,
-    analyse_loop,
-)
+from crackfront.measured.loops.analysis import analyse_loop
 from crackfront.measured.loops.recording import Recording
+from crackfront.measured.loops.rig import Rig
 from tests.commands import slow
-from tests.measured.loops.made import MODULUS, RADIUS, W_APPR, W_RETR, loop
-
-TRUTH = {"w_appr": W_APPR, "w_retr": W_RETR, "hysteresis": W_RETR - W_APPR}
+from tests.measured.loops.made import MODULUS, RADIUS, TRUTH, W_APPR, W_RETR, in_contact, loop
 
 
 @pytest.mark.parametrize(
@@ -117,11 +109,11 @@ def test_two_columns_hold_the_truth_at_any_preload_and_drift(made, given):
 
 @pytest.mark.parametrize("n_row", [100, 3000])
 def test_the_pull_off_force_is_not_that_of_the_lowest_noise(n_row):
-    one = loop(0, n_row=n_row, force_noise=0.02)
-    pull = analyse_loop(one, Rig(RADIUS, MODULUS)).pull_off_force
+    whole = loop(0, n_row=n_row, force_noise=0.02)
+    pull = analyse_loop(whole, Rig(RADIUS, MODULUS)).pull_off_force
     clean = -np.min(loop(0, n_row=n_row, force_noise=0.0).force)
     assert pull.low < clean < pull.high
-    assert clean * 1.05 < -np.min(one.force)
+    assert clean * 1.05 < -np.min(whole.force)
 
 
 @pytest.mark.parametrize(
@@ -152,6 +144,11 @@ def test_what_contradicts_itself_is_said(made, rig, remark):
             {},
             "press less, average rows",
         ),
+        (
+            {"preload": 3.0, "without": "radius"},
+            {"contact_modulus": 1.5 * MODULUS, "stiffness": 1e3},
+            "33% of the rows in contact have no work of adhesion",
+        ),
     ],
 )
 def test_what_gives_no_works_is_refused(made, rig, sentence):
@@ -181,34 +178,6 @@ def test_one_radius_that_is_too_large_does_not_lower_the_lost_energy():
     rig = Rig(RADIUS, MODULUS)
     one, other = (analyse_loop(replace(whole, radius=each), rig) for each in (whole.radius, radius))
     assert other.lost_energy == pytest.approx(one.lost_energy, rel=0.05)
-
-
-def test_rows_that_noise_leaves_without_a_work_are_no_small_matter():
-    """The others are no fair part of them."""
-    work = np.where(np.arange(100) < 11, np.nan, 1.0)
-    with pytest.raises(
-        ValueError, match=r"11% of the rows in contact have no work of adhesion, as"
-    ):
-        _refuse_lost_rows(work)
-    _refuse_lost_rows(work[2:])
-
-
-def test_rows_without_a_force_are_not_lost_to_noise():
-    whole = loop(0, without="radius")
-    force = np.where(np.arange(whole.force.size) % 8 == 3, np.nan, whole.force)
-    found = analyse_loop(replace(whole, force=force), Rig(RADIUS, MODULUS, stiffness=1e3))
-    assert found.hysteresis.low <= W_RETR - W_APPR <= found.hysteresis.high
-
-
-def test_the_last_row_before_a_sharp_pull_off_is_no_spike():
-    whole = loop(0, without="radius", force_noise=2e-4)
-    last = int(np.flatnonzero(np.abs(whole.force) > 0.05 * np.max(whole.force))[-1])
-    force = np.array(whole.force)
-    force[last + 1] = 1.5 * force[last]
-    sharp = replace(whole, force=force)
-    touches = _touches(sharp)
-    assert touches[last + 1]
-    assert not touches[last + 2]
 
 
 def test_a_contact_that_is_large_against_the_sphere_is_told():
@@ -243,30 +212,13 @@ def test_a_modulus_that_the_loop_contradicts_is_said():
     assert any("fit a contact modulus" in remark for remark in found.remarks)
 
 
-def test_edges_of_all_kinds_have_the_radius_of_their_force_and_penetration():
-    radius = np.linspace(0.3, 2.5, 60)
-    for work in (0.01, 1.0, 2.0):
-        force = radius**3 - np.sqrt(6 * work * radius**3)
-        assert radius_at(force, penetration_at(radius, force)) == pytest.approx(radius, rel=1e-6)
-
-
 def test_a_loop_that_turns_twice_is_refused():
-    one = loop(0)
-    twice = Recording(*(np.tile(column, 2) for column in (one.force, one.radius, one.displacement)))
+    whole = loop(0)
+    twice = Recording(
+        *(np.tile(column, 2) for column in (whole.force, whole.radius, whole.displacement))
+    )
     with pytest.raises(ValueError, match="turns more than once"):
         analyse_loop(twice, Rig(RADIUS, MODULUS))
-
-
-def test_arrays_and_their_table_are_the_same_loop(tmp_path):
-    one = loop(0)
-    arrays = {"force": one.force, "radius": one.radius}
-    path = tmp_path / "rig.csv"
-    rows = zip(one.force, one.radius, strict=True)
-    path.write_text("Force (N),Radius (m)\n" + "".join(f"{f},{a}\n" for f, a in rows))
-    known = {"radius": RADIUS, "contact_modulus": MODULUS}
-    assert repr(measured_loop(arrays, **known)) == repr(measured_loop(path, **known))
-    with pytest.raises(ValueError, match="has no speed"):
-        measured_loop({"force": one.force, "speed": one.force}, **known)
 
 
 def test_a_loop_without_noise_is_that_of_its_works():
@@ -274,40 +226,6 @@ def test_a_loop_without_noise_is_that_of_its_works():
     found = analyse_loop(loop(0, force_noise=0.0, radius_noise=0.0), Rig(RADIUS, MODULUS))
     assert found.w_appr.value == pytest.approx(W_APPR, rel=1e-9)
     assert found.w_retr.value == pytest.approx(W_RETR, rel=1e-9)
-
-
-@pytest.mark.parametrize(
-    ("columns", "sentence"),
-    [
-        ({"force": np.zeros(50), "displacement": np.linspace(0, 1e-6, 50)}, "no row is in contact"),
-        ({"force": np.zeros(50), "radius": np.zeros(50)}, "no row is in contact"),
-        ({"force": np.full(50, np.nan), "radius": np.ones(50)}, "force has no finite value"),
-        ({"force": np.zeros(50)}, "needs two of"),
-        ({"force": np.zeros(50), "radius": np.ones(49)}, "not of one length"),
-    ],
-)
-def test_what_is_no_loop_is_refused(columns, sentence):
-    with pytest.raises(ValueError, match=sentence):
-        measured_loop(columns, radius=RADIUS, contact_modulus=MODULUS)
-
-
-def test_a_bent_drift_widens_the_intervals():
-    one, time = loop(0), np.linspace(-1, 1, 320)
-    bent = one.force + 0.05 * np.max(one.force) * time**2
-    found = analyse_loop(replace(one, force=bent), Rig(RADIUS, MODULUS))
-    for name, truth in TRUTH.items():
-        estimate = getattr(found, name)
-        assert estimate.low <= truth <= estimate.high
-
-
-def test_a_spike_out_of_contact_is_no_contact():
-    one = loop(0, without="radius")
-    for row in (5, -8):
-        force = one.force.copy()
-        force[row] += 0.2 * np.max(force)
-        spiked = Recording(force, None, one.displacement)
-        found = analyse_loop(spiked, Rig(RADIUS, MODULUS, stiffness=1e3))
-        assert found.hysteresis.value == pytest.approx(W_RETR - W_APPR, rel=0.1)
 
 
 def test_a_sharp_pull_off_is_not_smoothed_away():
@@ -320,36 +238,16 @@ def test_a_sharp_pull_off_is_not_smoothed_away():
 
 
 def test_a_force_of_the_other_sign_is_refused_with_what_to_check():
-    one = loop(0)
+    whole = loop(0)
     with pytest.raises(ValueError, match="at the largest displacement, and has the wrong sign"):
-        analyse_loop(Recording(-one.force, None, one.displacement), Rig(RADIUS, MODULUS))
+        analyse_loop(Recording(-whole.force, None, whole.displacement), Rig(RADIUS, MODULUS))
     for modulus in (None, MODULUS):
         with pytest.raises(ValueError, match="has the wrong sign; displacement and force are posi"):
             measured_loop(
-                {"force": -one.force, "radius": one.radius}, radius=RADIUS, contact_modulus=modulus
+                {"force": -whole.force, "radius": whole.radius},
+                radius=RADIUS,
+                contact_modulus=modulus,
             )
-
-
-def in_contact(**given):
-    """Columns of a loop that begins and ends in contact, at radii of no jump."""
-    one, scales = loop(0, **given), Scales(RADIUS, 1.0, MODULUS)
-    held = np.flatnonzero(one.radius > scales.lateral * jkr.equilibrium_radius(0.0, W_APPR))
-    rows = slice(held[0], held[-1] + 1)
-    return {name: getattr(one, name)[rows] for name in ("force", "radius", "displacement")}
-
-
-@pytest.mark.parametrize("noise", [0.0, 0.003])
-def test_rows_in_contact_give_no_zero_of_the_force(noise):
-    columns = in_contact(force_noise=noise, radius_noise=0.0, stiffness=1e9)
-    del columns["radius"]
-    found = measured_loop(columns, radius=RADIUS, contact_modulus=MODULUS)
-    assert "The zero of the force is that of the file, as no rows are out of contact." in (
-        found.remarks
-    )
-    for name, truth in TRUTH.items():
-        estimate = getattr(found, name)
-        assert estimate.low - 1e-6 <= truth <= estimate.high + 1e-6
-        assert estimate.value == pytest.approx(truth, rel=1e-4 if noise == 0 else 0.2)
 
 
 def test_the_force_may_rise_after_its_least_value_in_retraction():
@@ -371,34 +269,3 @@ def test_what_cannot_be_of_a_loop_is_said():
     assert any("negative" in one for one in measured_loop(back, **known).remarks)
     with pytest.raises(ValueError, match=r"the contact radius reaches .* on a sphere of 1\.25 mm"):
         measured_loop({**columns, "radius": 1e6 * columns["radius"]}, **known)
-
-
-def test_masked_rows_are_left_out_and_texts_have_units():
-    columns = in_contact(force_noise=0.0, radius_noise=0.0)
-    spiked = np.ma.masked_array(columns["force"].copy(), np.arange(columns["force"].size) == 40)
-    spiked.data[40] = 9999.0
-    given = {"force": spiked, "radius": columns["radius"]}
-    found = measured_loop(given, radius="1.25mm", contact_modulus=f"{MODULUS}Pa")
-    assert found.w_retr.value == pytest.approx(W_RETR, rel=1e-9)
-    labelled = xr.Dataset(
-        {"force": ("t", 1e3 * columns["force"], {"units": "mN"}), "radius": ("t", given["radius"])}
-    )
-    timed = labelled.assign(time=("t", np.arange(labelled.sizes["t"])))
-    for one in (labelled, timed, dict(labelled)):
-        assert measured_loop(one, radius=RADIUS).w_retr.value == pytest.approx(W_RETR, rel=1e-9)
-
-
-@pytest.mark.parametrize(
-    ("given", "sentence"),
-    [
-        ({"window": "70um:120um"}, "window is '70um:120um'; give a pair of contact radii"),
-        ({"window": (7e-5, 1e-4, 2e-4)}, "window has 3 values"),
-        ({"window": ("70um", "1g")}, "a contact radius of window is '1g'"),
-        ({"modulus_error": "1%"}, "modulus_error is '1%'; give a number"),
-        ({"stiffness": "3kg"}, "no stiffness"),
-    ],
-)
-def test_an_argument_that_cannot_be_used_is_refused(given, sentence):
-    columns = in_contact()
-    with pytest.raises((TypeError, ValueError), match=sentence):
-        measured_loop(columns, radius=RADIUS, **given)

@@ -1,0 +1,198 @@
+"""From a recording to works of adhesion, by the definition of simulations, with intervals."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crackfront.analysis.estimate import Estimate
+from crackfront.analysis.steady_adhesion import Branches
+from crackfront.core.arrays import Array
+from crackfront.measured.loops.baseline import baseline
+from crackfront.measured.loops.branches import SteadyPart, branches, check_sign, steady_part
+from crackfront.measured.loops.calibration import CalibratedLoop, Contact
+from crackfront.measured.loops.contact_rows import rows_in_contact
+from crackfront.measured.loops.energy import lost_energy
+from crackfront.measured.loops.fit import fitted_modulus, fitted_zero
+from crackfront.measured.loops.intervals import Works, works_of_adhesion
+from crackfront.measured.loops.pull_off import PullOff, pull_off
+from crackfront.measured.loops.recording import Recording
+from crackfront.measured.loops.remarks import loop_remarks
+from crackfront.measured.loops.result import MeasuredLoop
+from crackfront.measured.loops.rig import Rig
+from crackfront.measured.loops.stiffness import NO_ESTIMATE, machine_stiffness
+from crackfront.surfaces.written_units import prefixed
+
+_MOST_LOST = 0.1
+"""Part of the rows in contact that noise may leave without a work of adhesion.
+
+Beyond it the other rows are not a fair sample.
+"""
+
+_CLEAR_PULL = 4.0
+"""Pull-off force over the noise of the force from which on contact is found without radii."""
+
+
+def analyse_loop(recording: Recording, rig: Rig) -> MeasuredLoop:
+    """Works of adhesion of approach and retraction of a measured loop.
+
+    Every row has the apparent work of adhesion of a JKR contact of its force and radius. The works
+    of adhesion are means over the rows of each branch within one window of contact radii, as in
+    simulations; the window leaves out what the edge travels before it is steady.
+
+    Parameters
+    ----------
+    recording : Recording
+        Two of force, contact radius and displacement, or all three.
+    rig : Rig
+        The sphere and the machine.
+
+    Returns
+    -------
+    MeasuredLoop
+        Works of adhesion, modulus and more, with 95% intervals. These include the noise of the rows
+        (one of ten blocks of each branch is left out in turn), the errors of modulus and radius
+        that are given or fitted, the errors of the zeros of force and displacement, and what half
+        of the window changes.
+
+    Raises
+    ------
+    ValueError
+        If the branches share too few rows, the loop turns more than once, a column has the wrong
+        sign, noise hides the pull-off of a loop without radii, or no modulus is given and none can
+        be fitted.
+    """
+    free = baseline(recording)
+    recording = free.recording
+    check_sign(recording)
+    touches = rows_in_contact(recording)
+    touching = branches(recording, touches)
+    loop, steady = _calibrated(recording, rig, touching)
+    contact = loop.contact()
+    works = works_of_adhesion(loop, steady.averaged, free.errors)
+    _check_works(works)
+    pull = _pull_off(loop, contact, steady, works, free.errors)
+    if recording.radius is None:
+        _check_noise(loop, contact, touching, pull)
+    is_closed = not (touches[0] or touches[-1])
+    result = MeasuredLoop(
+        force=contact.force,
+        contact_radius=contact.radius,
+        work_of_adhesion=contact.work_of_adhesion,
+        direction=_direction(steady.branches, contact.force.size),
+        in_window=_in_window(steady.averaged, contact.force.size),
+        w_appr=works.w_appr,
+        w_retr=works.w_retr,
+        hysteresis=works.hysteresis,
+        contact_modulus=works.modulus,
+        fitted_modulus=_modulus_by_fit(loop, steady.averaged, free.errors),
+        stiffness=machine_stiffness(loop, works.modulus, steady.averaged),
+        lost_energy=(
+            lost_energy(recording.displacement, contact, steady.branches) if is_closed else math.nan
+        ),
+        pull_off_force=pull.force,
+        sphere_radius=rig.radius,
+        window=steady.window,
+    )
+    first = (free.remark,) if free.remark else ()
+    return replace(result, remarks=(*first, *loop_remarks(loop, result, touches)))
+
+
+def _calibrated(
+    recording: Recording, rig: Rig, touching: Branches
+) -> tuple[CalibratedLoop, SteadyPart]:
+    """Loop with its modulus and its zero of the displacement, and its steady part."""
+    modulus = rig.contact_modulus
+    if recording.force is not None and recording.radius is not None:
+        # The fit also shows a force of the wrong sign.
+        fitted = fitted_modulus(recording, rig, touching)
+        modulus = modulus or fitted
+    if modulus is None:
+        raise ValueError(
+            "without a contact radius and a force in each row no modulus is fitted; give --modulus"
+        )
+    loop = CalibratedLoop(recording, rig, modulus)
+    loop = replace(loop, zero=fitted_zero(loop, touching))
+    steady = steady_part(loop, loop.contact(), touching)
+    if not loop.has_force_and_radius:
+        # What precedes the steady parts has no part in the zero.
+        loop = replace(loop, zero=fitted_zero(loop, steady.averaged, near=loop.zero))
+        steady = steady_part(loop, loop.contact(), steady.branches)
+    return loop, steady
+
+
+def _modulus_by_fit(
+    loop: CalibratedLoop, averaged: Branches, errors: tuple[Array, ...]
+) -> Estimate[float]:
+    """Contact modulus that fits force and radius, whether or not the rig states one."""
+    if not loop.has_force_and_radius:
+        return NO_ESTIMATE
+    rig = replace(loop.rig, contact_modulus=None, modulus_error=0.0)
+    return works_of_adhesion(replace(loop, rig=rig), averaged, errors).modulus
+
+
+def _pull_off(
+    loop: CalibratedLoop,
+    contact: Contact,
+    steady: SteadyPart,
+    works: Works,
+    errors: tuple[Array, ...],
+) -> PullOff:
+    """Pull-off force, with the errors of the zero of the force."""
+    if loop.recording.force is None:
+        # Forces that follow from radii have the relative error of their work of adhesion.
+        errors = (contact.force * (works.w_retr.standard_error / works.w_retr.value),)
+    return pull_off(contact.force, steady.branches[1], errors)
+
+
+def _check_works(works: Works) -> None:
+    """Raise ValueError if works of adhesion have no interval, or no adhesion pulls."""
+    if not all(math.isfinite(work.high) for work in (works.w_appr, works.w_retr, works.hysteresis)):
+        raise ValueError(
+            "the works of adhesion have no interval: the noise of the force, or the error of its "
+            "zero, is as large as the adhesion in some rows; check the units and the modulus, "
+            "press less, or record the contact radius"
+        )
+    if works.w_retr.value <= 0:
+        raise ValueError(
+            "the work of adhesion of the retraction is not positive; give --stiffness if the "
+            "machine is not far stiffer than the contact, and check the displacement, the modulus "
+            "and the radius of the sphere"
+        )
+
+
+def _check_noise(loop: CalibratedLoop, contact: Contact, touching: Branches, pull: PullOff) -> None:
+    """Raise ValueError if noise hides the pull-off, or the work of adhesion of too many rows."""
+    if 0 < pull.force.value < _CLEAR_PULL * pull.noise:
+        raise ValueError(
+            f"the pull-off force, {prefixed('N', pull.force.value)}, is hardly beyond the noise of "
+            f"the force, {prefixed('N', pull.noise)}; press less, average rows, or record the "
+            "contact radius"
+        )
+    rows = np.concatenate(touching)
+    measured = rows[np.isfinite((contact.force + contact.penetration)[rows])]
+    lost = float(np.mean(~np.isfinite(contact.work_of_adhesion[measured])))
+    if loop.rig.window is None and lost > _MOST_LOST:
+        raise ValueError(
+            f"{lost:.0%} of the rows in contact have no work of adhesion, as noise presses more "
+            "than the contact of Hertz; check the units, the modulus and --stiffness, average "
+            "rows, use a stiffer machine, or record the contact radius"
+        )
+
+
+def _direction(branches: Branches, n_row: int) -> Array:
+    """1 in approach, -1 in retraction, 0 elsewhere."""
+    direction = np.zeros(n_row)
+    direction[branches[0]] = 1
+    direction[branches[1]] = -1
+    return direction
+
+
+def _in_window(averaged: Branches, n_row: int) -> NDArray[np.bool_]:
+    """Whether each row is averaged."""
+    inside = np.zeros(n_row, bool)
+    inside[np.concatenate(averaged)] = True
+    return inside

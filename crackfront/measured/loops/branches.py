@@ -1,0 +1,144 @@
+"""Approach and retraction of a loop, and the steady part of each, which is averaged."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import scipy
+from numpy.typing import NDArray
+
+from crackfront.analysis.standard_error import FEWEST_STATES
+from crackfront.analysis.steady_adhesion import Branches, shared_window, within
+from crackfront.core.arrays import Array
+from crackfront.measured.loops.calibration import CalibratedLoop, Contact
+from crackfront.measured.loops.recording import Recording
+from crackfront.surfaces.written_units import prefixed
+
+_AFTER_JUMP = 0.02
+"""Travel of the edge before the approach is steady, over the largest contact radius.
+
+A jump into contact leaves nothing behind.
+"""
+
+_AFTER_TURN = 0.1
+"""Travel of the edge before the retraction is steady, over the largest contact radius.
+
+The edge has to leave what pinned it in approach; `python -m studies accuracy loops` compares the
+intervals with simulated spheres.
+"""
+
+_RETURN = 0.2
+"""Part of the largest travel by which mount or edge may come back within a branch.
+
+Noise and instabilities move the edge by less, a second turn by more.
+"""
+
+_FEWEST_ROWS = 2 * FEWEST_STATES
+"""Averaged rows of each branch, so that both halves of the window have enough."""
+
+
+@dataclass(frozen=True, slots=True)
+class SteadyPart:
+    """Rows of a calibrated loop that have a work of adhesion, and those that are averaged."""
+
+    branches: Branches
+    """Rows of approach and of retraction that have a work of adhesion."""
+    averaged: Branches
+    """Rows of both within the window, after the edge has travelled."""
+    window: tuple[float, float]
+    """Smallest and largest contact radius that are averaged. (Units: m)"""
+
+
+def driving(recording: Recording) -> Array:
+    """The column that the machine drives: displacement (Units: m), or force (Units: N)."""
+    return np.asarray(recording.force if recording.displacement is None else recording.displacement)
+
+
+def check_sign(recording: Recording) -> None:
+    """Raise ValueError if the force pulls where the sphere is pushed furthest into the surface."""
+    force, displacement = recording.force, recording.displacement
+    if force is None or displacement is None or not np.any(np.isfinite(force + displacement)):
+        return
+    turn = int(np.nanargmax(np.where(np.isfinite(force), displacement, np.nan)))
+    if force[turn] < min(0.5 * np.nanmin(force), 0.0):
+        raise ValueError(
+            f"the force is {prefixed('N', float(force[turn]))} at the largest displacement, and "
+            "has the wrong sign there; displacement and force are positive where they press"
+        )
+
+
+def branches(recording: Recording, touches: NDArray[np.bool_]) -> Branches:
+    """Rows in contact of approach and of retraction, which share the row of the turn.
+
+    The turn is at the largest displacement, or at the largest force. Raises ValueError if the loop
+    turns more than once.
+    """
+    driven = driving(recording)
+    rows = np.flatnonzero(touches & np.isfinite(driven))
+    turn = int(np.argmax(driven[rows]))
+    approach, retraction = rows[: turn + 1], rows[turn:]
+    # The force may fall within a branch, as at a jump; the radius may not.
+    path = driven if recording.displacement is not None else np.asarray(recording.radius)
+    span = float(np.ptp(path[rows]))
+    for direction, branch in ((1, approach), (-1, retraction)):
+        # The median of five rows is free of their noise.
+        way = direction * scipy.ndimage.median_filter(path[branch], 5, mode="nearest")
+        if way.size and float(np.max(np.maximum.accumulate(way) - way)) > _RETURN * span:
+            raise ValueError(
+                "the loop turns more than once, or a column has the wrong sign; displacement and "
+                "force are positive where they press. Cut the table to one approach and one "
+                "retraction"
+            )
+    return approach, retraction
+
+
+def steady_part(loop: CalibratedLoop, contact: Contact, touching: Branches) -> SteadyPart:
+    """Rows of both branches within the window of the rig, or what both pass when they are steady.
+
+    Raises ValueError if a contact is larger than the sphere, or too few rows are averaged.
+    """
+    radius, sphere_radius, window = contact.radius, loop.rig.radius, loop.rig.window
+    approach, retraction = (rows[np.isfinite(contact.work_of_adhesion[rows])] for rows in touching)
+    in_contact = np.concatenate([approach, retraction])
+    if in_contact.size and np.max(radius[in_contact]) > sphere_radius:
+        largest = prefixed("m", float(np.max(radius[in_contact])))
+        raise ValueError(
+            f"the contact radius reaches {largest} on a sphere of "
+            f"{prefixed('m', sphere_radius)}; check the units of both"
+        )
+    # The row of the turn belongs to both branches.
+    if min(approach.size, retraction.size) <= 1:
+        raise ValueError("the loop has no approach or no retraction in contact; record both")
+    if window is None:
+        averaged, window = _steady_rows(radius, approach, retraction)
+        where = "that both pass after the edge has travelled"
+        advice = "retract further, record more rows, check the modulus, or name a --window"
+    else:
+        averaged = within(radius, (approach, retraction), window)
+        where = "within the window"
+        low, high = (prefixed("m", float(end(radius[in_contact]))) for end in (np.min, np.max))
+        advice = f"choose another one; the radii are {low} to {high}"
+    if min(rows.size for rows in averaged) < _FEWEST_ROWS:
+        counts = " and ".join(str(rows.size) for rows in averaged)
+        raise ValueError(
+            f"approach and retraction have {counts} rows at contact radii {where}; "
+            f"{_FEWEST_ROWS} each are needed, so {advice}"
+        )
+    return SteadyPart((approach, retraction), averaged, window)
+
+
+def _steady_rows(
+    radius: Array, approach: NDArray[np.int64], retraction: NDArray[np.int64]
+) -> tuple[Branches, tuple[float, float]]:
+    """Rows at the contact radii that both branches pass after the edge has travelled, and these."""
+    largest = max(float(radius[rows].max()) for rows in (approach, retraction))
+    began, turned = radius[approach].min(), radius[retraction].max()
+    steady = (
+        approach[radius[approach] >= began + _AFTER_JUMP * largest],
+        retraction[radius[retraction] <= turned - _AFTER_TURN * largest],
+    )
+    if min(rows.size for rows in steady) == 0:
+        return steady, (math.nan, math.nan)
+    return shared_window(radius, steady)

@@ -1,0 +1,91 @@
+"""The sphere that gives reduced units their values in SI, from numbers, texts and attributes."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import asdict, fields
+from numbers import Real
+from typing import Any
+
+from crackfront.core import units
+from crackfront.core.arguments import refuse_other_type
+from crackfront.surfaces.written_units import si_value
+
+CONVERTED_FOR = "sphere_"
+"""Prefix of the attributes with the sphere for which data were converted to SI units."""
+
+CONFIGURED = "scale_"
+"""Prefix of the attributes in which a table of a sweep states the sphere of its configuration."""
+
+
+class Scales(units.Scales):
+    """Values of the reduced units in SI, from a sphere and the surface it touches.
+
+    Parameters
+    ----------
+    radius : float or str
+        Radius R of the sphere; a number of metres, or a text with a unit, as '1.25mm'.
+        (Units: m)
+    work_of_adhesion : float or str
+        Intrinsic work of adhesion w_int, as '63mJ/m2'. (Units: J / m^2)
+    contact_modulus : float or str
+        Contact modulus E' = E / (1 - nu^2), as '0.93MPa'. (Units: Pa)
+
+    Raises
+    ------
+    ValueError
+        If a parameter is not positive and finite, or a text is no such quantity.
+    TypeError
+        If a parameter is neither a number nor a text.
+
+    Examples
+    --------
+    >>> sphere = Scales(radius="1.25mm", work_of_adhesion="63mJ/m2", contact_modulus=0.7e6 / 0.75)
+    >>> f"{sphere.lateral * 1e6:.1f} um, {sphere.vertical * 1e6:.2f} um"
+    '62.9 um, 3.16 um'
+    """
+
+    __slots__ = ()
+
+    def __init__(
+        self, radius: float | str, work_of_adhesion: float | str, contact_modulus: float | str
+    ) -> None:
+        super().__init__(
+            in_si("radius", radius, "m"),
+            in_si("work_of_adhesion", work_of_adhesion, "J/m^2"),
+            in_si("contact_modulus", contact_modulus, "Pa"),
+        )
+
+
+def in_si(name: str, value: float | str, unit: str) -> float:
+    """Value in SI of an argument that is a number or a text with a unit."""
+    if isinstance(value, str):
+        return si_value(value, unit, what=name)
+    refuse_other_type(name, value, Real, f"a number of {unit}, or a text with a unit")
+    return float(value)
+
+
+def refuse_no_scales(sphere: object) -> None:
+    """Raise TypeError if an argument is not a sphere."""
+    wanted = "crackfront.Scales(radius, work_of_adhesion, contact_modulus)"
+    refuse_other_type("sphere", sphere, units.Scales, wanted)
+
+
+def sphere_attributes(sphere: units.Scales) -> dict[str, float]:
+    """Attributes of data that were converted to SI units for a sphere."""
+    return {CONVERTED_FOR + name: value for name, value in asdict(sphere).items()}
+
+
+def attributes_sphere(attributes: Mapping[Any, Any], prefix: str) -> units.Scales | None:
+    """The sphere that attributes with a prefix state; None if they state none."""
+    names = [prefix + field.name for field in fields(units.Scales)]
+    if not all(name in attributes for name in names):
+        return None
+    return units.Scales(*(float(attributes[name]) for name in names))
+
+
+def are_equal(sphere: units.Scales, other: units.Scales) -> bool:
+    """Whether two spheres are the same but for round-off."""
+    pairs = zip(asdict(sphere).values(), asdict(other).values(), strict=True)
+    return all(math.isclose(*pair, rel_tol=1e-9) for pair in pairs)

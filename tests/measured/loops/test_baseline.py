@@ -1,0 +1,64 @@
+"""Rows out of contact: the zero and the drift of the force, spikes, and rows without a force."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from crackfront import measured_loop
+from crackfront.measured.loops.analysis import analyse_loop
+from crackfront.measured.loops.contact_rows import rows_in_contact
+from crackfront.measured.loops.recording import Recording
+from crackfront.measured.loops.rig import Rig
+from tests.measured.loops.made import MODULUS, RADIUS, TRUTH, W_APPR, W_RETR, in_contact, loop
+
+
+def test_a_bent_drift_widens_the_intervals():
+    whole, time = loop(0), np.linspace(-1, 1, 320)
+    bent = whole.force + 0.05 * np.max(whole.force) * time**2
+    found = analyse_loop(replace(whole, force=bent), Rig(RADIUS, MODULUS))
+    for name, truth in TRUTH.items():
+        estimate = getattr(found, name)
+        assert estimate.low <= truth <= estimate.high
+
+
+def test_a_spike_out_of_contact_is_no_contact():
+    whole = loop(0, without="radius")
+    for row in (5, -8):
+        force = whole.force.copy()
+        force[row] += 0.2 * np.max(force)
+        spiked = Recording(force, None, whole.displacement)
+        found = analyse_loop(spiked, Rig(RADIUS, MODULUS, stiffness=1e3))
+        assert found.hysteresis.value == pytest.approx(W_RETR - W_APPR, rel=0.1)
+
+
+def test_the_last_row_before_a_sharp_pull_off_is_no_spike():
+    whole = loop(0, without="radius", force_noise=2e-4)
+    last = int(np.flatnonzero(np.abs(whole.force) > 0.05 * np.max(whole.force))[-1])
+    force = np.array(whole.force)
+    force[last + 1] = 1.5 * force[last]
+    sharp = replace(whole, force=force)
+    touches = rows_in_contact(sharp)
+    assert touches[last + 1]
+    assert not touches[last + 2]
+
+
+@pytest.mark.parametrize("noise", [0.0, 0.003])
+def test_rows_in_contact_give_no_zero_of_the_force(noise):
+    columns = in_contact(force_noise=noise, radius_noise=0.0, stiffness=1e9)
+    del columns["radius"]
+    found = measured_loop(columns, radius=RADIUS, contact_modulus=MODULUS)
+    assert "The zero of the force is that of the file, as no rows are out of contact." in (
+        found.remarks
+    )
+    for name, truth in TRUTH.items():
+        estimate = getattr(found, name)
+        assert estimate.low - 1e-6 <= truth <= estimate.high + 1e-6
+        assert estimate.value == pytest.approx(truth, rel=1e-4 if noise == 0 else 0.2)
+
+
+def test_rows_without_a_force_are_not_lost_to_noise():
+    whole = loop(0, without="radius")
+    force = np.where(np.arange(whole.force.size) % 8 == 3, np.nan, whole.force)
+    found = analyse_loop(replace(whole, force=force), Rig(RADIUS, MODULUS, stiffness=1e3))
+    assert found.hysteresis.low <= W_RETR - W_APPR <= found.hysteresis.high

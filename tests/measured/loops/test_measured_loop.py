@@ -1,0 +1,66 @@
+"""The function of the library: arrays, tables, datasets, and arguments that cannot be used."""
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from crackfront import measured_loop
+from tests.measured.loops.made import MODULUS, RADIUS, W_RETR, in_contact, loop
+
+
+def test_arrays_and_their_table_are_the_same_loop(tmp_path):
+    whole = loop(0)
+    arrays = {"force": whole.force, "radius": whole.radius}
+    path = tmp_path / "rig.csv"
+    rows = zip(whole.force, whole.radius, strict=True)
+    path.write_text("Force (N),Radius (m)\n" + "".join(f"{f},{a}\n" for f, a in rows))
+    known = {"radius": RADIUS, "contact_modulus": MODULUS}
+    assert repr(measured_loop(arrays, **known)) == repr(measured_loop(path, **known))
+    with pytest.raises(ValueError, match="has no speed"):
+        measured_loop({"force": whole.force, "speed": whole.force}, **known)
+
+
+@pytest.mark.parametrize(
+    ("columns", "sentence"),
+    [
+        ({"force": np.zeros(50), "displacement": np.linspace(0, 1e-6, 50)}, "no row is in contact"),
+        ({"force": np.zeros(50), "radius": np.zeros(50)}, "no row is in contact"),
+        ({"force": np.full(50, np.nan), "radius": np.ones(50)}, "force has no finite value"),
+        ({"force": np.zeros(50)}, "needs two of"),
+        ({"force": np.zeros(50), "radius": np.ones(49)}, "not of one length"),
+    ],
+)
+def test_what_is_no_loop_is_refused(columns, sentence):
+    with pytest.raises(ValueError, match=sentence):
+        measured_loop(columns, radius=RADIUS, contact_modulus=MODULUS)
+
+
+def test_masked_rows_are_left_out_and_texts_have_units():
+    columns = in_contact(force_noise=0.0, radius_noise=0.0)
+    spiked = np.ma.masked_array(columns["force"].copy(), np.arange(columns["force"].size) == 40)
+    spiked.data[40] = 9999.0
+    given = {"force": spiked, "radius": columns["radius"]}
+    found = measured_loop(given, radius="1.25mm", contact_modulus=f"{MODULUS}Pa")
+    assert found.w_retr.value == pytest.approx(W_RETR, rel=1e-9)
+    labelled = xr.Dataset(
+        {"force": ("t", 1e3 * columns["force"], {"units": "mN"}), "radius": ("t", given["radius"])}
+    )
+    timed = labelled.assign(time=("t", np.arange(labelled.sizes["t"])))
+    for one in (labelled, timed, dict(labelled)):
+        assert measured_loop(one, radius=RADIUS).w_retr.value == pytest.approx(W_RETR, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("given", "sentence"),
+    [
+        ({"window": "70um:120um"}, "window is '70um:120um'; give a pair of contact radii"),
+        ({"window": (7e-5, 1e-4, 2e-4)}, "window has 3 values"),
+        ({"window": ("70um", "1g")}, "a contact radius of window is '1g'"),
+        ({"modulus_error": "1%"}, "modulus_error is '1%'; give a number"),
+        ({"stiffness": "3kg"}, "no stiffness"),
+    ],
+)
+def test_an_argument_that_cannot_be_used_is_refused(given, sentence):
+    columns = in_contact()
+    with pytest.raises((TypeError, ValueError), match=sentence):
+        measured_loop(columns, radius=RADIUS, **given)
