@@ -22,7 +22,8 @@ from crackfront.cli.common import (
 from crackfront.measured.options import PredictionOptions, ReadingOptions, SphereOptions
 
 if TYPE_CHECKING:
-    from crackfront.measured.samples import Sample, SampleResult
+    from crackfront.measured.samples.sample import Sample
+    from crackfront.measured.samples.sample_results import SampleResult
 
 
 @click.command(
@@ -79,7 +80,7 @@ def samples(
     computed. A sample whose files fail later has the outcome `refused` in its row. The exit code is
     the largest of all samples, each as that of `crackfront predict`.
     """
-    from crackfront.measured.samples import read_samples
+    from crackfront.measured.samples.sample import read_samples
 
     refuse_together(context, "no_figure", "figure", "quantity")
     refuse_overwriting([path], {"--csv": table, "--figure": figure})
@@ -106,7 +107,7 @@ def samples(
 
 def write_samples(path: Path, samples: Sequence[Sample], first: str) -> list[SampleResult]:
     """Write a table with a row for each sample, as soon as it is known; - is standard output."""
-    from crackfront.measured.samples import predicted_samples
+    from crackfront.measured.samples.sample_results import predicted_samples
     from crackfront.simulate.storage import refuse_no_file, write_text
 
     is_printed, found = str(path) == "-", []

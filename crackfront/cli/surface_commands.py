@@ -169,7 +169,7 @@ def predict(
             raise ValueError("--csv writes a row for each scan; name scans")
         if as_json or simulate or is_long or panel or figure:
             raise ValueError("--csv writes rows alone; leave out what prints, draws or simulates")
-        from crackfront.measured.samples import scans_as_samples
+        from crackfront.measured.samples.sample import scans_as_samples
 
         reading = reading_options(for_files(options, scans), len(scans), "--")
         found = write_samples(table, scans_as_samples(scans, reading, scales, given), "scan")

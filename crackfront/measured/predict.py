@@ -23,7 +23,7 @@ from crackfront.measured.options import (
 )
 from crackfront.measured.prediction.prediction import Prediction, check_and_predict
 from crackfront.measured.prediction.remarks import remark_text
-from crackfront.measured.scan.instruments import surface_library
+from crackfront.measured.scan.library import surface_library
 from crackfront.measured.scan.psd import read_psd_file
 from crackfront.measured.scan.reading import read_measurements
 from crackfront.measured.spectrum.measured_surface import MeasuredSurface, read_surface

@@ -52,7 +52,7 @@ def test_a_table_may_be_printed_and_the_figure_show_another_number(table):
 
 
 def test_nothing_is_computed_for_a_table_with_a_bad_row(table, monkeypatch):
-    monkeypatch.setattr("crackfront.measured.samples.check_and_predict", None)
+    monkeypatch.setattr("crackfront.measured.samples.sample_results.check_and_predict", None)
     table.write_text(TABLE.replace("40nm", "40"))
     told = refused("samples", table, *SPHERE)
     assert "series.csv, line 3: rms is '40', without a unit" in told

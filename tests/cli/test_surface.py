@@ -111,7 +111,7 @@ def test_an_interrupted_batch_of_scans_keeps_the_rows_of_those_before(
             raise KeyboardInterrupt
         return measured_once(paths, options)
 
-    monkeypatch.setattr("crackfront.measured.samples.read_surface", interrupted)
+    monkeypatch.setattr("crackfront.measured.samples.sample_results.read_surface", interrupted)
     table = tmp_path / "samples.csv"
     assert run("predict", *sphere(), "--csv", table, smooth, OVERVIEW).exit_code != 0
     with table.open(encoding="utf-8", newline="") as file:

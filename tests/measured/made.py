@@ -79,7 +79,7 @@ def shipped_surface(*paths, **given):
 
 def measure_surfaces_once(monkeypatch):
     """Let commands and library measure equal files once for each of their options."""
-    for module in ("predict", "samples", "spectrum.measured_surface"):
+    for module in ("predict", "samples.sample_results", "spectrum.measured_surface"):
         monkeypatch.setattr(f"crackfront.measured.{module}.read_surface", measured_once)
 
 

@@ -14,7 +14,7 @@ from scipy.fft import fftfreq, irfftn, rfftfreq, rfftn
 
 from crackfront.core.arrays import Array
 from crackfront.measured.density.densities import Density, Periodogram, periodogram
-from crackfront.measured.scan.instruments import library_scan
+from crackfront.measured.scan.library import library_scan
 from crackfront.measured.scan.reading import Measurement, interpolated
 
 _POINTS, _MOST = 2**20, 16

@@ -9,7 +9,7 @@ import numpy as np
 
 from crackfront.measured.density.bands import Scan
 from crackfront.measured.prediction.remarks import Remark
-from crackfront.measured.scan.instruments import is_doubtful
+from crackfront.measured.scan.channels import is_doubtful
 from crackfront.measured.spectrum.joining import JointSpectrum, part_of_energy
 from crackfront.measured.spectrum.measured_surface import MeasuredSurface
 from crackfront.measured.spectrum.stated import StatedSurface, Surface

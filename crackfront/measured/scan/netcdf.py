@@ -2,28 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from crackfront.measured.scan.grids_reader import Grid
 from crackfront.measured.scan.points import Points, even_line
 from crackfront.surfaces.written_units import unit_value
 
 _BEGINS = (b"CDF\x01", b"CDF\x02", b"CDF\x05", b"\x89HDF\r\n\x1a\n")
 _SUFFIXES = {".nc", ".nc4", ".cdf", ".netcdf"}
-
-
-@dataclass(frozen=True, slots=True)
-class Grid:
-    """A variable on two coordinates, or one."""
-
-    name: str
-    points: Points
-    """Sides in metres; heights too, where their unit is a length."""
-    unit: str | None
-    """Unit of the heights as the file has it, where it is no length."""
 
 
 def netcdf_grids(path: Path) -> list[Grid]:
@@ -105,6 +94,6 @@ def _grid(path: Path, dataset: Any, name: str) -> Grid:
         values, size = values.T, size[::-1]
     unit = _unit(variable)
     try:
-        return Grid(name, Points(values * unit_value(unit or "", "m"), tuple(size)), None)
+        return Grid(name, Points(values * unit_value(unit or "", "m"), tuple(size)))
     except ValueError:
         return Grid(name, Points(values, tuple(size)), unit)

@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from crackfront.core.arrays import Array
-from crackfront.measured.scan.text import NumberText
+from crackfront.measured.tables.headings import Heading, listed, matching
+from crackfront.measured.tables.table import Table
 
 _UNEVEN = 0.05
 """Distance of a point from its place, in spacings, that positions may have beyond their digits."""
@@ -37,14 +37,21 @@ _FEWEST_FILLED = 0.05
 """Least part of the places of a grid that have a point; with fewer it is no grid."""
 
 
-_NAMES = {
-    "x": r"(x|position|distance)",
-    "y": r"y",
-    "z": r"(z|heights?|elevation|topography)",
-}
-"""What heads call the columns of points, with or without the words below."""
+_WORDS = "( ?-?(position|coordinate|axis|height)s?)?"
+"""What may follow the name of a coordinate."""
 
-_WORDS = r"([ _-]?(position|coordinate|axis|height)s?)?"
+_NAMES = {
+    "x": f"(x|position|distance){_WORDS}",
+    "y": f"y{_WORDS}",
+    "z": f"(z|heights?|elevation|topography){_WORDS}",
+}
+"""What headings call the columns of points."""
+
+HeadKind = Literal["dektak", "hfm", "comments"]
+"""Heads of points that the library reads: of two instruments, and comments."""
+
+Cells = NDArray[Any]
+"""A column of numbers as texts, whose digits say how far they are rounded."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,80 +63,89 @@ class Points:
     size: tuple[float, ...]
 
 
-def point_columns(path: Path, names: Sequence[str]) -> list[int]:
-    """Places of the columns that heads name x, y and z, in this order; none if not both are named.
+def point_columns(path: Path, headings: Sequence[Heading]) -> list[int]:
+    """Places of the columns named x, y and z, in this order; none if the headings name too few.
 
-    ValueError where the order of the columns contradicts the only name.
+    ValueError if only the heights are named, and are not in the last column.
     """
-    found = {
-        key: [
-            place
-            for place, name in enumerate(names)
-            if re.fullmatch(pattern + _WORDS, name.strip(), re.IGNORECASE)
-        ]
-        for key, pattern in _NAMES.items()
-    }
-    places = [place for key in "xy" for place in found[key]]
-    if max(map(len, found.values())) == 1 and places and found["z"]:
-        return [*places, *found["z"]]
-    if found["z"] and len(names) - 1 not in found["z"]:
+    places = {name: matching(headings, pattern) for name, pattern in _NAMES.items()}
+    if max(map(len, places.values())) == 1 and places["z"] and (places["x"] or places["y"]):
+        return [place for name in "xyz" for place in places[name]]
+    if places["z"] and len(headings) - 1 not in places["z"]:
         raise ValueError(
-            f"{path}: its columns are {', '.join(map(repr, names))}; name those of the points x, y "
-            "and z, once each, or write the heights in the last one"
+            f"{path}: its columns are {listed(headings)}; name those of the points x, y and z, "
+            "once each, or write the heights in the last one"
         )
     return []
 
 
-def read_points(path: Path, text: NumberText, kind: str | None) -> Points:
-    """Points of a text, whose head is of a kind (Dektak, HFM or neither).
+def read_points(table: Table, kind: HeadKind | None) -> Points:
+    """Points of a table on a line or a regular grid.
 
-    ValueError, of one sentence, where the points lie on no line and no regular grid.
+    Parameters
+    ----------
+    table : Table
+        Two or three columns of numbers; a further first one may count the points.
+    kind : 'dektak', 'hfm' or None
+        Kind of the head; some columns of these instruments are not heights.
+
+    Returns
+    -------
+    Points
+        In the units of the table.
+
+    Raises
+    ------
+    ValueError
+        If the points are neither on a line nor on a regular grid, or without heights.
     """
-    _refuse_parts(path, text)
-    rows = [text.lines[row].split() for row in text.rows]
-    columns = list(zip(*(cells for cells in rows if len(cells) == text.n_column), strict=True))
+    path = table.path
+    columns = [table.cells[place].to_numpy() for place in range(table.n_column)]
     if kind == "dektak":
         columns = columns[:2]
     elif kind == "hfm" and len(columns) == 3:
         x, z, valid = columns
-        is_known = np.array(valid, dtype=float) != 0
-        columns = [x, tuple(np.where(is_known, z, "nan").tolist())]
+        columns = [x, np.where(valid.astype(float) != 0, z, "nan")]
     elif len(columns) == 4:
         del columns[0]
     if len(columns) == 3:
         columns = _line_columns(columns) or columns
     *places, last = columns
-    heights = np.ma.masked_invalid(np.array(last, dtype=float))
+    heights = np.ma.masked_invalid(last.astype(float))
     if not heights.count():
-        raise ValueError(f"{path} holds no heights: the last column has no number; export it again")
+        raise ValueError(f"{path} has no heights: the last column has no number; export it again")
     return Points(*_on_grid(path, places, heights))
 
 
 def even_line(path: Path, positions: Array, heights: Array) -> Points:
     """Line of points that another reader found; refused if they are not equally spaced."""
-    cells = tuple(map(repr, np.asarray(positions, dtype=float).tolist()))
-    return Points(*_on_grid(path, [cells], np.ma.masked_invalid(heights)))
+    return Points(*_on_grid(path, [_texts(positions)], np.ma.masked_invalid(heights)))
 
 
-def refuse_positions(path: Path, text: NumberText) -> None:
+def _texts(numbers: Array) -> Cells:
+    """Numbers with all their digits, as cells."""
+    return np.array(list(map(repr, np.asarray(numbers, dtype=float).tolist())), dtype=object)
+
+
+def refuse_positions(table: Table) -> None:
     """Raise where the first column, or the first row, of a matrix has positions for heights."""
-    rows = [text.lines[row].split() for row in text.rows]
-    if len(rows) < _FEWEST_POSITIONS or len({len(cells) for cells in rows}) > 1:
+    cells = table.cells.to_numpy()
+    if min(cells.shape) < 2 or len(cells) < _FEWEST_POSITIONS:
         return
-    columns = list(zip(*rows, strict=True))
-    for name, cells in (("column", columns), ("row", rows)):
-        if len(cells[0]) < _FEWEST_POSITIONS:
+    for name, lines in (("column", cells.T), ("row", cells)):
+        first, second = lines[:2, 1:]
+        if len(first) + 1 < _FEWEST_POSITIONS:
             continue
-        if _are_positions(cells[0][1:]) and not _are_positions(cells[1][1:]):
+        if _are_positions(first) and not _are_positions(second):
             raise ValueError(
-                f"{path}: the first {name} is equally spaced, {cells[0][1]} to {cells[0][-1]}, as "
+                f"{table.path}: the first {name} is equally spaced, {first[0]} to {first[-1]}, as "
                 "positions are; export the heights alone, and name the sides with --size"
             )
 
 
-def _are_positions(cells: Sequence[str]) -> bool:
+def _are_positions(cells: Cells) -> bool:
     """Whether numbers ascend or descend by equal steps."""
-    numbers = np.array(cells, dtype=float)
+    numbers = cells.astype(float)
     steps = np.diff(numbers)
     if not np.isfinite(numbers).all() or not (np.all(steps > 0) or np.all(steps < 0)):
         return False
@@ -140,31 +156,19 @@ def _are_positions(cells: Sequence[str]) -> bool:
     return len(set(index.tolist())) == len(cells) == np.ptp(index) + 1
 
 
-def are_points(text: NumberText) -> bool:
+def are_points(table: Table) -> bool:
     """Whether rows are points, of two or three numbers that a fourth may count."""
-    if text.n_column != 4:
-        return text.n_column in (2, 3)
-    return _is_index([text.lines[row].split()[0] for row in text.rows])
+    if table.n_column != 4:
+        return table.n_column in (2, 3)
+    return _is_index(table.cells[0].to_numpy())
 
 
-def _refuse_parts(path: Path, text: NumberText) -> None:
-    """Raise where text stands between rows of points."""
-    first, last = len(text.head), text.rows[-1]
-    known = set(text.rows)
-    for number in range(first, last):
-        if number not in known and text.lines[number].strip().lstrip("#"):
-            raise ValueError(
-                f"{path}, line {number + 1}: {text.lines[number].strip()[:40]!r} stands between "
-                "points; export one scan into one file"
-            )
-
-
-def _line_columns(columns: Sequence[tuple[str, ...]]) -> list[tuple[str, ...]] | None:
+def _line_columns(columns: Sequence[Cells]) -> list[Cells] | None:
     """Positions and heights of a line in three columns; None where they are a map."""
     first, second, heights = columns
+    x, y = first.astype(float), second.astype(float)
     if _is_index(first) and len(set(second)) > 1:
         return [second, heights]
-    x, y = (np.array(column, dtype=float) for column in (first, second))
     if not np.ptp(y) > 0 or not np.ptp(x) > 0:
         return [first if np.ptp(x) > 0 else second, heights]
     ends = x[[0, -1]], y[[0, -1]]
@@ -172,18 +176,18 @@ def _line_columns(columns: Sequence[tuple[str, ...]]) -> list[tuple[str, ...]] |
     if np.any(np.abs(off) > 1e-3 * np.ptp(x) * np.ptp(y) / len(x)):
         return None
     along = np.sign(x - x[0]) * np.hypot(x - x[0], y - y[0])
-    return [tuple(map(repr, along.tolist())), heights]
+    return [_texts(along), heights]
 
 
-def _is_index(cells: Sequence[str]) -> bool:
-    """Whether cells are whole numbers, each one more than that above."""
-    numbers = np.array(cells, dtype=float)
+def _is_index(cells: Cells) -> bool:
+    """Whether cells are whole numbers, each one more than the one above."""
+    numbers = cells.astype(float)
     whole = np.all(numbers == np.rint(numbers))
     return bool(whole and len(numbers) > 2 and np.all(np.diff(numbers) == 1))
 
 
 def _on_grid(
-    path: Path, places: Sequence[Sequence[str]], heights: np.ma.MaskedArray[Any, Any]
+    path: Path, places: Sequence[Cells], heights: np.ma.MaskedArray[Any, Any]
 ) -> tuple[np.ma.MaskedArray[Any, Any], tuple[float, ...]]:
     """Heights on the grid of their positions, masked where it has no point, and its sides."""
     axes = [_axis(path, name, cells) for name, cells in zip("xy", places, strict=False)]
@@ -210,17 +214,20 @@ def _on_grid(
     return grid.reshape(counts), size
 
 
-def _axis(path: Path, name: str, cells: Sequence[str]) -> tuple[NDArray[np.int64], float]:
-    """Places of positions on equal spacings, and the spacing; refused where there is none.
+def _axis(path: Path, name: str, cells: Cells) -> tuple[NDArray[np.int64], float]:
+    """Places of positions on equal spacings, and the spacing; ValueError where there is none.
 
     Positions may depart from their places by their last digit, and by a small part of the spacing.
     """
-    texts, inverse = np.unique(np.array(cells), return_inverse=True)
-    known, rounding = np.array(texts, dtype=float), _last_digits(texts.tolist())
-    if not np.isfinite(known).all():
+    import pandas
+
+    # By hashes, since sorting millions of texts takes minutes.
+    inverse, texts = pandas.factorize(cells)
+    values, rounding = texts.astype(float), _last_digits(texts.tolist())
+    if not np.isfinite(values).all():
         raise ValueError(f"{path}: a position along {name} is no number; export the points again")
-    order = np.argsort(known, kind="stable")
-    positions, rounding = known[order], rounding[order]
+    order = np.argsort(values, kind="stable")
+    positions, rounding = values[order], rounding[order]
     gaps = np.diff(positions)
     cluster = np.concatenate([[0], np.cumsum(gaps > _SAME_PLACE * gaps.max(initial=0.0))])
     centres = np.bincount(cluster, positions) / np.bincount(cluster)

@@ -22,26 +22,22 @@ from crackfront.measured.scan.containers import (
     surface_of,
     unpacked,
 )
-from crackfront.measured.scan.instruments import (
-    RawScan,
-    are_possible_heights,
-    array_of,
-    in_metres,
-    is_stated,
-    library_part,
-    library_scan,
-    raw_scan,
-    shown_sides,
-    surface_library,
-)
+from crackfront.measured.scan.instruments import RawScan, array_of, is_stated, raw_scan
 from crackfront.measured.scan.levelling import (
     PointMask,
     levelled,
     order_of,
     taken_off,
 )
+from crackfront.measured.scan.library import (
+    in_metres,
+    library_part,
+    library_scan,
+    surface_library,
+)
 from crackfront.measured.scan.outliers import outliers
 from crackfront.measured.scan.scan_files import checksum, refuse_unreadable
+from crackfront.measured.scan.sides import are_possible_heights, shown_sides
 from crackfront.surfaces.written_units import prefixed
 
 _PIXELS_PER_WAVE = 4

@@ -8,7 +8,7 @@ from scipy.signal import get_window
 
 from crackfront.core.synthesis import gaussian_field
 from crackfront.measured.density.densities import cosine_window, periodogram
-from crackfront.measured.scan.instruments import surface_library
+from crackfront.measured.scan.library import surface_library
 from studies.paper.si_6 import profile_periodogram
 from tests.measured.made import SIDE, SPECTRUM, map_heights, periodic_measurement
 

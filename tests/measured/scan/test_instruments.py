@@ -13,7 +13,7 @@ import pytest
 import crackfront as cf
 from crackfront.measured.options import ReadingOptions
 from crackfront.measured.prediction.surface_remarks import channel_remarks
-from crackfront.measured.scan.instruments import surface_library
+from crackfront.measured.scan.library import surface_library
 from crackfront.measured.scan.reading import read_measurements
 from crackfront.measured.spectrum.measured_surface import read_surface
 from studies.accuracy import scans

@@ -5,7 +5,7 @@ import pytest
 
 from crackfront.measured.density.bands import analysed_scan
 from crackfront.measured.options import ReadingOptions
-from crackfront.measured.scan.instruments import surface_library
+from crackfront.measured.scan.library import surface_library
 from crackfront.measured.scan.reading import read_measurements
 from studies.accuracy import scans
 from tests.measured.made import (

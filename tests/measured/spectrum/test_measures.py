@@ -9,7 +9,7 @@ from crackfront.core.synthesis import gaussian_field
 from crackfront.measured.density.bands import analysed_scan
 from crackfront.measured.options import ReadingOptions
 from crackfront.measured.prediction.surface_remarks import spectrum_remarks
-from crackfront.measured.scan.instruments import surface_library
+from crackfront.measured.scan.library import surface_library
 from crackfront.measured.scan.reading import read_measurements
 from crackfront.measured.spectrum.measured_surface import measured_surface
 from tests.measured.made import (

@@ -171,3 +171,9 @@ def test_a_head_that_contradicts_the_rows_is_refused_by_both_numbers(tmp_path, p
     assert "it has 48 rows, and its head says 64" in refusal(path)
     path.write_text(plain[1].replace("units: um", "units: V"))
     assert "none of its channels has a unit of length" in refusal(path)
+
+
+def test_a_column_of_positions_alone_is_read_as_heights(tmp_path):
+    path = tmp_path / "line.txt"
+    path.write_text("\n".join(map(str, range(1, 20))))
+    assert "states no unit of length" in refusal(path)

@@ -1,0 +1,127 @@
+"""Channels of a file: what they are of, and which one is read."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from crackfront.measured.scan.library import errors_as_sentences
+
+_NO_HEIGHTS = re.compile("ampl|phase|error|deflection|friction|potential|adhesion", re.IGNORECASE)
+"""Names of channels that are not of heights, also where the file gives them a unit of length."""
+
+_HEIGHTS = re.compile(
+    r"height|topograph|elevation|surface|(?:^|[^a-z])z(?:$|[^a-z]|sensor)", re.IGNORECASE
+)
+"""Names of arrays that are of heights."""
+
+_BARE_ARRAYS = {"h5", "mat", "npz", "nc"}
+"""Formats of arrays that say by their names alone what they hold."""
+
+
+@dataclass(frozen=True, slots=True)
+class Channel:
+    """What a file says of one of its channels."""
+
+    number: int
+    name: str
+    quantity: str
+    """Such as height or phase."""
+    points: tuple[int, ...]
+    is_default: bool
+    """Whether it is read where none is named."""
+
+    def __str__(self) -> str:
+        """A line on it."""
+        warned = self.quantity == "height" and is_doubtful(self.name)
+        quantity = f"{self.quantity}{', by its name another quantity' if warned else ''}"
+        points = f", {' x '.join(map(str, self.points))} points" if self.points else ""
+        default = ", default" if self.is_default else ""
+        return f"{self.number} {self.name!r} ({quantity}){points}{default}"
+
+
+def channels_of(path: Path, reader: Any) -> tuple[Channel, ...]:
+    """Channels of a file, numbered as its reader has them."""
+    with errors_as_sentences(path):
+        default = _default(reader)
+        return tuple(
+            Channel(
+                each.index, each.name, _kind(each), each.nb_grid_pts or (), each.index == default
+            )
+            for each in reader.channels
+        )
+
+
+def _default(reader: Any) -> int | None:
+    """Number of the channel that is read where none is named; None where nothing says which."""
+    channels = reader.channels
+    if reader.format() not in _BARE_ARRAYS or len(channels) < 2:
+        return int(reader.default_channel.index) if channels else None
+    lengths = [each for each in channels if _kind(each) == "height"]
+    named = [each for each in lengths if _HEIGHTS.search(each.name) and not is_doubtful(each.name)]
+    of_heights = named or (lengths if reader.format() == "nc" else [])
+    return int(of_heights[0].index) if len(of_heights) == 1 else None
+
+
+def chosen_channel(path: Path, reader: Any, wanted: str | None) -> tuple[Any, str]:
+    """A channel of heights, the library's own choice if none is named, and what it is called."""
+    channels = channels_of(path, reader)
+    if not channels and _is_tiff(path):
+        raise ValueError(
+            f"{path} is a picture in TIFF, which states no unit of its heights; export it from the "
+            "instrument again, as X3P if there is a choice, or the heights as text"
+        )
+    if not channels:
+        raise ValueError(
+            f"{path} holds no array of numbers in two dimensions; export the heights as one"
+        )
+    if wanted is None:
+        named = [each for each in channels if each.is_default]
+    else:
+        named = [each for each in channels if each.name == wanted]
+    if wanted is None and not named:
+        raise ValueError(
+            f"{path} holds {len(channels)} arrays, and their names do not say which one has the "
+            f"heights; {_choice(channels)}"
+        )
+    named = named or [each for each in channels if str(each.number) == wanted]
+    if len(named) != 1:
+        raise ValueError(
+            f"{path} has {'several channels' if named else 'no channel'} {wanted!r}; "
+            f"{_choice(channels)}"
+        )
+    [chosen] = named
+    if chosen.quantity != "height":
+        of_heights = [each for each in channels if each.quantity == "height"]
+        raise ValueError(
+            f"{path}: channel {chosen.name!r} holds {chosen.quantity}, no heights; "
+            + (_choice(of_heights) if of_heights else "export the channel of the heights")
+        )
+    several = f", {chosen.number} of {len(channels)}" if len(channels) > 1 else ""
+    [channel] = [each for each in reader.channels if each.index == chosen.number]
+    return channel, f"{chosen.name!r}{several}"
+
+
+def _is_tiff(path: Path) -> bool:
+    """Whether a file begins as a picture in TIFF."""
+    with path.open("rb") as file:
+        return file.read(4) in (b"II*\0", b"MM\0*")
+
+
+def _kind(channel: Any) -> str:
+    """Quantity that a channel holds: height, phase and others."""
+    # A reader takes any quantity over lengths for heights, and has two units for it.
+    return "another quantity" if isinstance(channel.unit, tuple) else str(channel.data_kind.value)
+
+
+def is_doubtful(channel: str) -> bool:
+    """Whether the name of a channel says that it holds no heights."""
+    return _NO_HEIGHTS.search(channel) is not None
+
+
+def _choice(channels: Sequence[Channel]) -> str:
+    """Sentence that lists channels."""
+    return f"choose by number or name with --channel: {'; '.join(map(str, channels))}"

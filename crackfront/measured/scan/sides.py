@@ -1,0 +1,144 @@
+"""Units and sides of a scan: stated by its file, or named by options."""
+
+from __future__ import annotations
+
+import math
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from crackfront.core.words import counted
+from crackfront.measured.options import ReadingOptions
+from crackfront.measured.scan.library import in_metres, library_part
+from crackfront.surfaces.written_units import prefixed, unit_value
+
+_SIDES = (1e-9, 1.0)
+"""Sides of a scan that instruments measure (Units: m); others show that the unit is wrong."""
+
+_SAME_SIDE = 0.01
+"""Relative difference of sides that are rounded, and the same."""
+
+_LEAST_HEIGHT = 1e-12
+"""Least rms of heights that instruments measure (Units: m)."""
+
+_MOST_HEIGHT = 10.0
+"""Most span of heights over the side that instruments measure."""
+
+
+def units_and_sides(
+    path: Path, name: str, channel: Any, options: ReadingOptions
+) -> tuple[dict[str, Any], tuple[float, ...] | None]:
+    """Unit and sides that options add to a file; sides in metres if those of the file are wrong."""
+    unit, size = channel.unit, channel.physical_sizes
+    has_sides = is_sized(channel)
+    if unit is not None and has_sides and not _are_possible(stated := in_metres(unit, *size)):
+        if options.size is None or options.unit is None:
+            raise ValueError(
+                f"{path} states sides of {shown_sides(stated)}, which no instrument measures; its "
+                "unit is wrong, so name the sides, as in --size "
+                f"{','.join(f'{side:g}' for side in stated)} --unit um"
+            )
+        named = length_unit("--unit", options.unit)
+        return {}, _named_sides(path, _sides(path, options.size, len(stated)), named)
+    added: dict[str, Any] = {}
+    if unit is None:
+        if options.unit is None:
+            raise ValueError(
+                f"{path}, read as {name}, states no unit of length; name it, as in --unit um"
+            )
+        added["unit"] = unit = length_unit("--unit", options.unit)
+    elif options.unit is not None and length_unit("--unit", options.unit) != length_unit("", unit):
+        raise ValueError(f"{path} states its own unit, {unit}; leave --unit {options.unit} out")
+    if not has_sides and size is not None and None not in size:
+        return added, _sides_with_one(path, channel, options, unit)
+    if not has_sides:
+        if options.size is None:
+            raise ValueError(f"{path} states no size of the scan; name it, as in --size 50,50")
+        added["physical_sizes"] = size = _sides(path, options.size, channel.dim)
+    elif options.size is not None:
+        shown = " x ".join(f"{side:g}" for side in size)
+        raise ValueError(f"{path} states its own size, {shown} {unit}; leave --size out")
+    _named_sides(path, size, unit)
+    return added, None
+
+
+def is_sized(channel: Any) -> bool:
+    """Whether a file states a side of a channel for each of its directions."""
+    size = channel.physical_sizes
+    return size is not None and None not in size and len(size) == channel.dim
+
+
+def _sides_with_one(
+    path: Path, channel: Any, options: ReadingOptions, unit: str
+) -> tuple[float, ...]:
+    """Sides that options name of a map of which the file states one alone (Units: m).
+
+    ValueError, of one sentence, where no sides are named, or others than the one that is stated.
+    """
+    stated, *others = channel.physical_sizes
+    if others:
+        raise ValueError(
+            f"{path} holds a line and states the sides of a map; write one side in its head"
+        )
+    problem = f"{path} states one side of its map, {stated:g} {unit}"
+    advice = f"name both in {unit}, as in --size {stated:g},{stated:g}"
+    if options.size is None:
+        raise ValueError(f"{problem}, and not the other; {advice}")
+    named = _sides(path, options.size, channel.dim)
+    is_same = math.isclose(named[0], stated, rel_tol=_SAME_SIDE)
+    if not is_same and _are_possible(in_metres(unit, stated)):
+        raise ValueError(f"{problem}, and --size names {named[0]:g} {unit} for it; {advice}")
+    return _named_sides(path, named, unit)
+
+
+def length_unit(option: str, unit: str) -> str:
+    """Name by which the library knows a unit of length; ValueError, naming the option, if none."""
+    units = library_part("Support.UnitConversion").length_units
+    if unit in units:
+        return str(next(name for name in units if units[name] == units[unit]))
+    with suppress(ValueError):
+        metres = unit_value(unit, "m")
+        for name, value in units.items():
+            if math.isclose(value, metres, rel_tol=1e-9) and not unit.strip()[0].isdigit():
+                return str(name)
+    raise ValueError(f"{option} {unit} is no unit of length; name one, as in um")
+
+
+def _sides(path: Path, named: tuple[float, ...], n_side: int) -> tuple[float, ...]:
+    """Sides of a scan that are named, one number for a square."""
+    found = named * n_side if len(named) == 1 else named
+    if len(found) != n_side:
+        raise ValueError(
+            f"{path} has {counted(n_side, 'dimension')} and the size that is named "
+            f"{len(named)}; name one length for each, as in --size 50,40, or one for a square"
+        )
+    return found
+
+
+def are_possible_heights(heights: np.ndarray[Any, Any], sides: tuple[float, ...]) -> bool:
+    """Whether an instrument measures heights on such sides, all in metres."""
+    known = np.ma.compressed(np.ma.masked_invalid(heights))
+    return bool(np.std(known) >= _LEAST_HEIGHT and np.ptp(known) <= _MOST_HEIGHT * max(sides))
+
+
+def _are_possible(sides: tuple[float, ...]) -> bool:
+    """Whether an instrument measures sides of so many metres."""
+    return all(_SIDES[0] <= side <= _SIDES[1] for side in sides)
+
+
+def _named_sides(path: Path, sides: tuple[float, ...], unit: str) -> tuple[float, ...]:
+    """Sides in metres, refused where no instrument measures them."""
+    found = in_metres(unit, *sides)
+    if not _are_possible(found):
+        raise ValueError(
+            f"{path} cannot have sides of {shown_sides(found)}: instruments measure from "
+            f"{shown_sides(_SIDES[:1])} to {shown_sides(_SIDES[1:])}; check --size and --unit"
+        )
+    return found
+
+
+def shown_sides(sides: tuple[float, ...]) -> str:
+    """Sides of a scan as a text (Units: m)."""
+    return " x ".join(prefixed("m", side) for side in sides)

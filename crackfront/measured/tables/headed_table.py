@@ -1,0 +1,188 @@
+"""Tables below a line of headings, whose cells may be any text: of loops and of samples."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+from crackfront.measured.tables.cells import is_number, is_without_value
+from crackfront.measured.tables.encodings import decoded
+from crackfront.measured.tables.headings import (
+    Heading,
+    are_units,
+    heading,
+    heading_cells,
+    headings_with_units,
+)
+from crackfront.measured.tables.table import Table
+
+_SEPARATORS = ("\t", ";", ",", None)
+"""Separators of cells, None for blanks."""
+
+_BLANKS = (r"\s{2,}", r"\s+")
+"""Blanks between headings, which may have single blanks in them."""
+
+_COMMENT = "#"
+
+_MOST_LINES_ABOVE = 1000
+"""Lines among which the first row of numbers is looked for."""
+
+
+def table_of_numbers(path: Path) -> Table:
+    """The table of a text whose first row with two numbers stands below its headings.
+
+    Lines above the headings are left out; units may stand in a line below the names.
+
+    Parameters
+    ----------
+    path : Path
+        Text of any encoding, with cells between tabs, semicolons, commas or blanks.
+
+    Returns
+    -------
+    Table
+        Of columns of numbers and of texts.
+
+    Raises
+    ------
+    ValueError
+        If the file is not a text or has no such row, or a row has more cells than headings.
+    OSError
+        If the file cannot be opened.
+    """
+    lines = _text_lines(path)
+    filled = [number for number, line in enumerate(lines) if line.strip()]
+    separator, place = _layout(path, [lines[number] for number in filled])
+    first = filled[place]
+    n_column = len(_cells(lines[first], separator))
+    names = _names(lines[filled[place - 1]], separator, n_column) if place else []
+    headings = tuple(map(heading, names))
+    if place > 1 and names and are_units(names):
+        named = _names(lines[filled[place - 2]], separator, len(names))
+        if len(named) == len(names):
+            headings = headings_with_units(named, names)
+    return _table(path, lines, separator, first, headings)
+
+
+def table_of_texts(path: Path) -> Table:
+    """The table of a text whose first line that is not a comment has the headings.
+
+    Parameters
+    ----------
+    path : Path
+        Text of any encoding, with cells between tabs, semicolons or commas.
+
+    Returns
+    -------
+    Table
+        Of columns of texts.
+
+    Raises
+    ------
+    ValueError
+        If the file is not a text, or a row has more cells than there are headings.
+    OSError
+        If the file cannot be opened.
+    """
+    lines = _text_lines(path)
+    is_heading = (line.strip() and not line.startswith(_COMMENT) for line in lines)
+    first = next((number for number, is_first in enumerate(is_heading) if is_first), None)
+    if first is None:
+        return _table(path, [], ",", 0, ())
+    separator = max("\t;,", key=lines[first].count)
+    names = next(csv.reader(lines[first:], delimiter=separator))
+    table = _table(path, lines, separator, first + 1, tuple(map(heading, names)))
+    return replace(table, above=tuple(lines[:first]))
+
+
+def _text_lines(path: Path) -> list[str]:
+    text = decoded(path)
+    if text is None:
+        raise ValueError(f"{path} is not a text; export the table as CSV")
+    return text.split("\n")
+
+
+def _table(
+    path: Path,
+    lines: Sequence[str],
+    separator: str | None,
+    first: int,
+    headings: tuple[Heading, ...],
+) -> Table:
+    """Rows below the headings, without comments and empty ones, filled up with empty cells."""
+    import pandas
+
+    width = len(headings)
+    rows, numbers = [], []
+    for number, cells in _rows(lines[first:], separator):
+        if not any(cells) or cells[0].startswith(_COMMENT):
+            continue
+        if any(cells[width:]):
+            sign = "blanks" if separator is None else repr(separator)
+            raise ValueError(
+                f"{path}, line {first + number}: the row has {len(cells)} cells and there are "
+                f"{width} headings; write a heading for every column, and quotes around cells that "
+                f"contain {sign}"
+            )
+        rows.append((cells + [""] * width)[:width])
+        numbers.append(first + number)
+    frame = pandas.DataFrame(rows, columns=range(width), dtype=object)
+    return Table(path, (), (), headings, frame, tuple(numbers), separator)
+
+
+def _rows(lines: Sequence[str], separator: str | None) -> Iterator[tuple[int, list[str]]]:
+    """Number of the last line of every row, from 1, and its cells; cells in quotes may have two."""
+    if separator is None:
+        yield from enumerate((_cells(line, None) for line in lines), 1)
+        return
+    reader = csv.reader(lines, delimiter=separator)
+    for cells in reader:
+        yield reader.line_num, [cell.strip() for cell in cells]
+
+
+def _cells(line: str, separator: str | None) -> list[str]:
+    """Cells of a line, without blanks and quotes around them."""
+    return [cell.strip().strip('"') for cell in line.split(separator)]
+
+
+def _layout(path: Path, lines: Sequence[str]) -> tuple[str | None, int]:
+    """Separator of a table, None for blanks, and the place of its first row of numbers."""
+    for separator in _SEPARATORS:
+        for place, line in enumerate(lines[:_MOST_LINES_ABOVE]):
+            cells = _cells(line, separator)
+            names = _names(lines[place - 1], separator, len(cells)) if place else []
+            if not _is_row(cells, names):
+                continue
+            # A decimal comma is not a separator: both cells of 1,5 would be numbers.
+            if separator != "," or _has_names(cells, names):
+                return separator, place
+            break
+    raise ValueError(
+        f"{path} has no line with two numbers or more below a line of headings; write one heading "
+        "for each column, as in Force (uN),Contact radius (um), and semicolons between cells with "
+        "decimal commas"
+    )
+
+
+def _names(line: str, separator: str | None, n_column: int) -> list[str]:
+    """Names in a line above rows of so many cells."""
+    line = line.strip().lstrip("#% ")
+    if separator is None and (names := heading_cells(line, n_column, _BLANKS)):
+        return list(names)
+    return _cells(line, separator)
+
+
+def _is_row(cells: Sequence[str], names: Sequence[str]) -> bool:
+    """Whether cells are two numbers or more, or below headings a number next to empty cells."""
+    is_value = [is_number(cell) or (cell != "" and is_without_value(cell)) for cell in cells]
+    is_all = sum(is_value) == sum(map(bool, cells))
+    has_names = _has_names(cells, names) and not any(map(is_number, names))
+    fewest = 1 if is_all and has_names and len(cells) > 1 else 2
+    return sum(is_value) >= fewest and (is_all or has_names)
+
+
+def _has_names(cells: Sequence[str], names: Sequence[str]) -> bool:
+    """Whether there is a heading for each cell but an empty one behind a closing separator."""
+    return len(names) == len(cells) or (not cells[-1] and len(names) == len(cells) - 1)
