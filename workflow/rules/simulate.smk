@@ -25,8 +25,7 @@ COSTS = {
 }
 RANK_BYTES = max(cost.memory for costs in COSTS.values() for cost in costs)
 SECONDS = {
-    name: len(shard.realisations)
-    * sum(cost.seconds for cost in COSTS[shard.item.name])
+    name: len(shard.realisations) * sum(cost.seconds for cost in COSTS[shard.item.name])
     for name, shard in SHARDS.items()
 }
 
