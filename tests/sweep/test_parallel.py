@@ -17,7 +17,7 @@ from tests.commands import run, slow, stored
 ROOT = Path(__file__).parents[2]
 MPIEXEC = Path(sys.executable).with_name("mpiexec")
 COSTS = ["seconds", "cpu_seconds", "peak_memory"]
-N_SIMULATION = 160
+N_SIMULATION = 80
 
 
 def launched(n_rank, *arguments):
@@ -45,12 +45,6 @@ def table(configuration, folder):
     for name in ("simulate", "aggregate"):
         assert run(name, configuration, "--output", folder).exit_code == 0
     return xr.load_dataset(folder / "hysteresis.nc").drop_vars(COSTS)
-
-
-def simulate_on_ranks(configuration, folder, n_rank):
-    """Simulate on ranks what is missing of a sweep."""
-    command = ["-m", "crackfront", "simulate", configuration, "--output", folder]
-    subprocess.run(launched(n_rank, *command), check=True, capture_output=True)
 
 
 def processes(folder):
@@ -87,19 +81,35 @@ def left_running(folder, seconds=10):
 
 @pytest.mark.slow
 @pytest.mark.mpi
-@pytest.mark.parametrize("n_rank", [2, 6])
+@pytest.mark.parametrize("n_rank", [2, 3, 6])
 def test_any_number_of_ranks_gives_the_table_of_one_process(
     configuration, undisturbed, tmp_path, n_rank
 ):
-    simulate_on_ranks(configuration, tmp_path, n_rank)
+    command = ["-m", "crackfront", "simulate", configuration, "--output", tmp_path]
+    subprocess.run(launched(n_rank, *command), check=True, capture_output=True)
     assert table(configuration, tmp_path).equals(undisturbed)
 
 
 @pytest.mark.mpi
-@pytest.mark.parametrize("victim", ["rank", slow("manager"), slow("launcher")])
-def test_a_kill_ends_all_ranks_and_the_same_command_ends_with_the_table_of_one_process(
-    configuration, undisturbed, tmp_path, victim
+@pytest.mark.parametrize(
+    ("told", "victim"),
+    [
+        (signal.SIGTERM, "rank"),
+        slow(signal.SIGINT, "manager"),
+        slow(signal.SIGTERM, "launcher"),
+    ],
+)
+def test_ranks_that_are_told_to_end_and_then_killed_lose_nothing_that_they_stored(
+    configuration, undisturbed, tmp_path, told, victim
 ):
+    with started(configuration, tmp_path, n_rank=2) as process:
+        process.send_signal(told)
+        output, _ = process.communicate(timeout=20)
+    assert process.returncode == 75
+    assert "run the same command to continue" in output
+    first = stored(tmp_path)
+    assert 10 <= len(first) < N_SIMULATION
+
     with started(configuration, tmp_path) as process:
         found = processes(tmp_path)
         ranks = sorted(number for number, name in found.items() if name == sys.executable)
@@ -109,27 +119,12 @@ def test_a_kill_ends_all_ranks_and_the_same_command_ends_with_the_table_of_one_p
         process.communicate(timeout=20)
         assert process.returncode != 0
     assert not left_running(tmp_path)
-    kept = stored(tmp_path)
-    assert 0 < len(kept) < N_SIMULATION
-    simulate_on_ranks(configuration, tmp_path, 3)
-    assert len(finished := stored(tmp_path)) == N_SIMULATION
-    assert kept.items() <= finished.items()
-    assert table(configuration, tmp_path).equals(undisturbed)
+    second = stored(tmp_path)
+    assert first.items() < second.items()
+    assert len(second) < N_SIMULATION
 
-
-@pytest.mark.mpi
-@pytest.mark.parametrize("number", [signal.SIGTERM, slow(signal.SIGINT)])
-def test_a_signal_stores_what_ranks_have_and_the_exit_code_says_so(
-    configuration, undisturbed, tmp_path, number
-):
-    with started(configuration, tmp_path) as process:
-        process.send_signal(number)
-        output, _ = process.communicate(timeout=20)
-    assert process.returncode == 75
-    assert "run the same command to continue" in output
-    stored = run("simulate", configuration, "--output", tmp_path).stdout.splitlines()[0]
-    assert int(stored.partition(": ")[2].split()[0]) >= 10
     assert table(configuration, tmp_path).equals(undisturbed)
+    assert second.items() <= stored(tmp_path).items()
 
 
 @pytest.mark.mpi
