@@ -4,13 +4,12 @@ import contextlib
 import functools
 import re
 
-import numpy as np
 import pytest
 import xarray as xr
 from click.testing import CliRunner
 
 from crackfront.cli import main
-from crackfront.sweep.curves import SIMULATION, curve_files, selected
+from crackfront.sweep.curves import curve_files
 from crackfront.sweep.rows import row_columns
 from crackfront.sweep.table_file import columns_dataset
 
@@ -48,24 +47,23 @@ def simulated(output):
     return set(re.findall(r"^\[\d+/\d+\] (.+?): ", output, re.MULTILINE))
 
 
-def curves(folder):
-    """Stored simulations by spectrum, e_el, realisation and series, as datasets of one each."""
-    found = {}
-    for shard in sorted((folder / "curves").glob("*")):
-        for path in curve_files(shard):
-            with contextlib.suppress(FileNotFoundError):  # merged meanwhile
-                dataset = xr.load_dataset(path)
-                for place in range(dataset.sizes[SIMULATION]):
-                    chosen = selected(dataset, np.array([place]))
-                    words = (chosen[name].item() for name in ("spectrum", "elastic_energy"))
-                    numbers = (chosen[name].item() for name in ("realisation", "series"))
-                    found["{}-e{:g}-r{}-{}".format(*words, *numbers)] = chosen.drop_attrs()
-    return found
+def curve_paths(folder):
+    """Files of finished simulations of a sweep."""
+    return [path for shard in sorted((folder / "curves").glob("*")) for path in curve_files(shard)]
 
 
 def stored(folder):
-    """Stored simulations with their wall times, which say that it was the same run."""
-    return {name: dataset["seconds"].item() for name, dataset in curves(folder).items()}
+    """Wall times of the stored simulations, which say that it was the same run.
+
+    Names are made of spectrum, e_el, realisation and series.
+    """
+    times = {}
+    for path in curve_paths(folder):
+        with contextlib.suppress(FileNotFoundError), xr.open_dataset(path) as dataset:
+            names = ("spectrum", "elastic_energy", "realisation", "series", "seconds")
+            for *identity, seconds in zip(*(dataset[name].values for name in names), strict=True):
+                times["{}-e{:g}-r{}-{}".format(*identity)] = seconds
+    return times
 
 
 def table(path):

@@ -1,7 +1,6 @@
 """What `import crackfront` offers: surfaces, loops, units and plots, all of them xarray."""
 
 import ast
-import inspect
 import subprocess
 import sys
 from dataclasses import asdict, replace
@@ -20,7 +19,6 @@ from crackfront.core.cycle.energy import dissipated_energy
 from crackfront.core.synthesis import gaussian_field
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.core.variables import ADHESION, FORCE, LATERAL, VERTICAL
-from crackfront.measured.page.texts import report_text
 from crackfront.measured.prediction.prediction import predicted
 from crackfront.measured.scan.reading import read_measurements
 from crackfront.measured.spectrum.measured_surface import measured_surface
@@ -31,7 +29,7 @@ from crackfront.simulate.sphere.full_cycle import FullCycle
 from crackfront.surfaces.random_surface import chosen_simulation
 from crackfront.surfaces.tile_measures import tile_modes
 from crackfront.sweep import parallel, tasks
-from tests.commands import curves, run
+from tests.commands import run, stored
 
 ROOT = Path(__file__).parents[1]
 TEST = ROOT / "config/test.yaml"
@@ -91,15 +89,11 @@ PARTS = (
 """Parts in an order in which none may load what a later one must not."""
 
 
-def test_importing_a_part_loads_nothing_that_only_its_work_needs():
+def test_importing_a_part_or_reading_the_workflow_loads_nothing_that_only_its_work_needs():
     lines = ["import sys"]
     for part, heavy in PARTS:
         heavy = heavy | {"matplotlib", "mpi4py"}
         lines += [f"import {part}", f"assert not {heavy} & sys.modules.keys(), {part!r}"]
-    subprocess.run([sys.executable, "-c", "\n".join(lines)], check=True, timeout=600)
-
-
-def test_reading_the_workflow_loads_nothing_that_only_its_commands_need():
     rules = ast.parse((ROOT / "workflow/rules/common.smk").read_text(encoding="utf-8"))
     imports = [node for node in rules.body if isinstance(node, ast.ImportFrom)]
     ours = [
@@ -107,10 +101,8 @@ def test_reading_the_workflow_loads_nothing_that_only_its_commands_need():
     ]
     assert len(ours) > 5
     heavy = {"xarray", "netCDF4", "matplotlib", "mpi4py", "tqdm"}
-    code = "\n".join(
-        [*map(ast.unparse, ours), "import sys", f"assert not {heavy} & sys.modules.keys()"]
-    )
-    subprocess.run([sys.executable, "-c", code], check=True, timeout=600, cwd=ROOT)
+    lines += [*map(ast.unparse, ours), f"assert not {heavy} & sys.modules.keys()"]
+    subprocess.run([sys.executable, "-c", "\n".join(lines)], check=True, timeout=600, cwd=ROOT)
 
 
 def test_the_package_offers_the_library_and_its_version():
@@ -120,16 +112,6 @@ def test_the_package_offers_the_library_and_its_version():
     assert set(cf.__all__) <= set(dir(cf))
     for name in cf.__all__:
         assert getattr(cf, name) is not None
-
-
-def test_the_package_has_its_folder_of_sweeps_as_a_module():
-    assert inspect.ismodule(cf.sweep)
-    assert tasks is cf.sweep.tasks
-
-
-def test_a_name_that_the_package_has_not_is_an_attribute_error():
-    with pytest.raises(AttributeError, match="has no attribute 'run_lop'"):
-        cf.run_lop  # noqa: B018
 
 
 @pytest.mark.parametrize(
@@ -612,21 +594,15 @@ def test_a_scan_is_a_surface_to_press_on_that_says_what_was_done_to_it():
     assert "is smaller than the contact" in told["notes"]
 
 
-def test_a_prediction_shows_itself_with_intervals_limits_and_notes():
+def test_a_prediction_is_that_of_the_measured_surface_and_shows_itself():
     soft = cf.Scales(SPHERE.radius, SPHERE.work_of_adhesion, 0.5e6)  # At 0.9e6 it may be refused.
-    found = cf.predict(SCAN, soft)
+    found = cf.predict([str(SCAN)], soft)
     surface = measured_surface(read_measurements([SCAN]))
     expected = predicted(surface, soft)
     assert found.w_retr == expected.w_retr
     assert found.surface.checksum == surface.checksum
-    shown = repr(found)
-    assert shown == repr(expected)
-    texts = "\nThe theory applies", "\nw_retr   ", "smooth sphere", "w_appr may not be positive"
-    assert not [text for text in texts if text not in shown]
-    everything = report_text(surface, verdict=expected.verdict, prediction=expected)
-    for text in ("al3d, 144 x 144", "\nNotes\n", "--range"):
-        assert text in everything
-    assert repr(cf.predict([str(SCAN)], soft)) == shown
+    assert repr(found) == repr(expected)
+    assert "w_retr" in repr(found)
 
 
 def test_a_sweep_that_was_stopped_goes_on_to_its_table(tmp_path, monkeypatch):
@@ -640,7 +616,7 @@ def test_a_sweep_that_was_stopped_goes_on_to_its_table(tmp_path, monkeypatch):
         patched.setattr(parallel, "stop_is_requested", notice)
         with pytest.raises(KeyboardInterrupt, match="are stored; run the same"):
             cf.run_sweep(TEST, tmp_path, progress=False)
-    assert 0 < len(curves(tmp_path)) < 8
+    assert 0 < len(stored(tmp_path)) < 8
     found = cf.run_sweep(TEST, tmp_path, progress=False)
     assert found.w_retr.dims == ("spectrum", "amplitude", "realisation")
     assert bool((found.w_retr > found.w_appr).all())
@@ -656,8 +632,9 @@ def test_a_sweep_that_was_stopped_goes_on_to_its_table(tmp_path, monkeypatch):
 
 def test_simulations_without_a_value_are_warned_of(tmp_path):
     limited = tmp_path / "limited.yaml"
-    limited.write_text(TEST.read_text().replace("max_sweeps: 100000", "max_sweeps: 2"))
-    with pytest.warns(UserWarning, match="8 of 8 simulations have no value: 8 step_limit"):
+    text = TEST.read_text().replace("max_sweeps: 100000", "max_sweeps: 2")
+    limited.write_text(text.replace("realisations: 2", "realisations: 1"))
+    with pytest.warns(UserWarning, match="4 of 4 simulations have no value: 4 step_limit"):
         found = cf.run_sweep(limited, tmp_path / "out", progress=False)
     assert bool(np.isnan(found.w_retr).all())
 
@@ -688,7 +665,7 @@ def test_a_loop_that_cannot_be_run_is_refused(surface, run, given, sentence):
 
 
 def test_a_smooth_sphere_has_no_instability_before_pull_off():
-    assert cf.find_instabilities(cf.surface(np.zeros((64, 64)), 4), step=0.1).instability.size == 0
+    assert cf.find_instabilities(cf.surface(np.zeros((16, 16)), 4), step=0.25).instability.size == 0
 
 
 def test_truth_is_saved_as_a_number_and_what_netcdf_cannot_hold_is_refused(surface, tmp_path):
@@ -746,14 +723,6 @@ def test_the_loop_of_a_surface_without_an_error_has_the_one_that_is_left():
     with pytest.raises(ValueError, match=r"error is 0\.03, but the finest numerics on 8 pixels"):
         cf.run_loop(coarse, error=0.03)
     assert cf.run_loop(coarse, step=0.5).attrs["status"] == "lost_contact"
-
-
-def test_a_home_folder_is_that_of_the_user(surface, tmp_path, monkeypatch):
-    monkeypatch.setenv("HOME", str(tmp_path))
-    monkeypatch.chdir(tmp_path)
-    cf.save_result(surface, "~/surface.nc")
-    assert [path.name for path in tmp_path.iterdir()] == ["surface.nc"]
-    xr.testing.assert_equal(cf.load_result("~/surface.nc"), surface)
 
 
 def test_the_pixels_of_a_map_lie_around_their_places(surface):
@@ -816,11 +785,6 @@ def test_what_is_in_si_units_is_drawn_in_them(surface, loop, jumps):
     assert np.max(np.hypot(*fronts[0].get_data())) <= largest * (1 + 1e-12)
     [patches] = cf.plot_instabilities(jumps_si, axes_of_a_figure()).collections
     assert patches.get_array().max() == pytest.approx(float(jumps_si.dissipated_energy.max()))
-
-
-def test_without_axes_a_plot_makes_a_figure_of_pyplot(loop):
-    axes = cf.plot_loop(loop)
-    assert pyplot.get_fignums() == [axes.figure.number]
 
 
 def test_the_drawn_fronts_are_closed_and_the_last_of_a_branch_is_one_of_them(loop):

@@ -1,6 +1,5 @@
 """The law of k: its limits, its lengths, and what it refuses."""
 
-import re
 from dataclasses import astuple
 from itertools import pairwise
 
@@ -8,7 +7,6 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from crackfront.analysis.finding import departure_of_spheres, finding, least_size
 from crackfront.analysis.law import (
     LEAST_SIZE,
     WEAKEST,
@@ -114,16 +112,6 @@ def test_outside_of_what_was_measured_there_is_a_warning_and_a_wider_interval(la
         assert limit.warning == ""
 
 
-def test_every_number_outside_of_what_was_measured_has_its_sentence(law):
-    one = pinning_factor(1.2 * law.disorder[1], 5.0)
-    all_three = pinning_factor(1.2 * law.disorder[1], 0.1, breadth=10.0)
-    for sentence in ("above the strongest", "below the smallest of", "breadth 10 of the spectrum"):
-        assert sentence in all_three.warning
-    assert all_three.warning.startswith(one.warning)
-    relative = [found.factor.standard_error / found.factor.value for found in (one, all_three)]
-    assert relative[1] > relative[0]
-
-
 @pytest.mark.parametrize("breadth", [None, 0.9, 10.0])
 def test_k_of_an_array_of_fronts_is_that_of_each_front(breadth):
     w_rms, size = np.array([WEAKEST, 0.3, 1.9])[:, None], np.array([0.1, 5.0, np.inf])
@@ -214,16 +202,6 @@ def test_what_is_no_number_has_no_k():
 def test_what_has_no_k_is_refused(call, sentence):
     with pytest.raises(ValueError, match=sentence):
         call()
-
-
-def test_the_finding_is_ten_sentences_with_the_numbers_of_the_law(law):
-    text = finding(departure_of_spheres(0.0251, 65, 87))
-    assert len(re.findall(r"\.(?= [A-Z]|$)", text)) == 10
-    k_0 = pinning_factor(WEAKEST, np.inf).factor
-    assert f"k is {k_0.value:.2f} ({k_0.low:.2f} to {k_0.high:.2f}) at vanishing" in text
-    assert float(law_value(law.coefficients, 0.0, least_size())) == pytest.approx(3)
-    assert "At the 65 of 87 spectra and amplitudes that have g above 1, k of simulated" in text
-    assert text.endswith(" differs from it by 2.5% rms.")
 
 
 def test_a_contact_is_refused_up_to_the_radius_at_which_it_is_lost_in_retraction():

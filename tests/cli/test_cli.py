@@ -18,7 +18,6 @@ import numpy as np
 import pytest
 import xarray as xr
 from click.testing import CliRunner
-from matplotlib.figure import Figure
 
 import crackfront as cf
 from crackfront.cli import Commands, main
@@ -34,7 +33,7 @@ from crackfront.sweep.parameters import load_sweep
 from crackfront.sweep.rows import failed_row
 from crackfront.sweep.store import Store
 from crackfront.sweep.tasks import BatchWriter
-from tests.commands import curves, refused, run, simulated
+from tests.commands import refused, run
 from tests.measured.made import DETAIL, measure_surfaces_once
 
 TEST = Path(__file__).parents[2] / "config/test.yaml"
@@ -229,17 +228,6 @@ def test_a_plan_tells_what_is_left_to_run_and_what_it_costs(tmp_path, copy_store
     assert float(rough.split()[3]) == 0
 
 
-def test_a_plan_tells_what_stored_simulations_are_of_no_use_and_why(tmp_path, copy_store):
-    copy_store("flat", tmp_path)
-    (tmp_path / "configuration.path").unlink()  # as if that configuration were gone
-    finer = tmp_path / "finer.yaml"
-    finer.write_text(TEST.read_text().replace("tolerance: 1e-6", "tolerance: 1e-7"))
-    for command in (("plan", finer), ("simulate", finer, "--spectrum", "flat")):
-        result = run(*command, "--output", tmp_path)
-        assert "4 with another " in result.output
-        assert "tolerance" in result.output or "numerics" in result.output
-
-
 def test_the_status_counts_what_is_done_failed_and_left(tmp_path, copy_store):
     sweep = load_sweep(TEST)
     copy_store("rough", tmp_path)
@@ -263,19 +251,6 @@ def test_the_status_of_a_folder_without_a_sweep_is_refused(tmp_path):
     assert "holds no sweep that was begun" in refused("status", tmp_path)
 
 
-def test_one_spectrum_can_be_run_alone(tmp_path, copy_store):
-    copy_store("rough", tmp_path)
-    assert {name.split("-")[0] for name in curves(tmp_path)} == {"rough"}
-    assert [path.name for path in (tmp_path / "shards").glob("*.nc")] == ["rough.nc"]
-
-
-def test_a_block_of_realisations_can_be_run_alone(tmp_path):
-    options = ("--spectrum", "rough", "--realisations", "1-1", "--output", tmp_path)
-    assert run("simulate", TEST, *options).exit_code == 0
-    assert {"-r1-" in name for name in curves(tmp_path)} == {True}
-    assert [path.name for path in (tmp_path / "shards").glob("*.nc")] == ["rough.1-1.nc"]
-
-
 @pytest.mark.parametrize("block", ["1", "1-", "2-1", "a-b", "0-9"])
 def test_a_block_that_is_none_is_refused(tmp_path, block):
     result = run("simulate", TEST, "--realisations", block, "--output", tmp_path / "out")
@@ -288,19 +263,6 @@ def test_a_configuration_whose_name_is_no_name_for_results_is_refused(tmp_path, 
     bad = tmp_path / f"{name}.yaml"
     bad.write_text(TEST.read_text())
     assert "the results are named after" in refused("plan", bad)
-
-
-def test_a_damaged_file_of_curves_is_named_and_its_simulations_run_again(tmp_path, copy_store):
-    copy_store("flat", tmp_path)
-    [broken] = (tmp_path / "curves/flat").glob("curves-*.nc")
-    content = bytearray(broken.read_bytes())
-    content[5000] ^= 1
-    broken.write_bytes(content)
-    (tmp_path / "shards/flat.nc").unlink()
-    result = run("simulate", TEST, "--spectrum", "flat", "--output", tmp_path)
-    assert result.exit_code == 0
-    assert f"{broken} is damaged and was set aside" in result.stderr
-    assert len(simulated(result.output)) == 4
 
 
 def test_simulations_without_a_value_are_counted_and_too_many_fail(tmp_path):
@@ -318,17 +280,6 @@ def test_simulations_without_a_value_are_counted_and_too_many_fail(tmp_path):
         table = xr.load_dataset(tmp_path / "hysteresis.nc")
         assert set(table["status_sentence"].values.flat) == {Status.STEP_LIMIT.value}
         assert "has a value" in refused("fit", limited, "--output", tmp_path)
-
-
-def test_a_simulation_that_cannot_be_stored_ends_the_run_with_exit_code_one(tmp_path, monkeypatch):
-    def full(*_):
-        raise OSError("no space left on device")
-
-    monkeypatch.setattr("crackfront.sweep.tasks.write_curves", full)
-    result = run("simulate", TEST, "--output", tmp_path)
-    assert result.exit_code == 1
-    assert "could not compute or store it (no space left on device); free disk" in result.stderr
-    assert not (tmp_path / "shards").exists()
 
 
 def test_missing_input_of_the_later_steps_is_refused(tmp_path):
@@ -443,28 +394,6 @@ def test_a_cycle_tells_in_a_line_what_it_found_and_draws_it(rough_surface, tmp_p
     assert found.attrs["result"] == told
     assert lost.startswith("contact was lost at penetration")
     assert float(found.e_el) == pytest.approx(0.05, rel=0.3)
-
-
-def test_the_plots_draw_what_a_cycle_wrote(rough_surface, smooth_tile, tmp_path):
-    for field, step in ((rough_surface, 0.1), (smooth_tile, 0.25)):
-        assert cycle(field, tmp_path, "--record", "fronts", step=step).exit_code == 0
-        found = xr.load_dataset(tmp_path / "out.nc")
-        loop, fronts = (
-            draw(found, axes=Figure().add_subplot()) for draw in (cf.plot_loop, cf.plot_fronts)
-        )
-        approach = next(one for one in loop.get_lines() if one.get_label() == "approach")
-        drawn = found.mean_radius[found.direction == 1]
-        np.testing.assert_array_equal(approach.get_xdata(), drawn)
-        assert len(fronts.get_lines()) > 1
-
-
-def test_a_field_of_heights_that_jump_at_the_edge_is_refused(rough_surface, tmp_path):
-    tilted = xr.load_dataarray(rough_surface)
-    tilted = (tilted + 0.5 * tilted.x).rename("height").assign_attrs(tilted.attrs)
-    tilted.to_netcdf(tmp_path / "tilted.nc")
-    result = cycle(tmp_path / "tilted.nc", tmp_path)
-    assert result.exit_code == 2
-    assert "the tile is not periodic. Level the map and mirror or window it" in result.stderr
 
 
 def stopped_cycle(monkeypatch, signal_number, *arguments):

@@ -26,7 +26,8 @@ from crackfront.cli import main
 from crackfront.core import jkr
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.core.variables import ADHESION, LATERAL, VERTICAL
-from tests.commands import curves
+from crackfront.sweep.curves import SIMULATION, selected
+from tests.commands import curve_paths
 from tests.yaml_texts import to_yaml
 
 SEED = 20261122
@@ -311,7 +312,12 @@ def configuration_case(rng, folder):
         result = CliRunner().invoke(main, ["simulate", str(path), "--output", str(store)])
         if result.exception is not None and not isinstance(result.exception, SystemExit):
             return f"traceback: run: {type(result.exception).__name__}: {result.exception}"
-        found = curves(store).values() if result.exit_code == 0 else []
+        paths = curve_paths(store) if result.exit_code == 0 else []
+        found = (
+            selected(dataset, np.array([place]))
+            for dataset in map(xr.load_dataset, paths)
+            for place in range(dataset.sizes[SIMULATION])
+        )
         return next((told for curve in found if (told := wrong_curve(curve))), "")
 
     return Case(["plan", str(path), "--output", str(store), "--json"], wrong)

@@ -70,16 +70,6 @@ def test_what_makes_w_loc_vary_decides_how_much_of_it_is_negative():
     assert chemical["negative_share"] == pytest.approx(0.5 * math.erfc(1.25 / math.sqrt(2)))
 
 
-def test_the_text_says_the_same_in_a_few_lines():
-    for options, count in ((FRONT, 5), (SPHERE, 6)):
-        lines = run(options).output.splitlines()
-        assert len(lines) == count
-        assert lines[3].startswith("measured for   w_rms ")
-        assert lines[0].startswith(f"k              {answer(options)['k']:.3f} (95%: ")
-    assert "g inf" in run(FRONT).output
-    assert "L_kappa" in run(SPHERE).output
-
-
 def test_how_far_measured_fronts_of_that_size_lie_above_the_law_is_stated():
     near = run(FRONT | {"--g": "1.5"}).output
     assert near.count("measured k     above the law") == 2

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.commands import curves, slow
+from tests.commands import slow, stored
 
 ROOT = Path(__file__).parents[2]
 TEST = str(ROOT / "config/test.yaml")
@@ -26,7 +26,7 @@ def test_a_sweep_is_computed_although_nobody_reads_its_lines(tmp_path):
     done = subprocess.run(told, stdout=writer, stderr=writer, timeout=600, check=False)
     os.close(writer)
     assert done.returncode == 0
-    assert len(curves(tmp_path)) == 8
+    assert len(stored(tmp_path)) == 8
     assert {path.name for path in (tmp_path / "shards").glob("*.nc")} == {"flat.nc", "rough.nc"}
 
 

@@ -2,11 +2,9 @@
 
 import csv
 import json
-import re
 import shutil
 from dataclasses import replace
 from pathlib import Path
-from statistics import NormalDist
 
 import numpy as np
 import pytest
@@ -14,8 +12,6 @@ import xarray as xr
 
 import crackfront as cf
 from crackfront.analysis.estimate import Estimate
-from crackfront.analysis.law import shipped_law
-from crackfront.analysis.validity import shipped_validity
 from crackfront.core.variables import variables
 from crackfront.measured.prediction.prediction import Prediction, predicted
 from crackfront.surfaces.surface_adhesion import surface_adhesion
@@ -147,10 +143,6 @@ def test_each_outcome_has_its_exit_code(predict, smooth):
         content = json.loads(result.stdout)
         assert (result.exit_code, content["outcome"]) == (code, outcome)
         assert (content["prediction"] is None) == (code == 4)
-    told = run("predict", "--help").output
-    for text in ("Exit code 0: a prediction", "(3 with --strict)", "4: the theory does not"):
-        assert text in " ".join(told.split())
-    assert "  4   predict, samples: the theory does not apply" in run("--help").output
 
 
 def test_a_modulus_far_too_low_is_refused_with_what_would_do(predict):
@@ -163,30 +155,13 @@ def test_a_modulus_far_too_low_is_refused_with_what_would_do(predict):
     assert "figure:" not in result.output
 
 
-def test_the_text_says_what_was_read_predicted_and_drawn(predict, tmp_path):
+def test_the_short_text_is_the_beginning_of_the_long_one_and_a_figure_is_drawn(predict, tmp_path):
     result = predict("--long", drawn=True)
-    short = result.output.split("\n\n")[0].splitlines()
-    assert 8 <= len(short) <= 16  # every reservation has a line
-    assert short[0].startswith("hysteresis        2")
     assert result.exit_code == 0, result.output
+    short = result.output.split("\n\n")[0].splitlines()
     assert predict().output.splitlines() == short
-    for text in (
-        "nanodiamond-overview.al3d: al3d, 144 x 144 points, 43.2 um x 43.2 um",
-        "SYNTHETIC, not a measurement",
-        "hurst",
-        "w_appr ",
-        "w_retr ",
-        "L_kappa ",
-        "Larkin length ",
-        "w_loc is negative ",
-        "pull-off force at a given displacement",
-        "channel               'Default'",
-        "taken off             the paraboloid",
-        "The theory applies with 1 reservation",
-        "inside by a factor of",
-        "assumed to be 0.5 nm",
-    ):
-        assert text in result.output
+    for name in ("nanodiamond-overview.al3d", "hurst", "w_appr", "w_retr", "L_kappa"):
+        assert name in result.output
     assert sorted(path.name for path in tmp_path.iterdir()) == ["figure.pdf", "figure.png"]
 
 
@@ -354,23 +329,6 @@ def test_a_field_needs_the_whole_sphere_and_one_scan(tmp_path):
     assert "the sphere is incomplete" in refused("surface", OVERVIEW, *sphere(radius=None), *field)
     assert "--field takes one scan" in refused("surface", OVERVIEW, DETAIL, *sphere(), *field)
     assert not (tmp_path / "field.nc").exists()
-
-
-def test_the_documentation_states_the_range_of_the_law():
-    page = (ROOT / "docs/surfaces.md").read_text(encoding="utf-8")
-    law = shipped_law()
-    weakest, strongest = law.disorder
-    smallest, largest = law.size
-    assert f"w_rms/w_int from {weakest:.2g} to {strongest:.2g} and g from {smallest:.2g} " in page
-    assert f"to {largest:.3g}" in page
-
-
-def test_the_documentation_states_from_which_share_on_negative_w_loc_is_a_reservation():
-    energy = max(row.elastic_energy for row in shipped_validity())
-    share = NormalDist().cdf((energy - 1) / (2 * np.sqrt(energy)))
-    for name in ("surfaces.md", "accuracy.md"):
-        text = " ".join((ROOT / "docs" / name).read_text(encoding="utf-8").split())
-        assert re.search(rf"above {share:.1%}.* above 25%", text)
 
 
 NUMBERS = ("--rms", "20nm", "--roll-off", "2um", "--hurst", "0.8", "--short-cutoff", "20nm")

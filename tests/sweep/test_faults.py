@@ -24,7 +24,7 @@ from tests.commands import done, simulated, slow, stored, table
 from tests.commands import run as run_command
 
 TEST = Path(__file__).parents[2] / "config/test.yaml"
-N_SIMULATION = 32
+N_SIMULATION = 12
 BATCH_SECONDS = "0.1"
 """Time between batches, less than that of a simulation."""
 
@@ -73,7 +73,7 @@ def undisturbed(tmp_path_factory):
     """A configuration whose simulations last until they are killed, and its undisturbed folder."""
     folder = tmp_path_factory.mktemp("undisturbed")
     text = TEST.read_text(encoding="utf-8")
-    text = text.replace("angles: 128", "angles: 512").replace("realisations: 2", "realisations: 8")
+    text = text.replace("angles: 128", "angles: 512").replace("realisations: 2", "realisations: 3")
     configuration = folder / "sweep.yaml"
     configuration.write_text(text.replace("step: 0.1", "step: 0.05"))
     run_sweep(configuration, folder / "alone", progress=False)
@@ -101,13 +101,14 @@ def same(undisturbed):
 def test_a_kill_at_any_moment_costs_what_is_in_no_batch_and_corrupts_nothing(
     configuration, same, tmp_path, rng
 ):
-    n_finished = int(rng.integers(1, 5))
+    n_finished = int(rng.integers(2, 5))
     with running(configuration, tmp_path, until=n_finished) as process:
-        time.sleep(rng.uniform(0.5, 1))  # some batches
+        time.sleep(rng.uniform(0, 0.3))
         process.kill()
     assert_whole(tmp_path)
     kept = stored(tmp_path)
-    assert n_finished <= len(kept) < N_SIMULATION
+    # The last that had ended may have been in no batch yet.
+    assert n_finished - 1 <= len(kept) < N_SIMULATION
     assert continued(configuration, tmp_path) == N_SIMULATION - len(kept)
     assert kept.items() <= stored(tmp_path).items()
     assert_tidy(tmp_path)

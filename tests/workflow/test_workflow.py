@@ -395,6 +395,7 @@ def test_forcing_rewrites_from_stored_rows_and_without_curves_simulates(tmp_path
     assert found.drop_vars(COSTS).equals(expected.drop_vars(COSTS))
 
 
+@pytest.mark.slow
 def test_two_configurations_of_one_name_are_refused(tmp_path, sweep):
     (tmp_path / "other").mkdir()
     other = tmp_path / "other/test.yaml"

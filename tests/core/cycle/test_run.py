@@ -19,6 +19,7 @@ from crackfront.core.solver.relax import SOLVERS
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.synthesis import gaussian_field
 from crackfront.core.units import WORK_OF_ADHESION
+from tests.commands import slow
 from tests.core.cycle.made import (
     branch,
     cycles_of_few_sites,
@@ -280,7 +281,7 @@ def rough_branches(energy, seed, solver):
 
 
 @every_solver
-@pytest.mark.parametrize("seed", [0, 1])
+@pytest.mark.parametrize("seed", [0, slow(1)])
 def test_hysteresis_grows_with_roughness_and_stays_below_perturbation_theory(solver, seed):
     hysteresis = []
     for requested in (0.002, 0.02, 0.05, 0.1):

@@ -22,12 +22,14 @@ from crackfront.core.geometry.sphere import polar_field, sphere
 from crackfront.core.outcome import Status
 from crackfront.core.solver.relax import SOLVERS, front_force, relax
 from crackfront.core.units import WORK_OF_ADHESION
+from tests.commands import slow
 
 TIGHT = 1e-12
 """Tolerance at which fronts are compared; they then agree to SAME."""
 SAME = 1e-8
 
 every_solver = pytest.mark.parametrize("solver", sorted(SOLVERS))
+fast_solver = pytest.mark.parametrize("solver", ["newton", slow("reference")])
 
 
 def random_field(seed, n_ray=24, amplitude=0.4, *, tile=False, interpolation="linear"):
@@ -110,6 +112,7 @@ def test_the_load_steps_leave_no_trace_on_any_kind_of_field(solver, direction, f
     assert np.allclose(front, at_once, rtol=0, atol=SAME)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("direction", [1, -1])
 @settings(max_examples=10)
 @given(seed=st.integers(0, 2**32 - 1), tile=st.booleans(), n_ray=st.sampled_from([8, 15, 16, 21]))
@@ -232,7 +235,7 @@ def last_held(front, low, high, field, solver, n_step):
     return low, high, front
 
 
-@every_solver
+@fast_solver
 def test_pull_off_of_a_smooth_sphere_is_met_to_ten_digits_by_ever_smaller_steps(solver):
     field = polar_field(0.01 * np.arange(1, 201), np.full((200, 4), WORK_OF_ADHESION))
     low, high, front = last_held(np.full(4, 1.0), -1.0, -0.8, field, solver, 32)
@@ -257,7 +260,7 @@ def test_the_radius_nears_pull_off_as_the_root_of_the_distance(solver):
     assert np.array(excess)[2:] == pytest.approx(expected[2:], rel=0.02)
 
 
-@every_solver
+@fast_solver
 @pytest.mark.parametrize("tile", [False, True])
 def test_pull_off_of_a_rough_sphere_does_not_depend_on_the_steps_that_lead_to_it(solver, tile):
     field = random_field(4, 24, 0.2, tile=tile, interpolation="cubic")
@@ -289,7 +292,7 @@ def test_tolerances_next_to_round_off_are_met_or_told(solver, n_ray):
 
 
 @every_solver
-@pytest.mark.parametrize("n_ray", [128, 131, 300])
+@pytest.mark.parametrize("n_ray", [slow(128), 131, slow(300)])
 def test_the_order_of_the_sums_leaves_ten_digits_of_a_cycle(solver, n_ray):
     # The same problem with other round-off: rays in another order, and the mirror image.
     radii = np.cumsum(np.random.default_rng(6).uniform(0.03, 0.09, 60))

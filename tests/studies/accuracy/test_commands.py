@@ -11,6 +11,7 @@ from studies.accuracy.files import STUDIES
 from studies.accuracy.scenes import SCENES
 from studies.accuracy.study import scene_errors, trial_seconds
 from studies.numbers import stored
+from tests.commands import slow
 
 
 def run(*arguments):
@@ -36,8 +37,8 @@ def test_an_empty_folder_has_nothing_to_report(tmp_path):
     ("study", "tables"),
     [
         ("requested", {"Time to an error of the hysteresis", "Errors that were requested"}),
-        ("unseen", {"Errors on unseen surfaces"}),
-        ("coverage", {"Stated and true errors"}),
+        slow("unseen", {"Errors on unseen surfaces"}),
+        slow("coverage", {"Stated and true errors"}),
     ],
 )
 def test_one_measured_scene_is_reported_and_kept(study, tables, tmp_path, monkeypatch):
@@ -62,6 +63,7 @@ def test_the_cost_of_a_study_is_told_before_it_is_measured(study, tmp_path, monk
     assert re.fullmatch(r"about [\d.]+ (s|min|hours) of processor time\n", told)
 
 
+@pytest.mark.slow
 def test_the_cost_of_a_study_is_that_of_its_runs():
     scene = SCENES["small-0.04"]
     found = scene_errors(scene, scene.requested_trials(), range(2))

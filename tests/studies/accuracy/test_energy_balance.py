@@ -5,7 +5,6 @@ import pytest
 
 from crackfront.core.cycle.load_schedule import DEFAULT_STEP
 from studies.accuracy.energy_balance import cycle, energies
-from tests.commands import slow
 
 
 def test_the_dissipated_energy_is_the_work_of_the_steps_and_a_first_order_above_the_loop():
@@ -18,7 +17,8 @@ def test_the_dissipated_energy_is_the_work_of_the_steps_and_a_first_order_above_
     assert gap[1] > 0.05 * work[1]
 
 
-@pytest.mark.parametrize("rms", [0.4, slow(0.1), slow(0.84)])
+@pytest.mark.slow
+@pytest.mark.parametrize("rms", [0.4, 0.1, 0.84])
 def test_the_default_step_leaves_one_percent_of_the_energy_of_the_quasi_static_loop(rms):
     fine, default = (energies(cycle(rms, 0, step))[0] for step in (DEFAULT_STEP / 2, DEFAULT_STEP))
     assert 0 < default / (2 * fine - default) - 1 < 0.01

@@ -102,6 +102,7 @@ def largest_error(name, n_realisation, requested=0.03):
     return np.max(np.sqrt(np.mean(found.adhesion**2, axis=0))) / scene.elastic_energy / requested
 
 
+@pytest.mark.slow
 def test_laws_hold_for_a_band_between_the_shapes_that_they_know():
     assert largest_error("band-0.1", 2) < 1.5
 

@@ -61,6 +61,7 @@ def test_a_part_of_the_retraction_ends_in_contact(cycle, rng):
     assert 0.5 < way[1] / way[0] <= 0.6
 
 
+@pytest.mark.slow
 def test_intervals_hold_what_an_unknown_zero_of_the_displacement_leaves(rng):
     """Works of rough spheres change along the contact radius, which a wrong zero imitates."""
     rig = Rig(measured_loops.SPHERE.radius, measured_loops.SPHERE.contact_modulus, stiffness=1e3)
@@ -113,6 +114,7 @@ def test_intervals_hold_the_truth_of_simulated_spheres():
         assert np.mean(np.concatenate([one.inside for one in found.values()])) >= 0.9
 
 
+@pytest.mark.slow
 def test_deep_spheres_are_pressed_to_the_force_of_their_name():
     smooth = -jkr.pull_off_force() * measured_loops.SPHERE.force
     (cycle,) = measured_loops.cycles(1, measured_loops.DEEP)

@@ -18,7 +18,6 @@ loads: {max_penetration: 0.45, step: 0.15, shown_penetration: 0.3}
 front: {n_angle: 64, spacing: 0.05}
 cases:
   - {n_point: 48, interaction_range: 0.70, elastic_energies: [0, 0.02]}
-  - {n_point: 64, interaction_range: 0.61, elastic_energies: [0.02]}
 """
 
 BRANCHES = """

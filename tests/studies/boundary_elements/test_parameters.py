@@ -51,7 +51,7 @@ def test_a_loop_begins_before_the_surfaces_attract_each_other():
 @pytest.mark.parametrize(
     ("kind", "old", "new", "sentence"),
     [
-        ("loops", "n_point: 64", "n_point: 40", r"cases\[1\]: pixel is 0.128; .* range 0.61"),
+        ("branches", "n_point: 64", "n_point: 40", r"cases\[0\]: pixel is 0.128; .* range 0.61"),
         ("loops", "side: 5.12", "side: 2.56", r"cases\[0\]: domain of side 2.56 is too small"),
         ("loops", "cutoff: 0.6", "cutoff: 0.1", r"cases\[0\]: short_cutoff 0.1 is not above two"),
         ("loops", "tion: 0.3}", "tion: 0.4}", r"cases\[0\]: shown_penetration 0.4 is"),

@@ -47,14 +47,11 @@ def test_loops_are_compared_state_by_state_with_a_crack_that_turns_and_one_that_
         (48, 1, False),
         (48, 1, True),
         (48, 0, True),
-        (64, 1, True),
-        (64, 0, True),
     ]
     assert all(0 < row.force_rms < 0.1 for row in rows if row.rotated)
-    for turning, fixed in ((rows[1], rows[2]), (rows[3], rows[4])):
-        assert 3 * turning.perimeter_all < fixed.perimeter_all < 0.5
+    assert 3 * rows[1].perimeter_all < rows[2].perimeter_all < 0.5
     found = read_records(loop_results / "hysteresis.nc", Hysteresis, "case")
-    assert [row.n_point for row in found] == [48, 48, 64]
+    assert [row.n_point for row in found] == [48, 48]
     text = (loop_results / "validation.md").read_text()
     assert text.startswith(validation_report(found, rows))
 
@@ -68,6 +65,7 @@ def test_the_figure_shows_the_forces_and_the_contact(loop_results):
     assert (loop_results / "validation.png").stat().st_size > 10_000
 
 
+@pytest.mark.slow
 def test_both_models_find_the_smooth_sphere_and_the_hysteresis_of_a_rough_one(branch_results):
     smooth, *rough = read_records(branch_results / "hysteresis.nc", Hysteresis, "case")
     assert smooth.front_approach == pytest.approx(1, abs=2e-3)
@@ -81,6 +79,7 @@ def test_both_models_find_the_smooth_sphere_and_the_hysteresis_of_a_rough_one(br
         assert row.least_released >= -1e-12
 
 
+@pytest.mark.slow
 def test_tables_figures_and_sentence_are_those_of_the_rows(branch_results):
     rows = read_records(branch_results / "hysteresis.nc", Hysteresis, "case")
     text = (branch_results / "validation.md").read_text()

@@ -127,6 +127,7 @@ def test_what_few_events_leave_open_is_told(rng):
     assert "times as many events" in claim.remark
 
 
+@pytest.mark.slow
 def test_whole_events_sweep_the_way_of_the_load(record):
     assert record.swept_area == pytest.approx(1.0, abs=1e-3)
     assert np.all(record.smooth_event_area < 0.2)
@@ -162,6 +163,7 @@ def test_wrong_energies_and_extents_fail(rng):
     assert any("grows" in claim for claim in failed(replace(good, extent=good.area**0.72)))
 
 
+@pytest.mark.slow
 def test_avalanches_and_smooth_steps_sweep_the_whole_area(record):
     for index in (0, 1):
         areas = record.area[record.disorder_index == index]

@@ -1,7 +1,5 @@
 """`python -m studies paper`: its figures from their configurations to the gallery."""
 
-import subprocess
-import sys
 from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
@@ -50,9 +48,7 @@ def test_what_fails_stands_in_the_last_lines_and_first_in_the_file(tmp_path, mon
 
 
 def test_the_studies_and_their_commands_are_listed():
-    command = [sys.executable, "-m", "studies", "--help"]
-    folder = Path(__file__).parents[3]
-    listed = subprocess.run(command, check=True, capture_output=True, text=True, cwd=folder).stdout
+    listed = CliRunner().invoke(main, ["--help"]).stdout
     assert set(STUDIES) <= set(listed.split())
     assert {"figure", "draw", "check", "gallery"} <= set(run("--help").stdout.split())
 
