@@ -62,7 +62,7 @@ def comparison_lines(found: MeasuredLoop, predicted: Prediction) -> Iterator[str
             "which measurements distinguish the causes."
         )
     yield f"{predicted.verdict.heading}."
-    yield from map(remark_text, predicted.verdict.of("undecided", "reservation"))
+    yield from map(remark_text, predicted.verdict.with_severity("undecided", "reservation"))
     yield _WHAT_IS_LEFT
 
 
@@ -78,11 +78,12 @@ def machine_readable(found: MeasuredLoop, predicted: Prediction | None) -> dict[
     if predicted is None:
         return numbers
     names = ("e_el", "w_appr", "w_retr", "hysteresis")
+    reservations = predicted.verdict.with_severity("undecided", "reservation")
     return numbers | {
         "predicted": {name: to_jsonable(getattr(predicted, name)) for name in names}
         | {
             "outcome": predicted.verdict.outcome,
-            "remarks": [*map(remark_text, predicted.verdict.of("undecided", "reservation"))],
+            "remarks": [*map(remark_text, reservations)],
         },
         "ratio": to_jsonable(hysteresis_ratio(found, predicted)),
     }
