@@ -55,8 +55,12 @@ class Estimate(Generic[Number]):
         return self.each(lambda values: np.where(condition, values, np.nan))
 
 
+UNKNOWN: Estimate[float] = Estimate(math.nan, math.nan, math.nan, math.nan)
+"""Estimate of a number that the data do not determine."""
+
+
 def quantiles(values: Array, weight: Array, part: ArrayLike) -> Array:
-    """Weighted quantiles along the first axis; the first axis of the result is that of `part`.
+    """Weighted quantiles along the first axis; the result has the axis of `part` first.
 
     Examples
     --------

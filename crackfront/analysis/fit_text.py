@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import astuple
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -122,7 +122,7 @@ def pooled_limits(fit: SweepFit, spectra: Estimate) -> tuple[str, ...]:
     """Range of the spectra and numerical bias of a pooled k, which its interval leaves out."""
     bias = _largest_numerical_error(fit)
     k_range = _k_range(spectra.value)
-    return (*k_range, f"numerical bias to {bias[0]:.2f}") if bias else k_range
+    return (*k_range, f"numerical bias to {bias.error:.2f}") if bias else k_range
 
 
 def _k_range(factors: Array) -> tuple[str, ...]:
@@ -333,20 +333,28 @@ def _exponent_sentences(fit: SweepFit) -> Iterator[str]:
 def _numerical_sentences(fit: SweepFit) -> Iterator[str]:
     """Largest error of k by the discretisation."""
     if largest := _largest_numerical_error(fit):
-        error, spectrum, energy = largest
         yield (
-            f"Numerical errors: up to {error:.2g} of k "
-            f"({spectrum} at e_el = {energy:.4g} w_int), by the measured laws; "
+            f"Numerical errors: up to {largest.error:.2g} of k "
+            f"({largest.spectrum} at e_el = {largest.energy:.4g} w_int), by the measured laws; "
             "they are mostly a bias, which realisations do not average out, and the intervals do "
             "not include them."
         )
 
 
-def _largest_numerical_error(fit: SweepFit) -> tuple[float, str, float] | None:
-    """Largest expected error of k in the range, with its spectrum and amplitude."""
+class _NumericalError(NamedTuple):
+    """Expected numerical error of k, with its spectrum and its e_el (Units: w_int)."""
+
+    error: float
+    spectrum: str
+    energy: float
+
+
+def _largest_numerical_error(fit: SweepFit) -> _NumericalError | None:
+    """Largest expected error of k in the range; None without a simulation with a value."""
     error = np.where(fit.table.finite, fit.table.numerical_error, np.nan)[:, fit.in_range]
     if not np.any(np.isfinite(error)):
         return None
     spectrum, amplitude, _ = np.unravel_index(np.nanargmax(error), error.shape)
     energy = fit.table.amplitude[fit.in_range][amplitude]
-    return float(np.nanmax(error)), str(fit.table.spectrum[spectrum]), float(energy)
+    name = str(fit.table.spectrum[spectrum])
+    return _NumericalError(float(np.nanmax(error)), name, float(energy))

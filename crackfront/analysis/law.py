@@ -41,7 +41,23 @@ FINITE_SIZE_EXPONENT = 0.612
 .. [1] Rosso, Krauth, Phys. Rev. E 65, 025101 (2002).
 """
 
-COEFFICIENTS = ("k_0", "A", "B", "C", "a", "b", "c", "d", "e", "f")
+
+class _Coefficients(NamedTuple):
+    """Coefficients of the law, numbers or arrays."""
+
+    k_0: Any
+    A: Any
+    B: Any
+    C: Any
+    a: Any
+    b: Any
+    c: Any
+    d: Any
+    e: Any
+    f: Any
+
+
+COEFFICIENTS = _Coefficients._fields
 """Names of the coefficients of the law, in the order of files and arrays."""
 
 TYPICAL_BREADTH = 1.75
@@ -160,11 +176,13 @@ def law_value(
 
     The coefficients and the exponent may be arrays too; all arguments broadcast.
     """
-    k_0, *series, a, b, _, _, e, _ = coefficients
+    law = _Coefficients(*coefficients)
     s = np.asarray(disorder, dtype=float)
     x = effective_size(coefficients, s, size, breadth) ** -np.asarray(exponent)
-    fall = 1 + a * s**b * (TYPICAL_BREADTH / np.asarray(breadth, dtype=float)) ** e
-    return np.asarray(k_0 / fall / (1 + x * np.polyval(series[::-1], x)))
+    narrower = TYPICAL_BREADTH / np.asarray(breadth, dtype=float)
+    disorder_term = 1 + law.a * s**law.b * narrower**law.e
+    size_term = 1 + x * np.polyval([law.C, law.B, law.A], x)
+    return np.asarray(law.k_0 / disorder_term / size_term)
 
 
 def effective_size(
@@ -174,9 +192,10 @@ def effective_size(
     breadth: ArrayLike = TYPICAL_BREADTH,
 ) -> Array:
     """Sizes g_s of the law, for arrays of s, g and the breadth."""
-    *_, c, d, _, f = coefficients
-    broader = TYPICAL_BREADTH / np.asarray(breadth, dtype=float)
-    return np.asarray(size, dtype=float) * broader**f / (1 + c * np.asarray(disorder) ** d)
+    law = _Coefficients(*coefficients)
+    narrower = TYPICAL_BREADTH / np.asarray(breadth, dtype=float)
+    reduction = 1 + law.c * np.asarray(disorder) ** law.d
+    return np.asarray(size, dtype=float) * narrower**law.f / reduction
 
 
 def spectral_breadth(kind: FieldKind, spectrum: Spectrum) -> float:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -278,5 +278,7 @@ def _adhesion_from_force(radius: Array, force: Array) -> float:
 
 def _no_value(counts: tuple[int, int], sentence: str) -> SteadyAdhesion:
     """Measures that are NaN, with a sentence that says why."""
-    nan = math.nan
-    return SteadyAdhesion(*(nan,) * 10, *counts, nan, nan, nan, sentence)
+    values = {item.name: math.nan for item in fields(SteadyMeasures)}
+    n_approach, n_retraction = counts
+    values |= {"n_approach": n_approach, "n_retraction": n_retraction}
+    return SteadyAdhesion(**values, sentence=sentence)  # type: ignore[arg-type]

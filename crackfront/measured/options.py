@@ -56,7 +56,7 @@ Record = TypeVar("Record", bound=Options)
 
 
 def checked_options(record: type[Record], options: Mapping[str, Any], prefix: str = "") -> Record:
-    """Record with those of a user's options that are its fields; None means the default.
+    """Record of the user's options that are its fields; None means the default.
 
     Messages have the prefix before names, which is -- in commands. ValueError if a value cannot be
     used, TypeError if it is of another type.
@@ -337,13 +337,13 @@ class ReadingOptions(Options):
     """Unit of length of files that do not state it, as in um."""
 
     height_unit: Annotated[Text | None, PER_SCAN] = None
-    """Unit of the heights, as in nm, if it differs or if that of the file is impossible."""
+    """Unit of the heights, as in nm, if it differs or the unit in the file is impossible."""
 
     size: Annotated[Annotated[tuple[float, ...], BeforeValidator(_sides)] | None, PER_SCAN] = None
     """Sides of scans that do not state them, in --unit, as in 50,40; 50 for a square or a line."""
 
     tip_radius: Annotated[Length | None, PER_SCAN] = None
-    """Radius of the tip, as in 20nm; by default that of the file, or 10nm for formats of scanning
+    """Radius of the tip, as in 20nm; by default as in the file, or 10nm for formats of scanning
     probes that do not state it."""
 
     shortest: Length | None = None
@@ -361,7 +361,7 @@ class PredictionOptions(Options):
     """Measured pull-off force, as in 0.4mN; the w_int that would explain it is printed too."""
 
     range: Length | None = None
-    """Range of the attraction, as in 0.3nm; by default 0.5nm, that of van der Waals forces."""
+    """Range of the attraction, as in 0.3nm; by default 0.5nm, as for van der Waals forces."""
 
 
 class PsdOptions(Options):

@@ -264,15 +264,19 @@ def plot_fronts(
     curves = _fronts(loop, "radius", "angle")
     with _drawing(axes) as drawn:
         if surface is not None:
-            surface_kind(surface)
-            adhesion = surface_adhesion(_reduced(surface)[0])
-            values = adhesion.work_of_adhesion / WORK_OF_ADHESION
-            # The apex is the centre of the tile, whatever the coordinates of the surface.
-            x, y = (adhesion.pixel * (np.arange(count) - count / 2) for count in values.shape)
-            reach = max(2 * adhesion.w_rms, 0.05)
-            draw_field(drawn, x, y, values, float(np.mean(values)), reach, units)
+            _draw_pinning_field(drawn, surface, units)
         draw_fronts(drawn, *curves, most, units)
     return drawn
+
+
+def _draw_pinning_field(axes: Axes, surface: DataArray, units: AxisUnits) -> None:
+    """Draw the work of adhesion of a surface, with the apex at the centre of its tile."""
+    surface_kind(surface)
+    adhesion = surface_adhesion(_reduced(surface)[0])
+    values = adhesion.work_of_adhesion / WORK_OF_ADHESION
+    x, y = (adhesion.pixel * (np.arange(count) - count / 2) for count in values.shape)
+    reach = max(2 * adhesion.w_rms, 0.05)
+    draw_field(axes, x, y, values, float(np.mean(values)), reach, units)
 
 
 def plot_instabilities(jumps: Dataset, axes: Axes | None = None) -> Axes:

@@ -310,19 +310,21 @@ def _draw_direction(axes: Axes, radius: Array, force: Array, colour: str) -> Non
     along = chords / np.hypot(*chords.T)[:, None]
     across = np.stack([-along[:, 1], along[:, 0]], axis=1)
     centres = (points[:-span] + points[span:]) / 2
-    best_clearance, best = -math.inf, None
-    for offset in _ARROW_OFFSETS:
-        middles = centres + offset * across
-        for middle, direction in zip(middles, along, strict=True):
-            arrow = middle + _HALF_ARROW * np.outer([-1, 0, 1], direction)
-            if np.any((arrow < _MARGIN) | (arrow > 1 - _MARGIN)):
-                continue
-            if np.any((arrow[:, 0] < _LEGEND) & (arrow[:, 1] > 1 - _LEGEND)):
-                continue
-            clearance = float(np.hypot(*(arrow[:, None] - curves).T).min())
-            if clearance > best_clearance:
-                best_clearance, best = clearance, arrow
-    if best is None:
+    arrows = [
+        middle + _HALF_ARROW * np.outer([-1, 0, 1], direction)
+        for offset in _ARROW_OFFSETS
+        for middle, direction in zip(centres + offset * across, along, strict=True)
+    ]
+    arrows = [arrow for arrow in arrows if _fits_axes(arrow)]
+    if not arrows:
         return
+    best = max(arrows, key=lambda arrow: float(np.hypot(*(arrow[:, None] - curves).T).min()))
     look = {"arrowstyle": "-|>", "color": colour, "linewidth": 1.0, "mutation_scale": 8}
     axes.annotate("", best[-1], best[0], "axes fraction", arrowprops=look, zorder=4)
+
+
+def _fits_axes(arrow: Array) -> bool:
+    """Whether the points of an arrow, (3, 2), are inside the axes and outside the legend."""
+    on_legend = (arrow[:, 0] < _LEGEND) & (arrow[:, 1] > 1 - _LEGEND)
+    inside = (arrow > _MARGIN) & (arrow < 1 - _MARGIN)
+    return bool(np.all(inside) and not np.any(on_legend))

@@ -52,6 +52,11 @@ from crackfront.plots.style import BLACK, PAGE, blank_figure, explain, house_sty
 SHIFTS_EXPLAINED = "points of one amplitude are shifted sideways by up to 6%"
 """Explanation below figures of k against disorder."""
 
+_MOST_FOR_DECIMALS = 100.0
+"""Ratio of the ends of a logarithmic axis up to which its labels are decimal numbers."""
+
+_FACTOR_LABEL = r"$k = (w_\mathrm{retr}-w_\mathrm{appr})\,/\,2e_\mathrm{el}$"
+
 
 def points_explained(fit: SweepFit) -> list[str]:
     """Explanation of bars and open symbols, if a sweep has them."""
@@ -145,18 +150,9 @@ def _draw_line_factors(left_axes: Axes, right_axes: Axes, fit: SweepFit) -> None
 
 def draw_factor_by_size(axes: Axes, fit: SweepFit) -> None:
     """Draw mean k of straight fronts against g; colours are amplitudes, markers are spectra."""
-    table, size, law = fit.table, fit.cells.size, shipped_law()
-    families = spectrum_families(table)
-    spectra = (table.shape_of(index) for index in range(table.spectrum.size))
-    breadth = float(np.mean([spectral_breadth(fit.kind, spectrum) for spectrum in spectra]))
-    ends = _ends(size, 1.5)
-    abscissa = np.geomspace(max(law.size[0], ends[0]), ends[1], 100)
+    table, size = fit.table, fit.cells.size
+    families, ends = spectrum_families(table), _ends(size, 1.5)
     shades = colormaps["viridis"](np.linspace(0, 0.88, table.amplitude.size))
-
-    def draw_curve(s: float, colour: str) -> None:
-        curve, label = law_value(law.coefficients, s, abscissa, breadth), rf"law, $s={s:.3g}$"
-        axes.plot(abscissa, curve, color=colour, linewidth=0.8, label=label)
-
     for amplitude, energy in enumerate(table.amplitude):
         colour = to_hex(shades[amplitude])
         for index, family in enumerate(families):
@@ -168,10 +164,10 @@ def draw_factor_by_size(axes: Axes, fit: SweepFit) -> None:
             label = rf"$e_\mathrm{{el}}={energy:.3g}\,w_\mathrm{{int}}$"
             axes.plot([], [], color=colour, linewidth=3.0, label=label)
         else:
-            draw_curve(2 * math.sqrt(energy), colour)
+            _draw_law_by_size(axes, fit, 2 * math.sqrt(energy), colour)
     if fit.uncorrelated:
         # The law of weak disorder is the same at all amplitudes.
-        draw_curve(0.0, BLACK)
+        _draw_law_by_size(axes, fit, 0.0, BLACK)
     for family in dict.fromkeys(families):
         label = spectrum_label(table, families.index(family))
         axes.plot([], [], spectrum_marker(family), color="0.4", label=label)
@@ -181,17 +177,21 @@ def draw_factor_by_size(axes: Axes, fit: SweepFit) -> None:
     axes.legend(loc="upper left", ncols=2)
 
 
+def _draw_law_by_size(axes: Axes, fit: SweepFit, s: float, colour: str) -> None:
+    """Draw k by the law against g at a disorder s, for the mean breadth of the spectra."""
+    table, law, ends = fit.table, shipped_law(), _ends(fit.cells.size, 1.5)
+    spectra = [table.shape_of(index) for index in range(table.spectrum.size)]
+    breadth = float(np.mean([spectral_breadth(fit.kind, spectrum) for spectrum in spectra]))
+    abscissa = np.geomspace(max(law.size[0], ends[0]), ends[1], 100)
+    curve = law_value(law.coefficients, s, abscissa, breadth)
+    axes.plot(abscissa, curve, color=colour, linewidth=0.8, label=rf"law, $s={s:.3g}$")
+
+
 def set_factor_limits(axes: Axes, fit: SweepFit) -> None:
     """Limit the ordinate so that it shows all k of a sweep and of the theories."""
     factor = fit.cells.factor.value
     highest = max(PERTURBATION_FACTOR, float(np.nanmax(factor)))
     axes.set_ylim(min(0.0, float(np.nanmin(factor))) - 0.05 * highest, 1.1 * highest)
-
-
-_MOST_FOR_DECIMALS = 100.0
-"""Ratio of the ends of a logarithmic axis up to which its labels are decimal numbers."""
-
-_FACTOR_LABEL = r"$k = (w_\mathrm{retr}-w_\mathrm{appr})\,/\,2e_\mathrm{el}$"
 
 
 def _ends(values: Array, margin: float) -> Array:
@@ -224,10 +224,15 @@ def draw_hysteresis(axes: Axes, fit: SweepFit) -> None:
         disorder = r"4e_\mathrm{el}/w_\mathrm{int}"
     axes.set_xlabel(f"disorder ${disorder}$")
     axes.set_ylabel(r"hysteresis $(w_\mathrm{retr}-w_\mathrm{appr})/w_\mathrm{int}$")
+    _add_spring_entries(axes, fit)
+
+
+def _add_spring_entries(axes: Axes, fit: SweepFit) -> None:
+    """Add the springs of the first spectrum of straight fronts to the legend, by their markers."""
+    styles = spectrum_styles(fit.table)
     for index, family in enumerate(spectrum_families(fit.table)):
         if family == 0 and np.all(np.isfinite(fit.table.spring[index])):
-            marker = spectrum_styles(fit.table)[index].marker
-            axes.plot([], [], marker, color="0.4", label=spring_label(fit, index))
+            axes.plot([], [], styles[index].marker, color="0.4", label=spring_label(fit, index))
 
 
 def _variance(fit: SweepFit) -> Array:

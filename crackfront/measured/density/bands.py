@@ -118,8 +118,8 @@ class Band:
     """Largest rms slope of a map over the rms slope perpendicular to it, and its angle from x; 1
     and 0 for lines. (Units: 1, degree)"""
     periodic: tuple[float, float]
-    """Part of e_el in one wave, for example of grooves, and its wavelength; 0 if there is no such
-    wave. (Units: 1, m)"""
+    """Part of e_el in one wave, for example of grooves, and its wavelength; zeros without one.
+    (Units: 1, m)"""
     instrument: Instrument
     noise_limit: float
     """Wavelength below which noise is more than half of the density, or 0. (Units: m)"""

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator
-from dataclasses import fields
+from dataclasses import fields, replace
 from typing import TYPE_CHECKING, Any
 
-from crackfront.analysis.estimate import Estimate
+from crackfront.analysis.estimate import UNKNOWN, Estimate
 from crackfront.core.units import Scales
 from crackfront.core.variables import variables
 from crackfront.core.words import counted
-from crackfront.measured.density.bands import BandLimit
+from crackfront.measured.density.bands import BandLimit, Scan
 from crackfront.measured.prediction.prediction import Prediction
 from crackfront.measured.prediction.remarks import (
     Remark,
@@ -209,19 +209,7 @@ def _surface_lines(surface: Surface) -> Iterator[str]:
 def _measured_lines(surface: MeasuredSurface) -> Iterator[str]:
     """Lines on the measurements and their spectrum."""
     for scan in surface.scans:
-        measurement, band = scan.measurement, scan.band
-        points = " x ".join(map(str, measurement.heights.shape))
-        sides = " x ".join(prefixed("m", side) for side in measurement.size)
-        yield f"{measurement.path}: {measurement.format}, {points} points, {sides}"
-        yield f"  trusted wavelengths   {' to '.join(map(_limit_text, band.ends))}"
-        other_limits = [limit for limit in band.limits if limit not in band.ends]
-        if other_limits:
-            yield f"  other limits          {', '.join(map(_limit_text, other_limits))}"
-        if measurement.channel:
-            yield f"  channel               {measurement.channel}"
-        yield f"  taken off             {measurement.levelling}"
-        if measurement.comment:
-            yield f"  comment               {measurement.comment}"
+        yield from _scan_lines(scan)
     yield ""
     joint = surface.joint
     yield "Spectrum"
@@ -246,12 +234,29 @@ def _measured_lines(surface: MeasuredSurface) -> Iterator[str]:
     )
 
 
+def _scan_lines(scan: Scan) -> Iterator[str]:
+    """Lines on one measurement."""
+    measurement, band = scan.measurement, scan.band
+    points = " x ".join(map(str, measurement.heights.shape))
+    sides = " x ".join(prefixed("m", side) for side in measurement.size)
+    yield f"{measurement.path}: {measurement.format}, {points} points, {sides}"
+    yield f"  trusted wavelengths   {' to '.join(map(_limit_text, band.ends))}"
+    other_limits = [limit for limit in band.limits if limit not in band.ends]
+    if other_limits:
+        yield f"  other limits          {', '.join(map(_limit_text, other_limits))}"
+    if measurement.channel:
+        yield f"  channel               {measurement.channel}"
+    yield f"  taken off             {measurement.levelling}"
+    if measurement.comment:
+        yield f"  comment               {measurement.comment}"
+
+
 def _prediction_lines(prediction: Prediction) -> Iterator[str]:
     """Lines with all predicted numbers, as files and JSON name them."""
     yield "Prediction (95% intervals)"
     for variable in variables(Prediction):
         value = getattr(prediction, variable.name)
-        number = value if isinstance(value, Estimate) else Estimate(value, *[math.nan] * 3)
+        number = value if isinstance(value, Estimate) else replace(UNKNOWN, value=value)
         if math.isfinite(number.value):
             text = estimate_text(variable.units, number)
             yield f"  {variable.attributes['long_name']:58}{text}"

@@ -56,6 +56,15 @@ _MOST_UNCERTAIN = 2.0
 """Ratio of the ends of the interval of e_el above which a reservation states it."""
 
 
+_ASSUMPTION = Remark(
+    "range of attraction",
+    "note",
+    f"The range of attraction is unknown and assumed to be {1e9 * ASSUMED_RANGE:g} nm, as for van "
+    "der Waals forces; --range gives another.",
+)
+"""Note if the user did not name a range of attraction."""
+
+
 def zero_load_radius(scales: Scales) -> float:
     """Radius of the smooth contact at zero load (Units: m)."""
     return scales.lateral * jkr.radius_at_force(0.0)
@@ -72,6 +81,7 @@ def theory_verdict(
     The range of attraction (Units: m) is by default :data:`ASSUMED_RANGE`. `further` has more
     remarks for the verdict, for example on the law of k.
     """
+    assumption = [_ASSUMPTION] if attraction_range is None else []
     assumed_range = ASSUMED_RANGE if attraction_range is None else attraction_range
     return Verdict(
         (
@@ -82,7 +92,7 @@ def theory_verdict(
             *further,
             *scan_remarks(surface.scans, zero_load_radius(scales)),
             measure_next(surface),
-            *([_ASSUMPTION] if attraction_range is None else []),
+            *assumption,
         )
     )
 
@@ -207,7 +217,7 @@ def _range_conditions(
     yield _condition(
         "attraction short against the sphere",
         f"Tabor parameter of {tabor:.3g}",
-        "adhesion is not that of a crack at the edge of the contact",
+        "the edge of the contact is not a crack",
         LimitCheck(tabor, *_TABOR_LIMITS, "1", rising=True),
         (_modulus("below", modulus, excess**-1.5), _radius_above(radius * excess**3)),
     )
@@ -294,12 +304,3 @@ def _energy_remarks(surface: Surface, scales: Scales) -> Iterator[Remark]:
     elif energy.high > _MOST_UNCERTAIN * energy.low:
         sentence = f"e_el is not known to a factor of {_MOST_UNCERTAIN:g}: {shown}."
         yield Remark("e_el", "reservation", sentence)
-
-
-_ASSUMPTION = Remark(
-    "range of attraction",
-    "note",
-    f"The range of attraction is unknown and assumed to be {1e9 * ASSUMED_RANGE:g} nm, that of van "
-    "der Waals forces; --range gives another.",
-)
-"""Note if the user did not name a range of attraction."""

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
-from crackfront.analysis.estimate import Estimate
+from crackfront.analysis.estimate import UNKNOWN, Estimate
 from crackfront.analysis.law import shipped_law
 from crackfront.analysis.law_spheres import SphereFactors
 from crackfront.analysis.validity import Excess
@@ -204,7 +204,7 @@ def predicted(
     at_load = -jkr.pull_off_force() * scales.force / w_int
     unstable_force = float(jkr.equilibrium_force(jkr.pull_off_radius()))
     at_displacement = -unstable_force * scales.force / w_int
-    implied, remarks = Estimate(*[math.nan] * 4), [*_law_remarks(adhesion)]
+    implied, remarks = UNKNOWN, [*_law_remarks(adhesion)]
     if pull_off is not None:
         implied = implied_work_of_adhesion(surface, scales, pull_off / at_load)
         remarks += _pull_off_remarks(implied, pull_off, least_work_of_adhesion(surface, scales))

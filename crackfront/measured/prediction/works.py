@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 import scipy
 
-from crackfront.analysis.estimate import Estimate, product
+from crackfront.analysis.estimate import UNKNOWN, Estimate, product
 from crackfront.analysis.law_spheres import SphereFactors, sphere_factors
 from crackfront.analysis.validity import Excess, front_excess
 from crackfront.core.spectrum import TabulatedSpectrum
@@ -166,7 +166,7 @@ def implied_work_of_adhesion(surface: Surface, scales: Scales, measured: float) 
 
     value = solved("value")
     if not math.isfinite(value):
-        return Estimate(*[math.nan] * 4)
+        return UNKNOWN
     # A larger w_int gives a larger w_retr, so that the upper end of w_retr gives the lower end.
     return Estimate(value, math.nan, solved("high"), solved("low"))
 

@@ -171,19 +171,8 @@ def _levels(densities: Sequence[Density]) -> tuple[float, tuple[Estimate[float],
     for row, (density, number) in enumerate(zip(densities, numbers, strict=True)):
         columns = np.searchsorted(bins, number)
         value[row, columns], modes[row, columns] = density.value, density.modes
-    power, logarithms, errors = value * modes, [], []
-    for row in range(len(densities)):
-        other_modes = np.delete(modes, row, axis=0).sum(axis=0)
-        other_power = np.delete(power, row, axis=0).sum(axis=0)
-        shared = (modes[row] > 0) & (other_modes > 0)
-        if not np.any(shared):
-            logarithms.append(math.nan)
-            errors.append(math.nan)
-            continue
-        ratios = np.log(value[row, shared] / (other_power[shared] / other_modes[shared]))
-        weights = 1 / (1 / modes[row, shared] + 1 / other_modes[shared])
-        logarithms.append(float(np.average(ratios, weights=weights)))
-        errors.append(float(np.sum(weights)) ** -0.5)
+    rows = range(len(densities))
+    logarithms, errors = zip(*(_log_level(value, modes, row) for row in rows), strict=True)
     finite = np.isfinite(logarithms)
     scatter = 0.0
     if np.count_nonzero(finite) > 1:
@@ -192,6 +181,21 @@ def _levels(densities: Sequence[Density]) -> tuple[float, tuple[Estimate[float],
         excess = float(np.mean(overlapping[0] ** 2 - overlapping[1] ** 2))
         scatter = math.sqrt(max(0.0, excess) / 2)
     return scatter, tuple(map(_level, logarithms, errors))
+
+
+def _log_level(value: Array, modes: Array, row: int) -> tuple[float, float]:
+    """Logarithm of the level of a scan and its standard error, or NaN without overlap.
+
+    Values and modes have the shape (n_scan, n_bin), with zeros outside the bands.
+    """
+    other_modes = np.delete(modes, row, axis=0).sum(axis=0)
+    other_power = np.delete(value * modes, row, axis=0).sum(axis=0)
+    shared = (modes[row] > 0) & (other_modes > 0)
+    if not np.any(shared):
+        return math.nan, math.nan
+    ratios = np.log(value[row, shared] / (other_power[shared] / other_modes[shared]))
+    weights = 1 / (1 / modes[row, shared] + 1 / other_modes[shared])
+    return float(np.average(ratios, weights=weights)), float(np.sum(weights)) ** -0.5
 
 
 def _level(logarithm: float, error: float) -> Estimate[float]:

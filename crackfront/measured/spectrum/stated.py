@@ -136,7 +136,24 @@ def self_affine_surface_of(options: SelfAffineOptions) -> StatedSurface:
         required = {"rms": rms, "hurst": hurst, "correlation length": is_bounded or None}
         missing = [name for name, value in required.items() if value is None]
         raise ValueError(f"{needs}; name {' and '.join(missing)}")
-    cutoff, doubts = options.short_cutoff, []
+    shape = _self_affine_shape(options, rms, hurst)
+    cutoff, roll_off = shape.short_cutoff, shape.roll_off
+    waves = (roll_off, cutoff) if roll_off > cutoff else (2 * cutoff, cutoff)
+    densities = shape.density(2 * np.pi / np.array(waves)).tolist()
+    lengths = f"roll-off {prefixed('m', roll_off)}"
+    if options.correlation_length is not None:
+        lengths += f", of a correlation length of {prefixed('m', options.correlation_length)}"
+    return _stated(
+        f"rms height {prefixed('m', rms)}, {lengths}, H {hurst:g}",
+        TabulatedSpectrum(waves, tuple(densities)),
+        Shares(1.0, 0.0, 0.0, 0.0),
+        [_default_cutoff_doubt(shape)] if options.short_cutoff is None else [],
+    )
+
+
+def _self_affine_shape(options: SelfAffineOptions, rms: float, hurst: float) -> SelfAffineSpectrum:
+    """Spectrum with its rms height; ValueError if the lengths contradict each other (Units: m)."""
+    cutoff, length = options.short_cutoff, options.correlation_length
     if cutoff is None:
         if hurst <= 0.5:
             raise ValueError(
@@ -144,7 +161,6 @@ def self_affine_surface_of(options: SelfAffineOptions) -> StatedSurface:
                 "0.5; name their wavelength as short cutoff, as in 10nm"
             )
         cutoff = ATOMS
-    length = options.correlation_length
     roll_off = options.roll_off if length is None else _roll_off(length, hurst, cutoff)
     assert roll_off is not None
     if roll_off < cutoff:
@@ -153,23 +169,17 @@ def self_affine_surface_of(options: SelfAffineOptions) -> StatedSurface:
             f"{prefixed('m', cutoff)}; name a shorter short cutoff"
         )
     shape = SelfAffineSpectrum(cutoff, roll_off, hurst)
-    shape = shape.amplified(rms**2 / shape.mean_square(0.0))
-    if options.short_cutoff is None:
-        end = min(_SHOWN_WAVES * cutoff, roll_off)
-        part = shape.mean_square_between(0.5, cutoff, end) / shape.mean_square(0.5)
-        doubts.append(
-            f"No short cutoff is named: the power law is continued to {prefixed('m', cutoff)}, "
-            f"and waves shorter than {prefixed('m', end)} have {part:.0%} of e_el."
-        )
-    waves = (roll_off, cutoff) if roll_off > cutoff else (2 * cutoff, cutoff)
-    densities = shape.density(2 * np.pi / np.array(waves)).tolist()
-    by_length = "" if length is None else f", of a correlation length of {prefixed('m', length)}"
-    return _stated(
-        f"rms height {prefixed('m', rms)}, roll-off {prefixed('m', roll_off)}{by_length}, H "
-        f"{hurst:g}",
-        TabulatedSpectrum(waves, tuple(densities)),
-        Shares(1.0, 0.0, 0.0, 0.0),
-        doubts,
+    return shape.amplified(rms**2 / shape.mean_square(0.0))
+
+
+def _default_cutoff_doubt(shape: SelfAffineSpectrum) -> str:
+    """Sentence on the part of e_el in the shortest waves, whose cutoff is the default."""
+    cutoff = shape.short_cutoff
+    end = min(_SHOWN_WAVES * cutoff, shape.roll_off)
+    part = shape.mean_square_between(0.5, cutoff, end) / shape.mean_square(0.5)
+    return (
+        f"No short cutoff is named: the power law is continued to {prefixed('m', cutoff)}, "
+        f"and waves shorter than {prefixed('m', end)} have {part:.0%} of e_el."
     )
 
 
