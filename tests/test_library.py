@@ -852,13 +852,16 @@ def test_the_rms_values_of_a_spectrum_are_those_of_the_surface():
             "force of the loop has no finite value to plot",
         ),
         (lambda surface, loop, jumps: cf.plot_spectrum(0 * surface), "the surface is flat"),
-        (lambda surface, loop, jumps: cf.plot_instabilities(jumps[{"instability": []}]), "none"),
-        (lambda surface, loop, jumps: cf.plot_instabilities(loop), "holds no instabilities"),
+        (
+            lambda surface, loop, jumps: cf.plot_instabilities(jumps[{"instability": []}]),
+            "no instability",
+        ),
+        (lambda surface, loop, jumps: cf.plot_instabilities(loop), "what find_instabilities"),
         (
             lambda surface, loop, jumps: cf.plot_spectrum(
                 (1 + surface).rename("work_of_adhesion").assign_attrs(units=ADHESION)
             ),
-            "work_of_adhesion has no height spectrum",
+            "surface is work_of_adhesion; give heights",
         ),
     ],
 )

@@ -35,28 +35,32 @@ class Estimate(Generic[Number]):
     """A number, or an array of numbers, with its uncertainty."""
 
     value: Number
-    """Point estimate; NaN where the data give none."""
+    """Point estimate; NaN if the data are not sufficient."""
     standard_error: Number
-    """NaN where the data give none, as one realisation does, or nothing but an interval."""
+    """NaN if the data are not sufficient (one realisation), or give only an interval."""
     low: Number
     high: Number
-    """95% interval; NaN where the data give none."""
+    """Ends of the 95% interval; NaN if the data are not sufficient."""
 
     def each(self, function: Callable[[Number], Other]) -> Estimate[Other]:
-        """The estimate whose four entries are those of a function, as of an index or a unit."""
+        """Apply a function, such as an index or a change of units, to all four entries."""
         return Estimate(*map(function, (self.value, self.standard_error, self.low, self.high)))
 
     def at(self: Estimate, index: Any) -> Estimate:
-        """The estimates at some places of arrays."""
+        """The estimates at an index of their arrays."""
         return self.each(lambda values: values[index])
 
-    def only(self: Estimate, known: NDArray[np.bool_]) -> Estimate:
-        """The estimates where a condition holds, NaN elsewhere."""
-        return self.each(lambda values: np.where(known, values, np.nan))
+    def only(self: Estimate, condition: NDArray[np.bool_]) -> Estimate:
+        """The estimates where a condition is true, NaN elsewhere."""
+        return self.each(lambda values: np.where(condition, values, np.nan))
+
+
+UNKNOWN: Estimate[float] = Estimate(math.nan, math.nan, math.nan, math.nan)
+"""Estimate of a number that the data do not determine."""
 
 
 def quantiles(values: Array, weight: Array, part: ArrayLike) -> Array:
-    """Quantiles along the first axis of values with weights, one after the other in a new axis.
+    """Weighted quantiles along the first axis; the result has the axis of `part` first.
 
     Examples
     --------
@@ -84,11 +88,11 @@ def with_error(value: float, error: float) -> str:
 
 
 MISSING = "-"
-"""Text in place of a number that the data do not give."""
+"""Text in place of a missing number."""
 
 
 def with_interval(estimate: Estimate[Any]) -> str:
-    """Value and 95% interval of one number, as far as there are any."""
+    """Value and 95% interval of a number as text; :data:`MISSING` for NaN."""
     value, _, low, high = astuple(estimate)
     if not np.isfinite(value):
         return MISSING
@@ -98,7 +102,7 @@ def with_interval(estimate: Estimate[Any]) -> str:
 
 
 def normal_estimate(value: FloatOrArray, standard_error: FloatOrArray) -> Estimate[FloatOrArray]:
-    """Estimate with the interval of the normal distribution, of a number or of an array."""
+    """Estimate with the 95% interval of the normal distribution."""
     reach = REACH * standard_error
     return Estimate(value, standard_error, value - reach, value + reach)
 
@@ -108,37 +112,38 @@ def product(*factors: Estimate[float]) -> Estimate[float]:
 
     Examples
     --------
-    >>> part = Estimate(2.0, math.nan, 1.0, 4.0)
-    >>> found = product(part, Estimate(3.0, math.nan, 3.0, 3.0))
-    >>> found.low, found.value, found.high
+    >>> uncertain, exact = Estimate(2.0, math.nan, 1.0, 4.0), Estimate(3.0, math.nan, 3.0, 3.0)
+    >>> result = product(uncertain, exact)
+    >>> result.low, result.value, result.high
     (3.0, 6.0, 12.0)
     """
-    value = math.prod(one.value for one in factors)
-    above = math.hypot(*(math.log(one.high / one.value) for one in factors))
+    value = math.prod(factor.value for factor in factors)
+    above = math.hypot(*(math.log(factor.high / factor.value) for factor in factors))
     low = 0.0
-    if all(one.low > 0 for one in factors):
-        low = value * math.exp(-math.hypot(*(math.log(one.value / one.low) for one in factors)))
+    if all(factor.low > 0 for factor in factors):
+        below = math.hypot(*(math.log(factor.value / factor.low) for factor in factors))
+        low = value * math.exp(-below)
     return Estimate(value, math.nan, low, value * math.exp(above))
 
 
 def student_estimate(value: ArrayLike, standard_error: ArrayLike, freedom: ArrayLike) -> Estimate:
     """Estimate with the 95% interval of Student's t, arrays of the common shape.
 
-    Without a degree of freedom error and interval are NaN. With one degree the interval is NaN, as
-    it would extend 13 standard errors to both sides.
+    Without a degree of freedom, error and interval are NaN. With one degree, the interval is NaN
+    because it would extend 13 standard errors to both sides.
     """
     numbers = (np.asarray(number, dtype=float) for number in (value, standard_error))
     centre, error, degrees = np.broadcast_arrays(*numbers, freedom)
-    known = np.isfinite(error) & (degrees >= 1)
-    error, degrees = np.where(known, error, np.nan), np.where(known, degrees, 1)
+    defined = np.isfinite(error) & (degrees >= 1)
+    error, degrees = np.where(defined, error, np.nan), np.where(defined, degrees, 1)
     reach = np.where(degrees > 1, error * stdtrit(degrees, (1 + _CONFIDENCE) / 2), np.nan)
     return Estimate(*map(np.array, (centre, error, centre - reach, centre + reach)))
 
 
 def mean_estimate(values: Array) -> tuple[Estimate, NDArray[np.int64]]:
-    """Mean over the last axis with NaN left out, and how many values it has.
+    """Mean over the last axis without NaN, and the number of its values.
 
-    The bootstrap's standard error of a mean is known in closed form and not resampled.
+    The standard error is the bootstrap's, which has a closed form for a mean.
     """
     count = np.asarray(np.count_nonzero(np.isfinite(values), axis=-1))
     error = scatter(values) / np.sqrt(np.maximum(count, 1))
@@ -146,43 +151,43 @@ def mean_estimate(values: Array) -> tuple[Estimate, NDArray[np.int64]]:
 
 
 def resample_counts(n_sample: int, n_realisation: int, rng: np.random.Generator) -> Array:
-    """How often each bootstrap sample holds each realisation.
+    """Number of times that each bootstrap sample contains each realisation.
 
-    A sample has n - 1 of n realisations, drawn with replacement: then the variance between
-    samples of a mean is that of the mean, without the factor (n - 1) / n of samples of n, which
-    is a quarter for four realisations (McCarthy, Snowden, Vital and Health Statistics 2, 95, 1985).
-    The shape is (n_sample, n_realisation); two realisations or more are needed.
+    A sample has n - 1 of n realisations, drawn with replacement. The variance of a mean between
+    such samples is unbiased; samples of n realisations would underestimate it by (n - 1) / n
+    (McCarthy, Snowden, Vital and Health Statistics 2, 95, 1985). The shape is
+    (n_sample, n_realisation); two realisations or more are needed.
     """
     drawn = rng.integers(n_realisation, size=(n_sample, n_realisation - 1))
-    # One count of all samples, each with its own numbers: a fifth of the time of multinomial draws.
+    # One bincount for all samples takes a fifth of the time of multinomial draws.
     drawn += n_realisation * np.arange(n_sample)[:, None]
     counts = np.bincount(drawn.ravel(), minlength=n_sample * n_realisation)
     return counts.reshape(n_sample, n_realisation).astype(float)
 
 
 def scatter(draws: Array) -> Array:
-    """Standard deviation over the last axis, NaN left out; NaN with fewer than two values."""
+    """Standard deviation over the last axis without NaN; NaN with fewer than two values."""
     square = finite_sum((draws - finite_mean(draws)[..., None]) ** 2)
     freedom = np.count_nonzero(np.isfinite(draws), axis=-1) - 1
     return np.asarray(np.sqrt(ratio(square, freedom)))
 
 
 def finite_sum(values: Array) -> Array:
-    """Sum over the last axis, NaN left out."""
+    """Sum over the last axis without NaN."""
     return np.asarray(np.sum(values, axis=-1, where=np.isfinite(values)))
 
 
 def finite_mean(values: Array) -> Array:
-    """Mean over the last axis, NaN left out."""
+    """Mean over the last axis without NaN."""
     return ratio(finite_sum(values), np.count_nonzero(np.isfinite(values), axis=-1))
 
 
 def combination(parts: Estimate, freedom: ArrayLike, coefficients: Array) -> Estimate:
     """Linear combination of independent estimates, arrays without dimensions.
 
-    All three have the shape (n,), the freedom is that of the standard errors. Parts with a
-    coefficient of zero are left out, NaN included; NaN where all are. The degrees of freedom of the
-    result follow Welch and Satterthwaite.
+    All three have the shape (n,); `freedom` has the degrees of freedom of the standard errors.
+    Parts with a coefficient of zero are left out, even if they are NaN. The result is NaN if all
+    are left out. Its degrees of freedom follow Welch and Satterthwaite.
     """
     used = np.flatnonzero(coefficients)
     if used.size == 0:
@@ -203,10 +208,10 @@ def ratio(numerator: ArrayLike, denominator: ArrayLike) -> Array:
 
 
 def slope(abscissa: Array, ordinate: Array) -> tuple[Array, Array]:
-    """Least-squares slopes of lines along the last axis, points of equal weight, NaN left out.
+    """Least-squares slopes of lines along the last axis, with equal weights and without NaN.
 
-    A slope is NaN with fewer than two distinct abscissas. Beside it stands the sum of squared
-    deviations of the abscissas from their mean: its weight when several lines share one.
+    A slope is NaN with fewer than two distinct abscissas. Also returns the sum of squared
+    deviations of the abscissas from their mean: the weight of a line if several share a slope.
     """
     finite = np.isfinite(abscissa) & np.isfinite(ordinate)
     centre = finite_mean(np.where(finite, abscissa, np.nan))

@@ -1,4 +1,4 @@
-"""What was found about k, in the sentences that README, fits and reports open with."""
+"""The main result about k, as the sentences at the beginning of fits and reports."""
 
 from __future__ import annotations
 
@@ -16,32 +16,35 @@ from crackfront.analysis.law import (
 )
 from crackfront.core.spectrum import SelfAffineSpectrum
 
-PAPER_FACTOR, PERTURBATION_FACTOR = 3.0, 4.0
-"""k of the paper's fit, and of second-order perturbation theory in the limit of weak disorder."""
+PAPER_FACTOR = 3.0
+"""k of the paper's fit."""
+
+PERTURBATION_FACTOR = 4.0
+"""k of second-order perturbation theory in the limit of weak disorder."""
 
 STRONG = 0.84
-"""Disorder s of the paper's experiment, up to which the finding follows k."""
+"""Disorder s of the paper's experiment, at which the finding states k."""
 
 
 def stated_breadths() -> dict[str, float]:
-    """Breadths of the spectra of roughness whose limit of the infinite contact is quoted."""
-    stated = {
+    """Breadths of the spectra of roughness that the finding names."""
+    spectra = {
         "a flat spectrum": SelfAffineSpectrum(1.0, 1.0, 1.0),
         "H = 0.8 over three octaves": SelfAffineSpectrum(1.0, 8.0, 0.8),
     }
-    return {name: spectral_breadth("roughness", shape) for name, shape in stated.items()}
+    return {name: spectral_breadth("roughness", shape) for name, shape in spectra.items()}
 
 
 def finding(departure: str) -> str:
     """The sentences, with the numbers of the shipped law.
 
-    The departure ends the sentence "The law was measured on straight fronts held by springs". It
-    names further fronts and how far their k depart from the law.
+    The departure ends the sentence "The law was measured on straight fronts on springs". It
+    says how far k of other contacts departs from the law.
 
     Examples
     --------
-    >>> finding("; no sphere was held against it").count(". ")
-    7
+    >>> finding("; it was not compared with spheres").count(". ")
+    8
     """
     s, low, high = crossing()
     weak = pinning_factor(WEAKEST, math.inf).factor
@@ -50,35 +53,35 @@ def finding(departure: str) -> str:
         for name, breadth in stated_breadths().items()
     )
     return (
-        "The factor k of w_retr, w_appr = w_int - e_el ± k e_el is no constant. It falls with the "
-        "disorder s = w_rms/w_int and rises with the size g, which is the length on which the "
-        "contact holds its edge, divided by the Larkin length of the roughness. In the infinite "
-        f"contact k is {with_interval(weak)} at vanishing disorder. At s = {STRONG:g}, that of the "
-        f"paper's experiment, it is {strong}. In a finite contact k is smaller. So k is "
+        "The factor k of w_retr, w_appr = w_int - e_el ± k e_el is not constant. It falls with the "
+        "disorder s = w_rms/w_int. It rises with the size g, the length over which the contact "
+        "restores its edge divided by the Larkin length of the roughness. In the infinite contact "
+        f"k is {with_interval(weak)} at vanishing disorder. At the disorder of the paper's "
+        f"experiment, s = {STRONG:g}, it is {strong}. In a finite contact k is smaller. So k is "
         f"{PAPER_FACTOR:g}, as in the paper, only for certain pairs of s and g. They begin at "
         f"g = {least_size():.1f} with vanishing disorder, and end at s = {s:.2f} ({low:.2f} to "
         f"{high:.2f}) in the infinite contact. "
-        f"The law was measured on straight fronts held by springs{departure}."
+        f"The law was measured on straight fronts on springs{departure}."
     )
 
 
 def departure_of_spheres(
     rms: float, n_large: int, n_cell: int, spheres: str = "simulated spheres"
 ) -> str:
-    """End of the finding where spheres, named in words, were held against the law."""
+    """End of the finding if k of spheres, named in words, was compared with the law."""
     return (
-        f". It was not fitted to spheres. At the {n_large} of {n_cell} spectra and amplitudes that "
-        f"have g above 1, k of {spheres} differs from it by {rms:.1%} rms"
+        f". It was not fitted to spheres. For the {n_large} of {n_cell} spectrum-amplitude pairs "
+        f"with g > 1, k of {spheres} agrees with it to {rms:.1%} rms"
     )
 
 
 def crossing() -> tuple[float, float, float]:
-    """Disorder s at which k of the infinite contact is the paper's, and its 95% interval."""
+    """Disorder s at which k of the infinite contact is 3, and its 95% interval."""
 
     def excess(s: float, name: str) -> float:
         return float(getattr(pinning_factor(s, math.inf).factor, name)) - PAPER_FACTOR
 
-    # k falls with s: where its lower end is 3 is the lower end of s.
+    # k falls with s, so its lower end gives the lower end of s.
     value, low, high = (
         float(scipy.optimize.brentq(excess, WEAKEST, 1.0, args=(name,)))
         for name in ("value", "low", "high")
@@ -87,7 +90,7 @@ def crossing() -> tuple[float, float, float]:
 
 
 def least_size() -> float:
-    """Size g at which k of vanishing disorder is the paper's; smaller contacts never have it."""
+    """Size g at which k is 3 at vanishing disorder; in smaller contacts it is less."""
     coefficients = shipped_law().coefficients
 
     def excess(logarithm: float) -> float:

@@ -1,10 +1,10 @@
-"""The fit as a person reads it: tables, and what a reader must know, one sentence each."""
+"""The fit as a page of Markdown: tables, and notes of one sentence each."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import astuple
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -20,14 +20,17 @@ from crackfront.analysis.result import LawEstimates, SweepFit
 from crackfront.core.arrays import Array
 
 ONSET = 0.5
-"""A k below this part of the spectrum's largest counts as below the onset of hysteresis."""
+"""Ratio of k to the largest k of its spectrum below which hysteresis has not set in."""
 
-_FITTED = "factor", "factor_by_sums", "exponent", "midpoint_slope", "disorder_slope"
-"""What the table of the law shows of its estimates."""
+_FACTORS = "factor", "factor_by_sums"
+"""Estimates of k in the table of the law."""
+
+_TRENDS = "exponent", "midpoint_slope", "disorder_slope"
+"""Further estimates in the table of the law."""
 
 
 def fit_table(fit: SweepFit) -> str:
-    """Markdown tables of a fit beside the theory, and its notes."""
+    """The whole page: the result, tables of the fit with the theory, and notes."""
     in_range = int(np.count_nonzero(fit.in_range))
     blocks = [
         fit_result(fit),
@@ -38,8 +41,8 @@ def fit_table(fit: SweepFit) -> str:
         f"{_n_simulation(fit)} simulations, {int(np.sum(fit.n_failed))} without a value. "
         "Values with 95% intervals (Student's t with the bootstrap's standard error, "
         f"{fit.n_bootstrap} samples of realisations). k is the mean over the amplitudes with "
-        "equal weights. Behind a pooled k stand how far the spectra lie apart, and the largest "
-        "bias that the numerics may leave; its interval holds neither.",
+        "equal weights. A pooled k is followed by the range of the spectra and by the largest "
+        "numerical bias, which its interval does not include.",
         _law_table(fit),
         _midpoint_sentence(fit),
         "## k at every amplitude",
@@ -47,14 +50,14 @@ def fit_table(fit: SweepFit) -> str:
         "range of the fit in parentheses.",
         _cell_table(fit),
         "## k by the law of docs/law.md",
-        "k of the straight front at the same disorder and size g, from which nothing was "
-        "adjusted to this sweep; and the measured k extrapolated by it to the infinite "
-        f"contact, where g is {LEAST_SIZE:g} or more. In the limit of weak disorder that is "
+        "k of the straight front at the same disorder and size g, without any adjustment to this "
+        "sweep; and the measured k, extrapolated by the law to the infinite contact if g is "
+        f"{LEAST_SIZE:g} or more. In the limit of weak disorder the infinite contact has "
         f"k_0 = {with_interval(fit.k_0)} on every surface.",
         _sizes_table(fit),
         "## What an experimenter would find",
-        "Work of adhesion from a JKR fit of force against mean radius, less that of the front "
-        "(in w_int): mean, and largest magnitude in one simulation.",
+        "Work of adhesion from a JKR fit of force against mean radius, minus the front's work of "
+        "adhesion (in w_int): mean, and largest magnitude in one simulation.",
         _force_table(fit),
         "## Notes",
         "\n".join(f"- {sentence}" for sentence in fit_notes(fit)),
@@ -63,9 +66,9 @@ def fit_table(fit: SweepFit) -> str:
 
 
 def fit_result(fit: SweepFit) -> str:
-    """What a fit found in a few lines of Markdown: k beside the law's, and the exponent."""
-    known = fit.in_range & np.isfinite(fit.cells.factor.value)
-    law = finite_mean(np.where(known, fit.cells.law_factor.value, np.nan))
+    """The result in a few lines of Markdown: k, k by the law, and the exponent."""
+    compared = fit.in_range & np.isfinite(fit.cells.factor.value)
+    law = finite_mean(np.where(compared, fit.cells.law_factor.value, np.nan))
     mean = float(finite_mean(law))
     pooled = f"{mean:.2f}" if np.isfinite(mean) else MISSING
     return (
@@ -82,17 +85,19 @@ def _n_simulation(fit: SweepFit) -> int:
 
 
 def _law_table(fit: SweepFit) -> str:
-    """The law of every spectrum, pooled, and in theory."""
+    """Table of the law: every spectrum, pooled, and theory."""
     header = (
         "spectrum | correlation length | realisations | k | k, ratio of sums | exponent of w_rms "
         "| midpoint slope m | change of k per doubling of w_rms"
     )
     lengths, counts = fit.table.correlation_length, fit.n_realisation
-    rows = [
-        [str(name), f"{lengths[index]:.3g}", str(counts[index]), *_law_entries(fit.spectra, index)]
-        for index, name in enumerate(fit.table.spectrum)
-    ]
-    pooled = *(_pooled_entry(fit, name) for name in _FITTED[:2]), *_law_entries(fit.pooled, ())[2:]
+    names = _FACTORS + _TRENDS
+    rows = []
+    for index, spectrum in enumerate(fit.table.spectrum):
+        estimates = _estimate_entries(fit.spectra, names, index)
+        rows.append([str(spectrum), f"{lengths[index]:.3g}", str(counts[index]), *estimates])
+    pooled = [_pooled_entry(fit, name) for name in _FACTORS]
+    pooled += _estimate_entries(fit.pooled, _TRENDS, ())
     law = "2", "1" if fit.kind == "roughness" else "0", "0"
     rows += [
         ["**pooled**", "", str(np.sum(counts)), *pooled],
@@ -102,32 +107,32 @@ def _law_table(fit: SweepFit) -> str:
     return _markdown(header.split(" | "), rows)
 
 
-def _law_entries(law: LawEstimates, index: Any) -> tuple[str, ...]:
-    """The fitted numbers of one row."""
-    return tuple(with_interval(getattr(law, name).at(index)) for name in _FITTED)
+def _estimate_entries(law: LawEstimates, names: Sequence[str], index: Any) -> list[str]:
+    """Estimates of one spectrum, or pooled ones with the index (), as entries of a table."""
+    return [with_interval(getattr(law, name).at(index)) for name in names]
 
 
 def _pooled_entry(fit: SweepFit, name: str) -> str:
-    """Pooled k with its interval, and with what this leaves out: scatter of spectra, and bias."""
+    """Pooled k with its interval, the range of the spectra and the numerical bias."""
     pooled = with_interval(getattr(fit.pooled, name))
     return "; ".join([pooled, *pooled_limits(fit, getattr(fit.spectra, name))])
 
 
 def pooled_limits(fit: SweepFit, spectra: Estimate) -> tuple[str, ...]:
-    """Scatter of the spectra and numerical bias of a pooled k, which its interval leaves out."""
+    """Range of the spectra and numerical bias of a pooled k, which its interval leaves out."""
     bias = _largest_numerical_error(fit)
     k_range = _k_range(spectra.value)
-    return (*k_range, f"numerical bias to {bias[0]:.2f}") if bias else k_range
+    return (*k_range, f"numerical bias to {bias.error:.2f}") if bias else k_range
 
 
 def _k_range(factors: Array) -> tuple[str, ...]:
-    """Range of the k of spectra, where there are two or more."""
-    known = factors[np.isfinite(factors)]
-    return (f"spectra {known.min():.2f} to {known.max():.2f}",) if known.size > 1 else ()
+    """Range of the k of spectra, if there are at least two."""
+    finite = factors[np.isfinite(factors)]
+    return (f"spectra {finite.min():.2f} to {finite.max():.2f}",) if finite.size > 1 else ()
 
 
 def _cell_table(fit: SweepFit) -> str:
-    """Rows of k at every amplitude, and of its change with size where there is one."""
+    """Table of k at every amplitude, and of its trend with size if there is one."""
     header, rows = ["e_el/w_int", *map(str, fit.table.spectrum)], []
     for index, energy in enumerate(fit.table.amplitude):
         cells = (_cell(fit, spectrum, index) for spectrum in range(fit.table.spectrum.size))
@@ -142,7 +147,7 @@ def _cell_table(fit: SweepFit) -> str:
 
 
 def _sizes_table(fit: SweepFit) -> str:
-    """Measured k beside the law's at every spectrum and amplitude."""
+    """Table of measured k and k by the law at every spectrum and amplitude."""
     header = ("spectrum", "e_el/w_int", "g", "k, measured", "k, law", "k, infinite contact")
     cells, rows = fit.cells, []
     for cell in np.ndindex(cells.size.shape):
@@ -150,8 +155,8 @@ def _sizes_table(fit: SweepFit) -> str:
         name, energy = fit.table.spectrum[cell[0]], fit.table.amplitude[cell[1]]
         estimates = cells.factor, cells.law_factor, cells.infinite_factor
         factors = (with_interval(estimate.at(cell)) for estimate in estimates)
-        known = f"{size:.2g}" if np.isfinite(size) else MISSING
-        rows.append((str(name), f"{energy:.4g}", known, *factors))
+        size_text = f"{size:.2g}" if np.isfinite(size) else MISSING
+        rows.append((str(name), f"{energy:.4g}", size_text, *factors))
     return _markdown(header, rows)
 
 
@@ -165,15 +170,15 @@ def _cell(fit: SweepFit, spectrum: int, amplitude: int) -> str:
 
 
 def _midpoint_sentence(fit: SweepFit) -> str:
-    """Whether any midpoint contradicts w_int - e_el."""
+    """How well the midpoints agree with the mean of w_loc."""
     chance = float(fit.midpoint_probability)
     if not np.isfinite(fit.midpoint_largest):
-        return "No midpoint has a standard error, so none can be tested against the mean of w_loc."
+        return "Without standard errors, midpoints cannot be compared with the mean of w_loc."
     return (
         f"The midpoint (w_retr + w_appr)/2 deviates from {_mean_adhesion(fit)} by at most "
         f"{fit.midpoint_largest:.2g} standard errors at any spectrum and amplitude in the range; "
-        "one as large or larger somewhere has a probability of "
-        f"{f'about {chance:.2g}' if chance >= 0.001 else 'less than 0.001'} if the law holds."
+        "if the law is exact, the probability of such a deviation is "
+        f"{f'about {chance:.2g}' if chance >= 0.001 else 'less than 0.001'}."
     )
 
 
@@ -183,13 +188,14 @@ def _mean_adhesion(fit: SweepFit) -> str:
 
 
 def _force_table(fit: SweepFit) -> str:
-    """Differences of the experimenter's estimates."""
+    """Table of the differences of the experimenter's estimates."""
     header = "spectrum; w_appr, mean; w_appr, largest; w_retr, mean; w_retr, largest; k from force"
     differences = np.transpose(astuple(fit.from_force))
     rows = []
     for index, name in enumerate(fit.table.spectrum):
-        found = (f"{one:.4f}" if np.isfinite(one) else MISSING for one in differences[index])
-        rows.append((str(name), *found, with_interval(fit.spectra.factor_from_force.at(index))))
+        row = differences[index]
+        numbers = [f"{value:.4f}" if np.isfinite(value) else MISSING for value in row]
+        rows.append((str(name), *numbers, with_interval(fit.spectra.factor_from_force.at(index))))
     pooled = _pooled_entry(fit, "factor_from_force")
     return _markdown(header.split("; "), [*rows, ("**pooled**", "", "", "", "", pooled)])
 
@@ -201,7 +207,7 @@ def _markdown(header: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
 
 
 def fit_notes(fit: SweepFit) -> tuple[str, ...]:
-    """How k depends on disorder and size, how far spectra differ, then gaps and failures."""
+    """Sentences on trends of k, differences between spectra, gaps and failures."""
     return (
         trend_sentence(fit),
         *_spread_sentences(fit),
@@ -213,7 +219,7 @@ def fit_notes(fit: SweepFit) -> tuple[str, ...]:
 
 
 def trend_sentence(fit: SweepFit) -> str:
-    """Say that k is no constant, and which trends the sweep resolves."""
+    """Sentence on the dependence of k on disorder and size, as far as the sweep resolves it."""
     disorder = _trend_text(fit.pooled.disorder_slope, "per doubling of w_rms within a spectrum")
     size = _trend_text(
         fit.pooled_size_slope, "per doubling of the correlation length among spectra of one shape"
@@ -221,26 +227,26 @@ def trend_sentence(fit: SweepFit) -> str:
     disorder = disorder or "its trend with w_rms needs two amplitudes"
     size = size or "its trend with size needs two spectra of one shape and different lengths"
     return (
-        "k is a function of disorder and of size, not a constant, so that each k of a spectrum "
-        f"is an average over the stated range: {disorder}; {size}."
+        "k depends on disorder and size and is not a constant, so each k of a spectrum is an "
+        f"average over the stated range: {disorder}; {size}."
     )
 
 
 def _law_agreement(fit: SweepFit) -> str:
-    """How near the law is, in words."""
+    """Agreement of this sweep with the law, as the end of the finding."""
     if not fit.n_large:
-        return "; in this sweep no contact is large enough to tell, as g is nowhere above 1"
+        return "; this sweep cannot test it, because g is below 1 everywhere"
     counts = int(fit.n_large), fit.cells.size.size
     if not fit.table.on_springs:
         return departure_of_spheres(float(fit.law_departure), *counts, "the spheres of this sweep")
     return (
-        f". At the {counts[0]} of {counts[1]} spectra and amplitudes that have g above 1, k of "
-        f"those of this sweep differs from it by {fit.law_departure:.1%} rms"
+        f". For the {counts[0]} of {counts[1]} spectrum-amplitude pairs of this sweep with g > 1, "
+        f"k agrees with it to {fit.law_departure:.1%} rms"
     )
 
 
 def _trend_text(trend: Estimate, unit: str) -> str:
-    """Words for a trend; empty if there is none to speak of."""
+    """A trend in words; empty if it is NaN."""
     value, _, low, high = map(float, astuple(trend))
     if not np.isfinite(value):
         return ""
@@ -251,11 +257,11 @@ def _trend_text(trend: Estimate, unit: str) -> str:
 
 
 def _spread_sentences(fit: SweepFit) -> Iterator[str]:
-    """How far the k of the spectra differ."""
+    """Difference of the k of the spectra."""
     factor = fit.spectra.factor.value
-    known = np.flatnonzero(np.isfinite(factor))
-    if known.size > 1:
-        lowest, highest = known[np.argmin(factor[known])], known[np.argmax(factor[known])]
+    finite = np.flatnonzero(np.isfinite(factor))
+    if finite.size > 1:
+        lowest, highest = finite[np.argmin(factor[finite])], finite[np.argmax(factor[finite])]
         yield (
             f"The spectra's k lie between {factor[lowest]:.2f} ({fit.table.spectrum[lowest]}) and "
             f"{factor[highest]:.2f} ({fit.table.spectrum[highest]}); the interval of the pooled k "
@@ -264,21 +270,21 @@ def _spread_sentences(fit: SweepFit) -> Iterator[str]:
 
 
 def _onset_sentences(fit: SweepFit) -> Iterator[str]:
-    """Spectra whose k falls towards zero within the range because the contact is finite."""
+    """Spectra whose k falls towards zero at weak disorder, because the contact is finite."""
     factor = np.where(fit.in_range, fit.cells.factor.value, np.nan)
     for index, name in enumerate(fit.table.spectrum):
-        known = np.flatnonzero(np.isfinite(factor[index]))
-        if known.size == 0:
+        finite = np.flatnonzero(np.isfinite(factor[index]))
+        if finite.size == 0:
             continue
         energy = fit.table.amplitude
-        weakest = known[np.argmin(energy[known])]
-        first, largest = factor[index, weakest], np.max(factor[index, known])
+        weakest = finite[np.argmin(energy[finite])]
+        first, largest = factor[index, weakest], np.max(factor[index, finite])
         if first < ONSET * largest:
             yield (
                 f"{name}: k is {first:.2f} at e_el = {energy[weakest]:.4g} w_int "
-                f"and up to {largest:.2f} in the range, which thus reaches below the onset "
-                "of hysteresis of a finite contact; there k and the exponent say more about size "
-                "than about the law, so raise the lower end of the range."
+                f"and up to {largest:.2f} in the range: the range begins below the onset of "
+                "hysteresis of a finite contact. There k and the exponent depend on the size of "
+                "the contact; raise the lower end of the range."
             )
 
 
@@ -287,60 +293,68 @@ def _gap_sentences(fit: SweepFit) -> Iterator[str]:
     for index, name in enumerate(fit.table.spectrum):
         missing = fit.in_range & (fit.cells.count[index] == 0)
         if fit.n_realisation[index] == 0:
-            yield f"{name}: no simulation in the range has a value; it is in no pooled result."
+            yield f"{name}: no simulation in the range has a value; pooled results leave it out."
             continue
         if fit.n_failed[index]:
             yield (
-                f"{name}: simulations in the range without a value: {fit.n_failed[index]}, left "
-                "out; if they failed because of what they are, the means are biased."
+                f"{name}: {fit.n_failed[index]} simulations in the range have no value and are "
+                "left out; if failure depends on the surface, the means are biased."
             )
         if np.any(missing):
             gaps = ", ".join(f"{value:.4g}" for value in fit.table.amplitude[missing])
             yield (
-                f"{name}: no value at e_el = {gaps} w_int; its k averages the other amplitudes "
-                "and does not compare with the k of other spectra."
+                f"{name}: no value at e_el = {gaps} w_int; its k is a mean over the other "
+                "amplitudes and cannot be compared with the k of other spectra."
             )
         alone = fit.in_range & (fit.cells.count[index] == 1)
         if np.any(alone) and fit.n_realisation[index] > 1:
             gaps = ", ".join(f"{value:.4g}" for value in fit.table.amplitude[alone])
             yield (
-                f"{name}: one realisation alone has a value at e_el = {gaps} w_int, which is left "
-                "out of the exponent and of the trend with w_rms (not of k)."
+                f"{name}: only one realisation has a value at e_el = {gaps} w_int; the exponent "
+                "and the trend with w_rms leave it out, k does not."
             )
         if fit.n_realisation[index] == 1:
-            yield f"{name}: one realisation gives no interval, nor do pooled results with it."
+            yield f"{name}: one realisation gives no interval, neither here nor in pooled results."
 
 
 def _exponent_sentences(fit: SweepFit) -> Iterator[str]:
-    """Amplitudes without a logarithm of their hysteresis."""
+    """Amplitudes whose mean hysteresis is not positive, so that it lacks a logarithm."""
     hysteresis = fit.cells.hysteresis.value
     for index, name in enumerate(fit.table.spectrum):
         negative = fit.in_range & (hysteresis[index] <= 0)
         if np.any(negative):
             gaps = ", ".join(f"{value:.4g}" for value in fit.table.amplitude[negative])
             yield (
-                f"{name}: the mean hysteresis at e_el = {gaps} w_int is not positive and is left "
-                "out of the exponent (not of k); raise the lower end of the range."
+                f"{name}: the mean hysteresis at e_el = {gaps} w_int is not positive; the exponent "
+                "leaves it out, k does not; raise the lower end of the range."
             )
 
 
 def _numerical_sentences(fit: SweepFit) -> Iterator[str]:
-    """What the discretisation may do to k."""
-    if found := _largest_numerical_error(fit):
-        error, spectrum, energy = found
+    """Largest error of k by the discretisation."""
+    if largest := _largest_numerical_error(fit):
         yield (
-            f"Numerical errors: up to {error:.2g} of k "
-            f"({spectrum} at e_el = {energy:.4g} w_int), by the measured laws; "
-            "they are mostly a bias, which realisations do not average out, and no interval here "
-            "holds them."
+            f"Numerical errors: up to {largest.error:.2g} of k "
+            f"({largest.spectrum} at e_el = {largest.energy:.4g} w_int), by the measured laws; "
+            "they are mostly a bias, which realisations do not average out, and the intervals do "
+            "not include them."
         )
 
 
-def _largest_numerical_error(fit: SweepFit) -> tuple[float, str, float] | None:
-    """Largest expected error of k in the range, with its spectrum and amplitude."""
+class _NumericalError(NamedTuple):
+    """Expected numerical error of k, with its spectrum and its e_el (Units: w_int)."""
+
+    error: float
+    spectrum: str
+    energy: float
+
+
+def _largest_numerical_error(fit: SweepFit) -> _NumericalError | None:
+    """Largest expected error of k in the range; None without a simulation with a value."""
     error = np.where(fit.table.finite, fit.table.numerical_error, np.nan)[:, fit.in_range]
     if not np.any(np.isfinite(error)):
         return None
     spectrum, amplitude, _ = np.unravel_index(np.nanargmax(error), error.shape)
     energy = fit.table.amplitude[fit.in_range][amplitude]
-    return float(np.nanmax(error)), str(fit.table.spectrum[spectrum]), float(energy)
+    name = str(fit.table.spectrum[spectrum])
+    return _NumericalError(float(np.nanmax(error)), name, float(energy))

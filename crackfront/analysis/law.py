@@ -1,12 +1,13 @@
-r"""The law behind k: of a straight front on springs, by disorder s = w_rms / w_int and size g.
+r"""The law of k for a straight front on springs, by disorder s = w_rms / w_int and size g.
 
 The size is the length of the springs over the Larkin length, g = L_kappa / ell. With
 :math:`x = g_s^{-(1-\zeta)}`, :math:`g_s = g\, (\beta_0 / \beta)^f / (1 + c\, s^d)`,
 
 .. math:: k = \frac{k_0}{(1 + a\, s^b (\beta_0 / \beta)^e)(1 + A x + B x^2 + C x^3)} .
 
-The Larkin length makes almost one curve of all surfaces at weak disorder. At strong disorder k
-falls with s, the less the broader the spectrum of w_loc is (:func:`spectral_breadth`, beta).
+In units of the Larkin length, all surfaces have almost the same k at weak disorder. At strong
+disorder k falls with s. It falls less for a broader spectrum of w_loc (:func:`spectral_breadth`,
+beta).
 `python -m studies law fit` fits the coefficients to straight fronts and writes `law.json`.
 A sphere is locally such a front (:mod:`crackfront.analysis.law_spheres`).
 docs/law.md derives all lengths.
@@ -35,28 +36,44 @@ if TYPE_CHECKING:
     from crackfront.core.spectrum import Spectrum
 
 FINITE_SIZE_EXPONENT = 0.612
-"""1 - zeta, with zeta = 0.388 of the elastic line of long range [1]_.
+"""1 - zeta, with the roughness exponent zeta = 0.388 of the long-range elastic line [1]_.
 
 .. [1] Rosso, Krauth, Phys. Rev. E 65, 025101 (2002).
 """
 
-COEFFICIENTS = ("k_0", "A", "B", "C", "a", "b", "c", "d", "e", "f")
-"""Names of the coefficients of the law, in the order of the files and arrays that hold them."""
+
+class _Coefficients(NamedTuple):
+    """Coefficients of the law, numbers or arrays."""
+
+    k_0: Any
+    A: Any
+    B: Any
+    C: Any
+    a: Any
+    b: Any
+    c: Any
+    d: Any
+    e: Any
+    f: Any
+
+
+COEFFICIENTS = _Coefficients._fields
+"""Names of the coefficients of the law, in the order of files and arrays."""
 
 TYPICAL_BREADTH = 1.75
-"""Breadth beta_0 in the middle of those of spectra; that of one that is not known."""
+"""Breadth beta_0 of a typical spectrum, assumed if the breadth is unknown."""
 
 LEAST_SIZE = 0.3
-"""Smallest g of the fit; below, a front is pulled over nearly all of its pinning."""
+"""Smallest g of the fit; the springs pull a smaller front over nearly all of its pinning."""
 
 WEAKEST = 1e-6
-"""Rms of w_loc that stands for the limit of weak disorder. (Units: w_int)"""
+"""Rms of w_loc at which the limit of weak disorder is evaluated. (Units: w_int)"""
 
 _NARROWEST = 0.25
-"""E-folds of the wavevector within which waves count as of one length."""
+"""Breadth of a single wavelength, the smallest possible one. (Units: e-folds of wavevector)"""
 
-_BROADER = 1.25
-"""By how much a spectrum may be broader or narrower than those that were measured."""
+_BREADTH_TOLERANCE = 1.25
+"""Ratio of breadths outside the measured range up to which the law needs no extra error."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,28 +81,28 @@ class Law:
     """The fitted law."""
 
     coefficients: tuple[float, ...]
-    """As :data:`COEFFICIENTS` names them."""
+    """In the order of :data:`COEFFICIENTS`."""
     covariance: tuple[tuple[float, ...], ...]
-    """Statistical, of the coefficients and the finite-size exponent, with that one free."""
+    """Statistical covariance of the coefficients and the finite-size exponent, all fitted."""
     model_factor: float
     model_length: float
-    """Model error: standard deviation of ln k, and of ln g, between surfaces of one s and g."""
+    """Model error: standard deviation of ln k, and of ln g, between surfaces of equal s and g."""
     numerical: float
-    """Standard error of ln k that the numerics leave."""
+    """Standard error of ln k by the numerics."""
     exponent: tuple[float, float]
-    """The finite-size exponent when left free, and its standard error."""
+    """The finite-size exponent if it is fitted, and its standard error."""
     rms: float
     worst: float
-    """Departure of the measured k from the law, relative, for g above 1."""
+    """Relative departure of the measured k from the law, for g above 1."""
     disorder: tuple[float, float]
     size: tuple[float, float]
     breadth: tuple[float, float]
     """Measured ranges of s, g and the breadth."""
     departures: tuple[tuple[float, ...], ...]
-    """Departures of the measured k from the law as :class:`Departure`, a row a group."""
+    """Departures of the measured k from the law, as rows of :class:`Departure`."""
 
     def departures_at(self, size: float, breadth: float | None = None) -> list[Departure]:
-        """Departures of the fronts of about a size g, and of a breadth where it is known."""
+        """Departures of the fronts with about a size g, and a breadth if it is known."""
         rows = [Departure._make(row) for row in self.departures]
         return [
             row
@@ -96,7 +113,7 @@ class Law:
 
 
 class Departure(NamedTuple):
-    """How far the measured k of a group of straight fronts lie above the law, relative to it."""
+    """Relative departure of the measured k from the law, for a group of straight fronts."""
 
     narrowest: float
     broadest: float
@@ -111,7 +128,7 @@ class Departure(NamedTuple):
 
     @property
     def sentence(self) -> str:
-        """Where the measured k lie, and for which fronts."""
+        """Mean and rms departure, and the fronts that they are for, in words."""
         return (
             f"{self.mean:+.1%} in the mean, {self.rms:.1%} rms ({self.fronts} fronts of g "
             f"{self.least_size:.3g} to {self.largest_size:.3g}, breadth {self.narrowest:.3g} to "
@@ -124,7 +141,7 @@ class PinningFactors:
     """Factors k of straight fronts, arrays of one shape."""
 
     factor: Estimate
-    """With the 95% intervals of statistical, numerical and model error together."""
+    """k with 95% intervals of the statistical, numerical and model errors together."""
     statistical: Array
     numerical: Array
     model: Array
@@ -133,19 +150,19 @@ class PinningFactors:
 
 @dataclass(frozen=True, slots=True)
 class PinningFactor:
-    """Factor k of a straight front, with a sentence where it is not measured."""
+    """Factor k of a straight front, with a warning if it is extrapolated."""
 
     factor: Estimate[float]
-    """With the 95% interval of statistical, numerical and model error together."""
+    """k with the 95% interval of the statistical, numerical and model errors together."""
     statistical: float
     numerical: float
     model: float
     """The three standard errors of k."""
     negative_share: float
-    """Part of a Gaussian w_loc that is negative: where it is large the linearisation of the
-    roughness is not to be trusted."""
+    """Part of a Gaussian w_loc that is negative. If it is large, do not trust the linearisation of
+    the roughness."""
     warning: str
-    """Sentences on numbers outside of the measured ranges; empty if there are none."""
+    """Sentences on numbers outside the measured ranges; empty inside."""
 
 
 def law_value(
@@ -157,13 +174,15 @@ def law_value(
 ) -> Array:
     """Values of k, for arrays of s, g (infinity for the infinite contact) and the breadth.
 
-    The coefficients and the exponent may be arrays too; all of them broadcast.
+    The coefficients and the exponent may be arrays too; all arguments broadcast.
     """
-    k_0, *series, a, b, _, _, e, _ = coefficients
+    law = _Coefficients(*coefficients)
     s = np.asarray(disorder, dtype=float)
     x = effective_size(coefficients, s, size, breadth) ** -np.asarray(exponent)
-    fall = 1 + a * s**b * (TYPICAL_BREADTH / np.asarray(breadth, dtype=float)) ** e
-    return np.asarray(k_0 / fall / (1 + x * np.polyval(series[::-1], x)))
+    narrower = TYPICAL_BREADTH / np.asarray(breadth, dtype=float)
+    disorder_term = 1 + law.a * s**law.b * narrower**law.e
+    size_term = 1 + x * np.polyval([law.C, law.B, law.A], x)
+    return np.asarray(law.k_0 / disorder_term / size_term)
 
 
 def effective_size(
@@ -173,9 +192,10 @@ def effective_size(
     breadth: ArrayLike = TYPICAL_BREADTH,
 ) -> Array:
     """Sizes g_s of the law, for arrays of s, g and the breadth."""
-    *_, c, d, _, f = coefficients
-    broader = TYPICAL_BREADTH / np.asarray(breadth, dtype=float)
-    return np.asarray(size, dtype=float) * broader**f / (1 + c * np.asarray(disorder) ** d)
+    law = _Coefficients(*coefficients)
+    narrower = TYPICAL_BREADTH / np.asarray(breadth, dtype=float)
+    reduction = 1 + law.c * np.asarray(disorder) ** law.d
+    return np.asarray(size, dtype=float) * narrower**law.f / reduction
 
 
 def spectral_breadth(kind: FieldKind, spectrum: Spectrum) -> float:
@@ -184,9 +204,9 @@ def spectral_breadth(kind: FieldKind, spectrum: Spectrum) -> float:
     .. math:: \beta = \frac{1}{4} + \frac{1}{\int p^2\, d\ln q}, \quad
               p = \frac{q^2 C_w(q)}{\int q^2 C_w\, d\ln q}
 
-    Waves within a quarter of an e-fold count as of one length and pin a front together; others do
-    so each with its own part of the variance, hence as at weaker disorder. The kind is what the
-    spectrum describes.
+    Waves within a quarter of an e-fold of the wavevector pin a front together. Waves further apart
+    pin it separately, each with its part of the variance, as at weaker disorder. `kind` says what
+    the spectrum describes.
 
     Examples
     --------
@@ -219,7 +239,7 @@ def model_error(
     breadth: ArrayLike,
     model: tuple[float, float],
 ) -> Array:
-    """Standard error of k by errors of ln k and of ln g."""
+    """Standard error of k due to the model errors of ln k and ln g."""
     factor, length = model
     value = law_value(coefficients, disorder, size, breadth)
     return np.hypot(factor * value, length * law_slope(coefficients, disorder, size, breadth))
@@ -253,10 +273,10 @@ def pinning_factor(
     size : float
         g, length of the spring over the Larkin length; infinity for the infinite contact.
     kind : {"roughness", "chemical"}, optional
-        What makes w_loc vary; decides its mean, and by that the negative share alone.
+        Cause of the variations of w_loc. It decides the mean of w_loc, and so `negative_share`.
     breadth : float, optional
-        That of the spectrum, as :func:`crackfront.analysis.law.spectral_breadth`. By default k is
-        that of a typical one, and the interval covers the others.
+        Breadth of the spectrum, by :func:`crackfront.analysis.law.spectral_breadth`. By default k
+        is for a typical spectrum, and the interval covers all breadths.
 
     Returns
     -------
@@ -266,16 +286,16 @@ def pinning_factor(
     Raises
     ------
     TypeError
-        If one of them is no number.
+        If `w_rms`, `size` or `breadth` is not a number.
     ValueError
-        If w_rms does not lie between 0 and 2, where e_el is w_int, the size is not positive, the
-        breadth is below 0.25, or there is no such kind.
+        If `w_rms` is not between 0 and 2, `size` is not positive, `breadth` is below 0.25, or
+        `kind` is unknown.
 
     Examples
     --------
     >>> import crackfront as cf
-    >>> found = cf.pinning_factor(0.4, float("inf"))
-    >>> 2.3 < found.factor.value < 3.2
+    >>> infinite = cf.pinning_factor(0.4, float("inf"))
+    >>> 2.3 < infinite.factor.value < 3.2
     True
     """
     refuse_no_numbers(w_rms=w_rms, size=size)
@@ -290,12 +310,13 @@ def pinning_factor(
         refuse_no_numbers(breadth=breadth)
         if not _NARROWEST <= breadth < math.inf:
             raise ValueError(
-                f"breadth is {breadth:g}; it must be finite and at least {_NARROWEST:g}, that of a "
-                "single wavelength"
+                f"breadth is {breadth:g}; it must be finite and at least {_NARROWEST:g}, the "
+                "breadth of a single wavelength"
             )
     factors = pinning_factors(w_rms, size, breadth)
-    place = w_rms, size, TYPICAL_BREADTH if breadth is None else breadth
-    sentences = _sentences_outside(shipped_law(), *place)
+    sentences = _sentences_outside(
+        shipped_law(), w_rms, size, TYPICAL_BREADTH if breadth is None else breadth
+    )
     return PinningFactor(
         factor=factors.factor.each(float),
         statistical=float(factors.statistical),
@@ -309,22 +330,22 @@ def pinning_factor(
 def pinning_factors(
     w_rms: ArrayLike, size: ArrayLike, breadth: ArrayLike | None = None
 ) -> PinningFactors:
-    """Factors k of straight fronts, by the measured law, for arrays that broadcast.
+    """Factors k of straight fronts, by the measured law; arrays broadcast.
 
     Parameters
     ----------
     w_rms : array
         Rms of the local work of adhesion, between 0 and 2. (Units: w_int)
     size : array
-        g, as of :func:`pinning_factor`.
+        g, as for :func:`pinning_factor`.
     breadth : array, optional
-        That of the spectrum. By default k is that of a typical one, and the intervals cover the
-        others.
+        Breadth of the spectrum. By default k is for a typical spectrum, and the intervals cover
+        all breadths.
 
     Returns
     -------
     PinningFactors
-        k with its errors; NaN where a number is NaN.
+        k with its errors; NaN if an argument is NaN.
 
     Examples
     --------
@@ -339,7 +360,7 @@ def pinning_factors(
     model = model_error(law.coefficients, s, g, beta, (law.model_factor, law.model_length))
     if breadth is None:
         narrow, broad = (law_value(law.coefficients, s, g, end) for end in law.breadth)
-        # That of a uniform distribution between k of the narrowest and of the broadest spectrum.
+        # Uniform distribution between k of the narrowest and of the broadest spectrum.
         model = np.hypot(model, (broad - narrow) / math.sqrt(12))
     statistical = _statistical_error(
         law,
@@ -364,9 +385,9 @@ def mean_w_loc(kind: FieldKind, elastic_energy: float) -> float:
 def infinite_ratio(
     w_rms: ArrayLike, size: ArrayLike, breadth: ArrayLike = TYPICAL_BREADTH
 ) -> Estimate:
-    """Ratios of k in the infinite contact to k at a size, by the law; they extrapolate measured k.
+    """Ratios of k in the infinite contact to k at a size, by the law, to extrapolate measured k.
 
-    Arguments are as of :func:`pinning_factors`. Below the smallest size of the law it is NaN.
+    Arguments are as for :func:`pinning_factors`. NaN below the smallest size of the law.
 
     Examples
     --------
@@ -390,14 +411,14 @@ def infinite_ratio(
 
 
 def _statistical_error(law: Law, function: Callable[[Array, Array], Array]) -> Array:
-    """Standard errors of a function of the coefficients and the exponent by their covariance.
+    """Standard errors of a function of the coefficients and the exponent, by their covariance.
 
-    The last axis of its values is that of the numbers in its arguments, one for each trial.
+    The function gets an array of trials for each number; its values have the trials as last axis.
     """
-    place = np.array([*law.coefficients, FINITE_SIZE_EXPONENT])
-    steps = 1e-5 * np.maximum(np.abs(place), 1e-3)
-    # One trial as fitted, then one for every coefficient with this one shifted.
-    trials = place[:, None] + np.diag(steps, k=1)[:-1]
+    fitted = np.array([*law.coefficients, FINITE_SIZE_EXPONENT])
+    steps = 1e-5 * np.maximum(np.abs(fitted), 1e-3)
+    # The first trial is the fit; each of the others shifts one number.
+    trials = fitted[:, None] + np.diag(steps, k=1)[:-1]
     values = function(trials[:-1], trials[-1])
     gradient = (values[..., 1:] - values[..., :1]) / steps
     variance = np.sum((gradient @ np.array(law.covariance)) * gradient, axis=-1)
@@ -405,22 +426,22 @@ def _statistical_error(law: Law, function: Callable[[Array, Array], Array]) -> A
 
 
 class _Octaves(NamedTuple):
-    """How many octaves numbers lie outside of the measured ranges, arrays; zero inside.
+    """Distances from the measured ranges in octaves, zero inside.
 
-    Weak disorder and large sizes are safe: the law has its limits there.
+    Weak disorder and large sizes do not count, because the law has the right limits there.
     """
 
     strong: Array
-    """By how much the disorder is above the strongest."""
+    """Disorder above the strongest."""
     small: Array
-    """By how much the size is below the smallest."""
+    """Size below the smallest."""
     broad: Array
     narrow: Array
-    """By how much the spectrum is broader, or narrower, than any; zero if it is little."""
+    """Breadth above the broadest and below the narrowest spectrum; zero within a tolerance."""
 
 
 def _octaves_outside(law: Law, w_rms: ArrayLike, size: ArrayLike, breadth: ArrayLike) -> _Octaves:
-    """How far numbers lie outside of the measured ranges."""
+    """Distances of arguments from the measured ranges."""
     narrowest, broadest = law.breadth
 
     def octaves(ratio: ArrayLike, allowed: float = 1.0) -> Array:
@@ -429,20 +450,20 @@ def _octaves_outside(law: Law, w_rms: ArrayLike, size: ArrayLike, breadth: Array
     return _Octaves(
         strong=octaves(np.asarray(w_rms) / law.disorder[1]),
         small=octaves(law.size[0] / np.asarray(size)),
-        broad=octaves(np.asarray(breadth) / broadest, _BROADER),
-        narrow=octaves(narrowest / np.asarray(breadth), _BROADER),
+        broad=octaves(np.asarray(breadth) / broadest, _BREADTH_TOLERANCE),
+        narrow=octaves(narrowest / np.asarray(breadth), _BREADTH_TOLERANCE),
     )
 
 
 def _error_outside(octaves: _Octaves) -> Array:
-    """Additional relative errors outside of the measured ranges."""
+    """Additional relative errors outside the measured ranges."""
     strong, broad, narrow = 0.25 * octaves.strong, 0.1 * octaves.broad, 0.1 * octaves.narrow
     small = np.where(octaves.small > 0, 0.5, 0.0)
     return np.asarray(np.sqrt(strong**2 + small**2 + broad**2 + narrow**2))
 
 
 def _sentences_outside(law: Law, w_rms: float, size: float, breadth: float) -> Iterator[str]:
-    """A sentence for each number outside of the measured ranges."""
+    """A sentence for each argument outside the measured ranges."""
     octaves = _octaves_outside(law, w_rms, size, breadth)
     extrapolated = ": k is extrapolated and its interval widened"
     if octaves.strong > 0:

@@ -41,7 +41,7 @@ class CellEstimates:
 class LawEstimates:
     """Estimates from the amplitudes in the range, for every spectrum or pooled.
 
-    Where k is constant the exponent is 2 and the disorder slope 0; by the law the midpoint slope is
+    If k is constant, the exponent is 2 and the disorder slope 0. By the law the midpoint slope is
     1 for roughness and 0 for a chemical field.
     """
 
@@ -55,7 +55,7 @@ class LawEstimates:
 
 @dataclass(frozen=True, slots=True)
 class ForceDifference:
-    """How far the experimenter's estimates lie from w_appr and w_retr, in the range."""
+    """Differences of the experimenter's estimates from w_appr and w_retr, in the range."""
 
     approach: Array = variable("mean of w_appr from force - w_appr", ADHESION)
     approach_largest: Array = variable("largest |w_appr from force - w_appr|", ADHESION)
@@ -67,7 +67,7 @@ class ForceDifference:
 class SweepFit:
     r"""Fit of :math:`w_{retr,appr} = w_{int} - e_{el} \pm k e_{el}` to a sweep.
 
-    What each number means stands in :data:`crackfront.analysis.sweep_fit.FIT_DEFINITION`;
+    :data:`crackfront.analysis.sweep_fit.FIT_DEFINITION` defines the numbers, and
     :func:`fit_columns` gives all arrays with dimensions, units and long names.
     """
 
@@ -79,22 +79,22 @@ class SweepFit:
     """Range of requested e_el, ends included. (Units: w_int)"""
     n_bootstrap: int
     seed: int
-    """Bootstrap samples and the seed of their draws."""
+    """Number of bootstrap samples, and the seed of their random numbers."""
     uncorrelated: bool
-    """Whether the sites of straight fronts are independent of each other."""
+    """Whether the sites of straight fronts are statistically independent."""
     cells: CellEstimates
     """Means at every spectrum and amplitude, (n_spectrum, n_amplitude)."""
     spectra: LawEstimates
     pooled: LawEstimates
     """The fit of every spectrum, (n_spectrum,), and of all together, ()."""
     from_force: ForceDifference
-    """How far the experimenter's estimates differ, (n_spectrum,)."""
+    """Differences of the experimenter's estimates, (n_spectrum,)."""
     in_range: NDArray[np.bool_] = variable("amplitude is in the fit", "1", AMPLITUDE)
     n_realisation: Counts = variable("realisations with a value in the range", "1", SPECTRUM)
     n_failed: Counts = variable("simulations without a value in the range", "1", SPECTRUM)
     midpoint_largest: Array = variable("largest deviation of a midpoint in standard errors", "1")
     midpoint_probability: Array = variable("probability of that deviation among all cells", "1")
-    """Of any cell in the range, by Student's t and Bonferroni."""
+    """By Student's t, with Bonferroni's correction for the number of cells in the range."""
     size_slope: Estimate = variable(_SIZE_SLOPE, "1", AMPLITUDE)
     pooled_size_slope: Estimate = variable(_SIZE_SLOPE, "1")
     k_0: Estimate = variable("k of weak disorder in the infinite contact, by the law", "1")
@@ -103,10 +103,10 @@ class SweepFit:
 
 
 def fit_columns(fit: SweepFit) -> Iterator[tuple[Variable, NDArray[Any]]]:
-    """Arrays of a fit; those of estimates have the fields of one along the dimension `bound`.
+    """Variables and arrays of a fit for a file.
 
-    Names are `exponent`, the same with the prefix `pooled_`, means over realisations with the
-    prefix `cell_`, and so on.
+    An estimate has its four numbers along the dimension `bound`. The prefix `pooled_` marks pooled
+    results, `cell_` means over realisations and `from_force_` the experimenter's estimates.
     """
     yield _BOUND, np.array([item.name for item in fields(Estimate)])
     for item, values in _columns(fit.table):
@@ -119,9 +119,9 @@ def fit_columns(fit: SweepFit) -> Iterator[tuple[Variable, NDArray[Any]]]:
     yield from _columns(fit.from_force, "from_force_", SPECTRUM)
 
 
-def _columns(record: Any, prefix: str = "", *along: str) -> Iterator[tuple[Variable, NDArray[Any]]]:
-    """Columns of a record, their names with a prefix, along dimensions that all of them have."""
-    for item in variables(type(record), *along):
+def _columns(record: Any, prefix: str = "", *dims: str) -> Iterator[tuple[Variable, NDArray[Any]]]:
+    """Variables and arrays of one record; `dims` are dimensions that all its fields share."""
+    for item in variables(type(record), *dims):
         entry, column = getattr(record, item.name), replace(item, name=prefix + item.name)
         if isinstance(entry, Estimate):
             column = replace(column, dims=(*column.dims, *_BOUND.dims))

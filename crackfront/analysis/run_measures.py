@@ -1,4 +1,4 @@
-"""What is measured on the tile of a simulation, and what the simulation cost."""
+"""Measures of the tile of a simulation, and the cost of the simulation."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from crackfront.core.variables import ADHESION, variable
 
 @dataclass(frozen=True)
 class RunMeasures:
-    """What is measured on the tile of a simulation, and what the simulation cost."""
+    """Measures of the tile of a simulation, and the cost of the simulation."""
 
     e_el: float = variable("energy of full conformity measured on the tile", ADHESION)
     w_rms: float = variable("rms of the local work of adhesion measured on the tile", ADHESION)

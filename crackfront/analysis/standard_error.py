@@ -9,10 +9,10 @@ import numpy as np
 from crackfront.core.arrays import Array
 
 FEWEST_STATES = 3
-"""Steady states from which a standard error is computed."""
+"""Smallest number of steady states that gives a standard error."""
 
-_DEPTHS = 3.0
-"""Distance between independent states, in rms deviations of a front; docs/model.md measures it."""
+_INDEPENDENT_DISTANCE = 3.0
+"""Distance between independent states (Units: rms roughness of the front); see docs/model.md."""
 
 
 def standard_error(
@@ -28,6 +28,6 @@ def standard_error(
     """
     if values.size < FEWEST_STATES:
         return math.inf
-    distance = max(correlation_length, _DEPTHS * float(np.mean(roughness)))
+    distance = max(correlation_length, _INDEPENDENT_DISTANCE * float(np.mean(roughness)))
     independent = min(values.size, 1 + np.ptp(radius) / distance)
     return float(np.std(values, ddof=1) / math.sqrt(independent))

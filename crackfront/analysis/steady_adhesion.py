@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,10 +21,10 @@ from crackfront.core.variables import ADHESION, LATERAL, variable
 Rows = NDArray[np.int64]
 
 Branches = tuple[Rows, Rows]
-"""Indices, in a record, of the states of the approach and of the retraction."""
+"""Indices of the states of the approach and of the retraction in a record."""
 
 _ROUND_OFF = 1e-5
-"""Difference below which two places count as equal, relative to the period."""
+"""Relative difference below which two positions are equal. (Units: period of the tile)"""
 
 STEADY_DEFINITION = (
     "w_appr and w_retr are means of the apparent work of adhesion, <a G> / <a> with the mean over "
@@ -43,14 +43,14 @@ STEADY_DEFINITION = (
     "of the differences between each state of the approach and the state of the retraction with "
     "the closest mean radius: variations that both branches share do not add to it."
 )
-"""What `w_appr` and `w_retr` mean; stored in every file that holds them."""
+"""What `w_appr` and `w_retr` mean; an attribute of every file with these variables."""
 
 
 @dataclass(frozen=True)
 class SteadyMeasures:
     """Apparent work of adhesion of the two branches, as :data:`STEADY_DEFINITION` says.
 
-    NaN where a record holds no steady window.
+    NaN for a record without a steady window.
     """
 
     w_appr: float = variable("apparent work of adhesion in steady approach", ADHESION)
@@ -72,21 +72,17 @@ class SteadyMeasures:
 
 @dataclass(frozen=True)
 class SteadyAdhesion(SteadyMeasures):
-    """The measures of one record, and a sentence that says why it has none, else empty."""
+    """The measures of one record, and a sentence that says why they are NaN, else empty."""
 
     sentence: str = ""
 
 
 def steady_adhesion(record: CycleRecord, correlation_length: float) -> SteadyAdhesion:
-    """Mean apparent work of adhesion over the steady part of each branch, or why there is none.
+    """Mean apparent work of adhesion over the steady part of each branch of a sphere.
 
-    A branch counts as steady once every site has travelled the correlation length, that of w_loc
-    (Units: reduced lateral length). ValueError if it is not positive and finite.
+    A branch is steady once every site has travelled the correlation length of w_loc (Units:
+    reduced lateral length).
     """
-    if not (math.isfinite(correlation_length) and correlation_length > 0):
-        raise ValueError(
-            f"correlation length is {correlation_length}; it must be positive and finite"
-        )
     states, radius = record.states, record.states.mean_radius
     branches, window, sentence = steady_branches(states, radius, "radii", correlation_length)
     if sentence:
@@ -108,20 +104,20 @@ def steady_branches(
     correlation_length: float,
     period: float = math.inf,
 ) -> tuple[Branches, tuple[float, float], str]:
-    """Steady states of both branches, the range of places they share, and why they are too few.
+    """Steady states of both branches, the window of positions that they share, and a sentence.
 
-    Under loads that turn several times a branch is one way without a turn, so that no place is
-    passed twice or left out: of all pairs of ways that which shares the most states.
+    The sentence says why there are too few states, else it is empty. `place` has the position of
+    each state, `name` its name in the plural. If the load turns several times, a branch is one
+    passage without a turn: the pair of passages that share the most states.
     """
     steady = states.least_travel >= correlation_length
-    forward, back = (
-        _ways(np.flatnonzero(steady & (sign * states.direction > 0))) for sign in (1, -1)
-    )
-    pairs: list[Branches] = list(itertools.product(forward, back))
+    forward = _passages(np.flatnonzero(steady & (states.direction > 0)))
+    back = _passages(np.flatnonzero(steady & (states.direction < 0)))
 
     def n_shared(pair: Branches) -> int:
         return min(branch.size for branch in shared_window(place, pair, period)[0])
 
+    pairs: list[Branches] = list(itertools.product(forward, back))
     branches = max(pairs, key=n_shared) if len(pairs) > 1 else pairs[0]
     approach, retraction = branches
     deeper = "penetrate deeper" if isinstance(states, ContactState) else "load further"
@@ -137,8 +133,8 @@ def steady_branches(
     return branches, window, ""
 
 
-def _ways(states: Rows) -> list[Rows]:
-    """States of one direction, apart where others are between them."""
+def _passages(states: Rows) -> list[Rows]:
+    """Split the states of one direction at every turn of the load."""
     return np.split(states, np.flatnonzero(np.diff(states) > 1) + 1)
 
 
@@ -150,28 +146,28 @@ def shared_window(
     Parameters
     ----------
     place : (n_state,) array
-        Mean radius or place of the front. (Units: length)
+        Mean radius or position of the front. (Units: length)
     steady : two arrays of int
         Steady states of approach and of retraction, one or more each.
     period : float, optional
-        Largest width of the overlap, of which the end at larger places stays. (Units: as place)
+        Largest width of the overlap, which is cut at smaller positions. (Units: as `place`)
     """
     highest = float(min(place[branch].max() for branch in steady))
     lowest = float(max(place[branch].min() for branch in steady))
-    # The last places of at most one period, which holds each state once.
+    # At most one period, so that each position of the tile counts once.
     lowest = max(lowest, highest - (1 - _ROUND_OFF) * period)
     return within(place, steady, (lowest, highest)), (lowest, highest)
 
 
 def within(place: Array, branches: Branches, window: tuple[float, float]) -> Branches:
-    """States of both branches whose place lies in a window, its ends included."""
+    """States of both branches at positions in a window, its ends included."""
     inside = (place >= window[0]) & (place <= window[1])
     approach, retraction = branches
     return approach[inside[approach]], retraction[inside[retraction]]
 
 
 def branch_means(values: Array, branches: Branches) -> tuple[float, float]:
-    """Means of both branches, states of equal weight; of works of adhesion w_appr and w_retr."""
+    """Means over the states of both branches, with equal weights."""
     approach, retraction = branches
     return float(np.mean(values[approach])), float(np.mean(values[retraction]))
 
@@ -179,9 +175,9 @@ def branch_means(values: Array, branches: Branches) -> tuple[float, float]:
 def passing_adhesion(
     record: CycleRecord, correlation_length: float, mean: float, period: float
 ) -> SteadyAdhesion:
-    """As :func:`steady_adhesion` for a straight front under any loads, over a period at most.
+    """As :func:`steady_adhesion`, for a straight front under any loads and over at most a period.
 
-    The mean of w_loc is in w_int, the period that of the tile along the motion.
+    The mean of w_loc is in w_int; the period is the side of the tile along the motion.
     """
     states = record.states
     columns = mean - states.pinning_force, states.mean_position, states.rms_position
@@ -231,9 +227,8 @@ def period_adhesion(
     correlation length in reduced lateral lengths.
     """
     states = record.states
-    approach, retraction = (
-        np.flatnonzero(sign * states.direction > 0)[-n_period:] for sign in (1, -1)
-    )
+    approach = np.flatnonzero(states.direction > 0)[-n_period:]
+    retraction = np.flatnonzero(states.direction < 0)[-n_period:]
     branches = approach, retraction
     if min(approach.size, retraction.size) < n_period:
         counts = approach.size, retraction.size
@@ -248,14 +243,17 @@ def _measures(
     correlation_length: float,
     from_force: Sequence[float] | None = None,
 ) -> SteadyAdhesion:
-    """Means of work of adhesion, place and rms of the front over the states of both branches."""
+    """Measures of a record from the states of both branches.
+
+    The columns are work of adhesion, position and rms roughness of all states.
+    """
     values, place, roughness = columns
     works = branch_means(values, branches)
     errors = [
         standard_error(values[branch], place[branch], roughness[branch], correlation_length)
         for branch in branches
     ]
-    # Where no curve is fitted to the force, the springs' force is that of the works of adhesion.
+    # The force of a straight front's springs gives the same works of adhesion.
     (w_appr, w_retr), from_force = works, from_force or works
     return SteadyAdhesion(
         w_appr=w_appr,
@@ -279,7 +277,7 @@ def _measures(
 def _error_of_difference(
     states: ContactState[Array], branches: Branches, correlation_length: float
 ) -> float:
-    """Standard error of the hysteresis, from states of both branches that are closest."""
+    """Standard error of the hysteresis, from differences of states at the closest radii."""
     radii = [states.mean_radius[branch] for branch in branches]
     approach, retraction = (states.apparent_work_of_adhesion[branch] for branch in branches)
     closest = np.argmin(np.abs(radii[0][:, np.newaxis] - radii[1]), axis=1)
@@ -296,6 +294,8 @@ def _adhesion_from_force(radius: Array, force: Array) -> float:
 
 
 def _no_value(counts: tuple[int, int], sentence: str) -> SteadyAdhesion:
-    """Measures without values, with the sentence that says why."""
-    nan = math.nan
-    return SteadyAdhesion(*(nan,) * 10, *counts, nan, nan, nan, sentence)
+    """Measures that are NaN, with a sentence that says why."""
+    values = {item.name: math.nan for item in fields(SteadyMeasures)}
+    n_approach, n_retraction = counts
+    values |= {"n_approach": n_approach, "n_retraction": n_retraction}
+    return SteadyAdhesion(**values, sentence=sentence)  # type: ignore[arg-type]

@@ -30,13 +30,13 @@ from crackfront.core.adhesion import FieldKind
 from crackfront.core.arrays import Array
 
 FEWEST_BOOTSTRAP = 100
-"""Bootstrap samples below which a standard error is itself mostly noise."""
+"""Smallest number of bootstrap samples; with fewer, standard errors are mostly noise."""
 
 COUNTS_AT_ONCE = 2**23
-"""Counts of bootstrap samples in memory at once; few realisations are drawn in one go."""
+"""Largest number of bootstrap counts in memory at once: 64 MB."""
 
 _SAME_SIZE = 1e-6
-"""Difference of the logarithm of lengths, below which spectra have no different size."""
+"""Difference of log2 of the correlation lengths up to which two spectra have the same size."""
 
 FIT_DEFINITION = (
     "k of one simulation is (w_retr - w_appr) / (2 e_el) with e_el measured on its tile. k of a "
@@ -64,11 +64,11 @@ FIT_DEFINITION = (
     "too narrow for the few realisations there are. They cover the scatter between realisations, "
     "not the differences between spectra."
 )
-"""What the numbers of a fit mean; stored in every file that holds them."""
+"""What the numbers of a fit mean; an attribute of every file with them."""
 
 
 class _Samples(NamedTuple):
-    """What one simulation contributes, (..., n_amplitude, n_realisation); or means of it."""
+    """Quantities of every simulation, (..., n_amplitude, n_realisation), or means of them."""
 
     energy: Array
     rms: Array
@@ -91,19 +91,37 @@ def fit_sweep(
 ) -> SweepFit:
     """Fit k, the exponent, the midpoint and the trends of k, with intervals.
 
-    The fit uses the amplitudes between two requested e_el, ends included (Units: w_int). The point
-    estimates do not depend on the seed of the bootstrap. The midpoint should be w_int - e_el for
-    roughness, w_int for a chemical field. With `uncorrelated`, the sites of straight fronts
-    are independent: the law's limit of weak disorder, whatever the amplitude. Spectra are
-    fitted as `watched` yields their numbers, which may show how far this is.
+    :data:`FIT_DEFINITION` defines the estimates. Estimates that the data do not determine are NaN,
+    and :func:`crackfront.analysis.fit_text.fit_notes` says why.
 
-    Estimates are as :data:`FIT_DEFINITION` says. What the data do not give is NaN and has a
-    sentence in :func:`crackfront.analysis.fit_text.fit_notes`. ValueError if the range is empty,
-    holds no amplitude or no simulation with a value, or there are too few bootstrap samples.
+    Parameters
+    ----------
+    table : SweepTable
+        Works of adhesion of all simulations.
+    lowest_elastic_energy, highest_elastic_energy : float
+        Range of requested e_el, ends included. (Units: w_int)
+    n_bootstrap : int, optional
+        Bootstrap samples, :data:`FEWEST_BOOTSTRAP` or more.
+    seed : int, optional
+        Seed of the bootstrap, on which point estimates do not depend.
+    kind : {"roughness", "chemical"}, optional
+        The midpoint should be w_int - e_el for roughness, w_int for a chemical field.
+    uncorrelated : bool, optional
+        Whether the sites of straight fronts are independent: the law's limit of weak disorder.
+    watched : callable, optional
+        Wraps the numbers of the spectra, for example in a progress bar.
+
+    Returns
+    -------
+    SweepFit
+        Estimates for every spectrum and amplitude, every spectrum, and all spectra together.
+
+    Raises
+    ------
+    ValueError
+        If no simulation in the range has a value.
     """
     in_range = _amplitudes_in_range(table, lowest_elastic_energy, highest_elastic_energy)
-    if n_bootstrap < FEWEST_BOOTSTRAP:
-        raise ValueError(f"n_bootstrap is {n_bootstrap}; use {FEWEST_BOOTSTRAP} or more")
     samples = _samples(table)
     chosen = _Samples(*(values[:, in_range] for values in samples))
     n_realisation = np.count_nonzero(np.any(np.isfinite(chosen.factor), axis=1), axis=-1)
@@ -141,28 +159,19 @@ def fit_sweep(
 
 
 def _amplitudes_in_range(table: SweepTable, lowest: float, highest: float) -> NDArray[np.bool_]:
-    """Amplitudes within the range, which must hold at least one value."""
-    if not 0 < lowest <= highest:
-        raise ValueError(
-            f"range of e_el is {lowest} to {highest} w_int; give two positive ends, the lower first"
-        )
+    """Amplitudes in a range of requested e_el; ValueError if no simulation there has a value."""
     requested = table.amplitude
     in_range = (requested >= lowest * (1 - 1e-9)) & (requested <= highest * (1 + 1e-9))
-    if not np.any(in_range):
-        raise ValueError(
-            f"no amplitude lies in the range {lowest} to {highest} w_int; the sweep has e_el = "
-            f"{', '.join(f'{value:.4g}' for value in requested)}, so widen the range"
-        )
     if not np.any(table.finite[:, in_range]):
         raise ValueError(
-            f"none of the {table.finite[:, in_range].size} simulations with e_el from {lowest} to "
-            f"{highest} w_int has a value; see their status in the dataset"
+            f"all {table.finite[:, in_range].size} simulations with e_el from {lowest} to "
+            f"{highest} w_int failed; see their status in the dataset"
         )
     return in_range
 
 
 def _samples(table: SweepTable) -> _Samples:
-    """What every simulation contributes, NaN where it failed."""
+    """Quantities of every simulation, NaN if it failed."""
     finite = table.finite
     energy = np.where(finite, table.e_el, np.nan)
     w_appr, w_retr = np.where(finite, (table.w_appr, table.w_retr), np.nan)
@@ -176,8 +185,8 @@ def _samples(table: SweepTable) -> _Samples:
     )
 
 
-def _cell_estimates(samples: _Samples, lowering: float, law: SweepLaw) -> CellEstimates:
-    """Means over the realisations where e_el lowers the mean of w_loc, as a multiple of e_el."""
+def _cell_estimates(samples: _Samples, midpoint_slope: float, law: SweepLaw) -> CellEstimates:
+    """Means over the realisations; by the law the midpoint is w_int - midpoint_slope e_el."""
     factor, count = mean_estimate(samples.factor)
     law_factor, size = law.cells()
     return CellEstimates(
@@ -186,7 +195,7 @@ def _cell_estimates(samples: _Samples, lowering: float, law: SweepLaw) -> CellEs
         w_rms=mean_estimate(samples.rms)[0].value,
         hysteresis=mean_estimate(samples.hysteresis)[0],
         factor=factor,
-        midpoint_deviation=mean_estimate(lowering * samples.energy - samples.depression)[0],
+        midpoint_deviation=mean_estimate(midpoint_slope * samples.energy - samples.depression)[0],
         size=size,
         law_factor=law_factor,
         infinite_factor=law.infinite(factor, size),
@@ -200,30 +209,29 @@ def _fit_spectra(
     seed: int,
     watched: Callable[[list[int]], Iterable[int]],
 ) -> tuple[list[Estimate], Array]:
-    """Estimates of every statistic for the spectra, and their (statistic, spectrum) weights."""
+    """Estimates of the fields of LawEstimates for the spectra, and (field, spectrum) weights."""
     shape = len(fields(LawEstimates)), freedom.size
     values, errors, weights = np.empty(shape), np.full(shape, np.nan), np.empty(shape)
     streams = np.random.SeedSequence(seed).spawn(freedom.size)
     for index in watched([*range(freedom.size)]):
-        own = _Samples(*(quantity[index] for quantity in samples))
-        present = np.any(np.isfinite(own.factor), axis=0)
-        own = _Samples(*(quantity[:, present] for quantity in own))
+        present = np.any(np.isfinite(samples.factor[index]), axis=0)
+        spectrum = _Samples(*(quantity[index][:, present] for quantity in samples))
         whole = np.ones((1, np.count_nonzero(present)))
-        count = np.count_nonzero(np.isfinite(own.factor), axis=1)
+        count = np.count_nonzero(np.isfinite(spectrum.factor), axis=1)
         # A cell of one realisation has no scatter, which the slopes' intervals would lack.
         sloped = count >= min(2, np.max(count, initial=0))
-        value, weight = _statistics(_means(own, whole), sloped)
+        value, weight = _statistics(_means(spectrum, whole), sloped)
         values[:, index], weights[:, index] = value[:, 0], weight[:, 0]
         if freedom[index] > 0:
             rng = np.random.default_rng(streams[index])
-            drawn, _ = _statistics(_resampled(own, n_bootstrap, rng), sloped)
+            drawn, _ = _statistics(_resampled(spectrum, n_bootstrap, rng), sloped)
             errors[:, index] = scatter(drawn)
     estimates = [student_estimate(*row, freedom) for row in zip(values, errors, strict=True)]
     return estimates, weights
 
 
 def _resampled(samples: _Samples, n_bootstrap: int, rng: np.random.Generator) -> _Samples:
-    """Means of bootstrap samples, of which a bounded number of counts is in memory at once."""
+    """Means of bootstrap samples, in parts that fit into memory."""
     n_realisation = samples.factor.shape[1]
     at_once = max(1, COUNTS_AT_ONCE // n_realisation)
     sizes = [min(at_once, n_bootstrap - first) for first in range(0, n_bootstrap, at_once)]
@@ -232,24 +240,24 @@ def _resampled(samples: _Samples, n_bootstrap: int, rng: np.random.Generator) ->
 
 
 def _means(samples: _Samples, counts: Array) -> _Samples:
-    """Means over realisations of every bootstrap sample, (n_sample, n_amplitude); NaN of none."""
+    """Means over the realisations of every bootstrap sample, (n_sample, n_amplitude)."""
     means = []
     for quantity in samples:
         finite = np.isfinite(quantity)
-        known = np.where(finite, quantity, 0.0)
-        means.append(ratio(counts @ known.T, counts @ finite.T))
+        values = np.where(finite, quantity, 0.0)
+        means.append(ratio(counts @ values.T, counts @ finite.T))
     return _Samples(*means)
 
 
 def _statistics(means: _Samples, sloped: NDArray[np.bool_]) -> tuple[Array, Array]:
-    """Entries of LawEstimates for every bootstrap sample, and weights, (n_entry, n_sample).
+    """Fields of LawEstimates for every bootstrap sample, and weights, (n_field, n_sample).
 
-    The slopes are those of some amplitudes.
+    Slopes use only the amplitudes that are `sloped`.
     """
     doublings = np.where(sloped, np.log2(means.rms), np.nan)
     positive = means.hysteresis > 0
     logarithm = np.log2(means.hysteresis, where=positive, out=np.full(positive.shape, np.nan))
-    energy, one = finite_sum(means.energy), np.ones(positive.shape[0])
+    energy, equal = finite_sum(means.energy), np.ones(positive.shape[0])
     exponent, spread = slope(doublings, logarithm)
     disorder_slope, spread_of_factors = slope(doublings, means.factor)
     values = (
@@ -260,7 +268,7 @@ def _statistics(means: _Samples, sloped: NDArray[np.bool_]) -> tuple[Array, Arra
         ratio(finite_sum(means.depression), energy),
         disorder_slope,
     )
-    weights = (one, energy, one, spread, energy, spread_of_factors)
+    weights = (equal, energy, equal, spread, energy, spread_of_factors)
     return np.array(values), np.where(np.isfinite(values), weights, 0.0)
 
 
@@ -282,7 +290,7 @@ def _size_slopes(table: SweepTable, cells: CellEstimates) -> Estimate:
         _size_slope(table, cells.factor.at((slice(None), index)), cells.count[:, index] - 1)
         for index in range(table.amplitude.size)
     ]
-    return Estimate(*np.transpose([astuple(one) for one in slopes]))
+    return Estimate(*np.transpose([astuple(estimate) for estimate in slopes]))
 
 
 def _size_slope(table: SweepTable, factor: Estimate, freedom: NDArray[np.int64]) -> Estimate:
@@ -291,7 +299,7 @@ def _size_slope(table: SweepTable, factor: Estimate, freedom: NDArray[np.int64])
     deviation = np.zeros(doublings.size)
     for index in np.unique(table.family):
         family = (table.family == index) & np.isfinite(factor.value)
-        # Equal lengths may differ by a rounding.
+        # Equal lengths may differ by round-off.
         if np.any(family) and np.ptp(doublings[family]) > _SAME_SIZE:
             deviation[family] = doublings[family] - np.mean(doublings[family])
     spread = np.sum(deviation**2)
@@ -300,10 +308,12 @@ def _size_slope(table: SweepTable, factor: Estimate, freedom: NDArray[np.int64])
 
 def _force_difference(table: SweepTable, in_range: NDArray[np.bool_]) -> ForceDifference:
     """Differences of the experimenter's estimates over the simulations in the range."""
-    approach, retraction = (
-        one[:, in_range].reshape(table.spectrum.size, -1)
-        for one in (table.w_appr_from_force - table.w_appr, table.w_retr_from_force - table.w_retr)
+    shape = table.spectrum.size, -1
+    approach = (table.w_appr_from_force - table.w_appr)[:, in_range].reshape(shape)
+    retraction = (table.w_retr_from_force - table.w_retr)[:, in_range].reshape(shape)
+    return ForceDifference(
+        approach=finite_mean(approach),
+        approach_largest=np.fmax.reduce(np.abs(approach), axis=-1),  # ignores NaN
+        retraction=finite_mean(retraction),
+        retraction_largest=np.fmax.reduce(np.abs(retraction), axis=-1),
     )
-    # The larger of a number and NaN is the number.
-    largest = [np.fmax.reduce(np.abs(one), axis=-1) for one in (approach, retraction)]
-    return ForceDifference(finite_mean(approach), largest[0], finite_mean(retraction), largest[1])

@@ -23,21 +23,20 @@ from crackfront.core.arrays import Array
 LARGE = 1.0
 """Size g above which measured k are compared with the law."""
 
-_CURVE = 40
-"""Points of the curve of a spectrum."""
+_CURVE_POINTS = 40
+"""Points of the curve of k of a spectrum."""
 
 
 @dataclass(frozen=True, slots=True)
 class SweepLaw:
-    """The law at the spectra and amplitudes of a sweep, by the springs that hold its fronts."""
+    """The law at the spectra and amplitudes of a sweep."""
 
     table: SweepTable
     kind: FieldKind
     """What its spectra describe."""
     uncorrelated: bool = False
-    """Whether sites of straight fronts are independent of each other, the limit of weak disorder.
-
-    The amplitude then decides only the distance of the sites."""
+    """Whether the sites of straight fronts are statistically independent: the limit of weak
+    disorder, in which the amplitude only decides the distance of the sites."""
 
     @property
     def energy(self) -> Array:
@@ -54,19 +53,19 @@ class SweepLaw:
     def factors(self, index: int, energies: Array, supports: Array) -> tuple[Estimate, Array]:
         """Factors k of a spectrum and sizes g at arrays of e_el and of springs or contact radii.
 
-        They are NaN where a number is out of range, or nothing holds the edge of a sphere.
+        They are NaN if a number is out of range, or a sphere is too close to pull-off.
         """
         spectrum = self.table.shape_of(index)
         if not self.table.on_springs:
             return sphere_estimates(self.kind, spectrum, energies, supports)
-        known = (energies > 0) & (energies < 1) & (supports > 0) & (supports < math.inf)
-        w_rms = 2 * np.sqrt(np.where(known, energies, np.nan))
+        valid = (energies > 0) & (energies < 1) & (supports > 0) & (supports < math.inf)
+        w_rms = 2 * np.sqrt(np.where(valid, energies, np.nan))
         sizes = supports * w_rms**2 / larkin_length(self.kind, spectrum, 1.0)
         breadth = spectral_breadth(self.kind, spectrum)
         return pinning_factors(self._disorder(w_rms), sizes, breadth).factor, sizes
 
     def _disorder(self, w_rms: Array) -> Array:
-        """Disorder s of the law at some rms of w_loc."""
+        """Disorder s for the law, from the rms of w_loc."""
         return np.full(w_rms.shape, WEAKEST) if self.uncorrelated else w_rms
 
     def cells(self) -> tuple[Estimate, Array]:
@@ -77,18 +76,18 @@ class SweepLaw:
         return Estimate(*factors), np.stack([sizes for _, sizes in spectra])
 
     def curve(self, index: int) -> tuple[Array, Array]:
-        """Values of e_el and factors k of a spectrum between its amplitudes; empty without two.
+        """Values of e_el and factors k of a spectrum between its amplitudes.
 
-        Between amplitudes springs and radii are interpolated, in the logarithm of both. Where g is
-        below the sizes of the law k is NaN.
+        Both arrays are empty with fewer than two amplitudes. Springs and radii are interpolated
+        between amplitudes, on logarithmic axes. k is NaN if g is below the sizes of the law.
         """
         energies, supports = self.energy[index], self.support_lengths[index]
-        known = np.isfinite(energies) & np.isfinite(supports)
-        if np.count_nonzero(known) < 2:
+        finite = np.isfinite(energies) & np.isfinite(supports)
+        if np.count_nonzero(finite) < 2:
             return np.empty(0), np.empty(0)
-        order = np.argsort(energies[known])
-        places, lengths = np.log(energies[known][order]), np.log(supports[known][order])
-        between = np.linspace(places[0], places[-1], _CURVE)
+        order = np.argsort(energies[finite])
+        places, lengths = np.log(energies[finite][order]), np.log(supports[finite][order])
+        between = np.linspace(places[0], places[-1], _CURVE_POINTS)
         curve = np.exp(between)
         factor, sizes = self.factors(index, curve, np.exp(np.interp(between, places, lengths)))
         return curve, np.where(sizes >= shipped_law().size[0], factor.value, np.nan)
@@ -96,8 +95,8 @@ class SweepLaw:
     def infinite(self, factor: Estimate, size: Array) -> Estimate:
         """Measured k of every cell extrapolated to the infinite contact.
 
-        The gain is the ratio of the law's k in the infinite contact to that at the size. The
-        half-widths of the intervals of the measured k and of the gain are added in quadrature.
+        The measured k is multiplied by the law's ratio of k in the infinite contact to k at the
+        size. The half-widths of both intervals are added in quadrature.
         """
         shapes = map(self.table.shape_of, range(self.table.spectrum.size))
         breadth = np.array([spectral_breadth(self.kind, shape) for shape in shapes])[:, None]
@@ -109,10 +108,10 @@ class SweepLaw:
 
 
 def law_departure(factor: Estimate, law: Estimate, size: Array) -> tuple[int, float]:
-    """Number of cells with g above 1, and the rms of how far their k departs from the law's.
+    """Number of cells with g above 1, and the rms of the relative departure of their k.
 
-    The departure is relative to the law's k, and NaN where there is no such cell.
+    The rms is NaN without such a cell.
     """
-    apart = factor.value / law.value - 1
-    chosen = apart[np.isfinite(apart) & (np.nan_to_num(size) > LARGE)]
-    return chosen.size, float(np.sqrt(np.mean(chosen**2))) if chosen.size else math.nan
+    departure = factor.value / law.value - 1
+    large = departure[np.isfinite(departure) & (np.nan_to_num(size) > LARGE)]
+    return large.size, float(np.sqrt(np.mean(large**2))) if large.size else math.nan

@@ -12,19 +12,17 @@ from crackfront.analysis.run_measures import RunMeasures
 from crackfront.analysis.steady_adhesion import SteadyMeasures
 from crackfront.core.arrays import Array
 from crackfront.core.spectrum import SelfAffineSpectrum, Spectrum
-from crackfront.core.units import WORK_OF_ADHESION
-from crackfront.core.variables import ADHESION, FORCE, LATERAL, VERTICAL, variable, variables
+from crackfront.core.variables import ADHESION, FORCE, LATERAL, VERTICAL, variable
 
 SPECTRUM, AMPLITUDE, REALISATION = "spectrum", "amplitude", "realisation"
 """Dimensions of a sweep."""
 
 PLACE = SPECTRUM, AMPLITUDE, REALISATION
-"""Dimensions whose coordinates together identify one simulation of a sweep."""
+"""Dimensions whose coordinates identify one simulation of a sweep."""
 
-_MOST_OF_ADHESION = 100 * WORK_OF_ADHESION
-"""Work of adhesion, or energy, beyond which a value is damage. (Units: work of adhesion)"""
+_CELL = SPECTRUM, AMPLITUDE
+"""Dimensions of what all realisations share."""
 
-_SHAPE = SPECTRUM, AMPLITUDE
 _SHAPE_TEXT = "JSON of a spectrum's parameters in reduced units, where not all are self-affine"
 
 
@@ -55,16 +53,14 @@ class SweepAxes:
     correlation_length: Array = variable(
         "wavelength of the mean wavevector of w", LATERAL, SPECTRUM
     )
-    spring: Array = variable("springs of a straight front, L_kappa; else NaN", LATERAL, *_SHAPE)
-    n_angle: NDArray[np.int64] = variable("sites of the front", "1", *_SHAPE)
-    sample_spacing: Array = variable("distance of samples along a ray", LATERAL, *_SHAPE)
-    tile_side: Array = variable("side of the periodic tile", LATERAL, *_SHAPE)
-    n_point: NDArray[np.int64] = variable("points along a side of the tile", "1", *_SHAPE)
-    tolerance: Array = variable(
-        "largest force along the motion that may be left", ADHESION, *_SHAPE
-    )
+    spring: Array = variable("springs of a straight front, L_kappa; else NaN", LATERAL, *_CELL)
+    n_angle: NDArray[np.int64] = variable("sites of the front", "1", *_CELL)
+    sample_spacing: Array = variable("distance of samples along a ray", LATERAL, *_CELL)
+    tile_side: Array = variable("side of the periodic tile", LATERAL, *_CELL)
+    n_point: NDArray[np.int64] = variable("points along a side of the tile", "1", *_CELL)
+    tolerance: Array = variable("largest force along the motion that may be left", ADHESION, *_CELL)
     series: NDArray[np.str_] = variable(
-        "digest of the parameters that realisations share", "1", *_SHAPE
+        "digest of the parameters that realisations share", "1", *_CELL
     )
     amplitude: Array = variable("requested e_el (chemical field: w_rms^2/4)", ADHESION, AMPLITUDE)
     w_rms_requested: Array = variable("requested rms, 2 sqrt(e_el w_int)", ADHESION, AMPLITUDE)
@@ -74,11 +70,7 @@ class SweepAxes:
 
 @dataclass(frozen=True, slots=True)
 class SweepTable:
-    """Arrays of a sweep that a fit reads: works of adhesion, NaN where a simulation failed.
-
-    ValueError if the shapes disagree, a measured e_el or w_rms is not positive, or a value is far
-    from that of any contact, as after damage.
-    """
+    """Arrays of a sweep that a fit reads, NaN if a simulation failed."""
 
     spectrum: NDArray[np.str_] = variable("name of the spectrum", "1", SPECTRUM)
     short_cutoff: Array = variable("shortest wavelength", LATERAL, SPECTRUM)
@@ -95,41 +87,17 @@ class SweepTable:
     w_appr_numerical_error: Array = variable("expected error of w_appr", ADHESION, *PLACE)
     w_retr_numerical_error: Array = variable("expected error of w_retr", ADHESION, *PLACE)
     contact_radius: Array = variable("middle of the steady window; else NaN", LATERAL, *PLACE)
-    spring: Array = variable("springs of a straight front, L_kappa; else NaN", LATERAL, *_SHAPE)
+    spring: Array = variable("springs of a straight front, L_kappa; else NaN", LATERAL, *_CELL)
     parameters: NDArray[np.str_] | None = variable(_SHAPE_TEXT, "1", SPECTRUM, default=None)
-
-    def __post_init__(self) -> None:
-        sizes = dict(zip(PLACE, (self.spectrum.size, *self.e_el.shape[1:]), strict=True))
-        for item in variables(SweepTable):
-            values, whole = getattr(self, item.name), tuple(sizes[name] for name in item.dims)
-            if values is not None and np.shape(values) != whole:
-                raise ValueError(
-                    f"{item.name} has shape {np.shape(values)}; ({', '.join(item.dims)}) is {whole}"
-                )
-        for name in ("e_el", "w_rms", "w_appr", "w_retr"):
-            values = getattr(self, name)
-            largest = np.max(np.abs(values), where=np.isfinite(values), initial=0.0)
-            if largest > _MOST_OF_ADHESION:
-                raise ValueError(
-                    f"{name} is up to {largest / WORK_OF_ADHESION:.3g} w_int, a value that no "
-                    "contact can have; make the table again"
-                )
-        for name in ("e_el", "w_rms"):
-            lowest = np.min(getattr(self, name), where=self.finite, initial=np.inf)
-            if not lowest > 0:
-                raise ValueError(
-                    f"measured {name} is {lowest}, where hysteresis has no scale; leave "
-                    "simulations without disorder out of the table"
-                )
 
     @property
     def numerical_error(self) -> Array:
-        """Numerical error of k, both branches in opposite directions, as biases are."""
+        """Numerical error of k; the errors of both branches add, as biases of opposite signs."""
         return (self.w_appr_numerical_error + self.w_retr_numerical_error) / (2 * self.e_el)
 
     @property
     def on_springs(self) -> bool:
-        """Whether springs hold the fronts, which are straight, and no sphere does."""
+        """Whether the fronts are straight and on springs, not on spheres."""
         return bool(np.any(np.isfinite(self.spring)))
 
     @property
@@ -139,17 +107,17 @@ class SweepTable:
         return np.asarray(np.all(np.isfinite(columns), axis=0))
 
     def shape_of(self, index: int) -> Spectrum:
-        """Spectrum of a place in the table, of any amplitude."""
+        """Spectrum of an entry of the table, with any amplitude."""
         if self.parameters is not None:
-            stated = Spectrum.stated(json.loads(str(self.parameters[index])))
-            assert stated is not None, "the table was written with the parameters of a shape"
-            return stated
+            shape = Spectrum.stated(json.loads(str(self.parameters[index])))
+            assert shape is not None, "the table was written with the parameters of a shape"
+            return shape
         columns = self.short_cutoff, self.roll_off, self.hurst
         return SelfAffineSpectrum(*(float(values[index]) for values in columns))
 
     @property
     def shape(self) -> Array:
-        """Number of the shape of each spectrum, (n_spectrum,); equal if only the size differs."""
+        """Number of each spectrum's shape, (n_spectrum,); spectra of one shape differ in size."""
         octaves = np.round(np.log2(self.roll_off / self.short_cutoff), 9)
         hurst = np.where(octaves > 0, self.hurst, 0.0)
         return np.asarray(np.unique(np.stack([octaves, hurst]), axis=1, return_inverse=True)[1])
@@ -158,5 +126,5 @@ class SweepTable:
     def family(self) -> Array:
         """Number of the shape and the springs in correlation lengths, (n_spectrum,)."""
         springs = np.log2(self.spring[:, 0] / self.correlation_length)
-        known = np.round(np.nan_to_num(springs), 6)
-        return np.asarray(np.unique(np.stack([self.shape, known]), axis=1, return_inverse=True)[1])
+        rounded = np.stack([self.shape, np.round(np.nan_to_num(springs), 6)])
+        return np.asarray(np.unique(rounded, axis=1, return_inverse=True)[1])

@@ -1,8 +1,8 @@
-"""How much more hysteresis a crack front has than boundary elements on the same surfaces.
+"""Ratio of the hysteresis of a crack front to boundary elements on the same surfaces.
 
 `python -m studies boundary-elements validate` computes both, and `numbers --keep` there writes
-`validity.csv`. What the front leaves out of linear elasticity is of second order in the disorder,
-w_rms over w_int, so that the logarithm of the ratio is fitted by c e_el / w_int.
+`validity.csv`. The crack front neglects terms of linear elasticity that are of second order in the
+disorder w_rms / w_int. The logarithm of the ratio is therefore fitted by c e_el / w_int.
 """
 
 from __future__ import annotations
@@ -22,14 +22,14 @@ from crackfront.analysis.estimate import REACH, Estimate
 from crackfront.core.arrays import Array
 
 _MODEL_ERROR = 0.05
-"""Standard error of the logarithm that the form of the law leaves: half of what powers of the
-disorder from 2 to 4 differ by between the measured amplitudes."""
+"""Standard error of ln(ratio) due to the form of the law: half of the difference between laws with
+powers of the disorder from 2 to 4, at the measured amplitudes."""
 
 _LEAST_PRINTED_RATIO = 1.005
-"""Smallest ratio that a printed number shows."""
+"""Smallest ratio that differs from 1 when it is printed with two decimals."""
 
 _EXTRAPOLATION = 0.5
-"""Relative standard error of what the law says beyond the measured energies."""
+"""Relative standard error of the part of ln(ratio) that is extrapolated in energy."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,38 +45,38 @@ class ValidityRow:
     size: float
     """g, L_kappa over the Larkin length."""
     ratio: float
-    """Hysteresis of the front over that of boundary elements at a vanishing range."""
+    """Hysteresis of the front over boundary elements at a vanishing range of attraction."""
     error: float
-    """Standard error of the logarithm of the ratio, with that of the extrapolation to no range; NaN
-    for one surface."""
+    """Standard error of ln(ratio), including the extrapolation to a vanishing range of attraction;
+    NaN for one surface."""
     surfaces: int
+    """Surfaces that are averaged."""
     fine: int
-    """Surfaces that are averaged, and those of them on the finest grids."""
+    """Surfaces on the finest grids."""
     n_point: int
     """Points along a side of the boundary elements' grid."""
 
 
 @dataclass(frozen=True, slots=True)
 class Excess:
-    """Hysteresis of the front over that of boundary elements for a surface."""
+    """Ratio of the front's hysteresis to boundary elements, for one surface."""
 
     ratio: Estimate[float]
-    """What the front's hysteresis is divided by, and its interval, which grows beyond the
-    amplitudes and sizes that were measured."""
+    """The ratio, whose interval grows outside the measured amplitudes and sizes."""
     is_measured: bool
-    """Whether the amplitude is among those that were measured."""
+    """Whether the amplitude is within the measured range."""
     sentence: str
-    """Both as a sentence."""
+    """The ratio in words, and a warning outside the measured range."""
 
 
 @functools.cache
 def shipped_validity() -> tuple[ValidityRow, ...]:
-    """Rows of the file that the package ships."""
+    """Rows of `validity.csv`."""
     return validity_of(files(__package__).joinpath("validity.csv").read_text(encoding="utf-8"))
 
 
 def validity_of(text: str) -> tuple[ValidityRow, ...]:
-    """Rows of a table as of :func:`validity_text`."""
+    """Rows of a text that :func:`validity_text` wrote."""
     kinds = get_type_hints(ValidityRow)
     rows = csv.DictReader(io.StringIO(text))
     return tuple(ValidityRow(**{name: kinds[name](row[name]) for name in kinds}) for row in rows)
@@ -92,7 +92,7 @@ def validity_text(rows: Sequence[ValidityRow]) -> str:
 def excess_coefficient(rows: Sequence[ValidityRow]) -> tuple[float, float]:
     """Coefficient c of the law ln(ratio) = c e_el / w_int, and its standard error.
 
-    Rows of one surface, which have no error, do not count.
+    Rows without an error, from one surface, do not count.
 
     Examples
     --------
@@ -117,18 +117,18 @@ def size_error(rows: Sequence[ValidityRow]) -> float:
     """
     energy, size, _, error = _columns(rows)
     weight = (energy / error) ** 2
-    apart = np.log(size) - np.average(np.log(size), weights=weight)
-    return float(np.sum(weight * apart**2)) ** -0.5
+    deviation = np.log(size) - np.average(np.log(size), weights=weight)
+    return float(np.sum(weight * deviation**2)) ** -0.5
 
 
 def _columns(rows: Sequence[ValidityRow]) -> Array:
-    """Energies, sizes, ratios and errors of the rows that have an error, (4, rows)."""
-    known = [row for row in rows if math.isfinite(row.error)]
-    return np.array([(r.elastic_energy, r.size, r.ratio, r.error) for r in known]).T
+    """Energies, sizes, ratios and errors of the rows with an error, (4, n_row)."""
+    finite = [row for row in rows if math.isfinite(row.error)]
+    return np.array([(row.elastic_energy, row.size, row.ratio, row.error) for row in finite]).T
 
 
 def front_excess(energy: float, size: float, rows: Sequence[ValidityRow] | None = None) -> Excess:
-    """Excess of the front at an e_el (Units: w_int) and a size g, by the shipped table or another.
+    """Excess of the front at an e_el (Units: w_int) and a size g, by the shipped or another table.
 
     Examples
     --------
@@ -142,17 +142,18 @@ def front_excess(energy: float, size: float, rows: Sequence[ValidityRow] | None 
     slope, error = excess_coefficient(rows)
     strongest = max(row.elastic_energy for row in rows)
     largest = max(row.size for row in rows)
-    grown = size_error(rows) * math.log(max(1.0, size / largest))
-    beyond = _EXTRAPOLATION * slope * max(0.0, energy - strongest)
+    size_uncertainty = size_error(rows) * math.log(max(1.0, size / largest))
+    extrapolated = _EXTRAPOLATION * slope * max(0.0, energy - strongest)
     logarithm = slope * energy
-    reach = REACH * math.hypot(error * energy, grown * energy, beyond, _MODEL_ERROR)
+    errors = error * energy, size_uncertainty * energy, extrapolated, _MODEL_ERROR
+    reach = REACH * math.hypot(*errors)
     law = Estimate(logarithm, math.nan, logarithm - reach, logarithm + reach).each(math.exp)
     interval = f"{law.value:.2f} ({law.low:.2f} to {law.high:.2f})"
     sentence = f"A front has {interval} times the hysteresis of boundary elements at this e_el"
     sentence += "; the prediction is divided by this." if law.value >= _LEAST_PRINTED_RATIO else "."
-    if grown or beyond:
+    if size_uncertainty or extrapolated:
         sentence += (
             f" Both were compared up to e_el/w_int = {strongest:.2g} and g = {largest:.2g}; here "
             f"they are {energy:.2g} and {size:.3g}, so that the interval is wider."
         )
-    return Excess(law, not beyond, sentence)
+    return Excess(law, not extrapolated, sentence)

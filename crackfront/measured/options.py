@@ -1,8 +1,7 @@
-"""Options of reading scans and of predictions: each is one field of a pydantic model.
+"""Options for reading scans and for predictions, as fields of pydantic models.
 
 Commands (`cli/surface_commands.py`), functions (`measured/predict.py`) and configurations
-(`sweep/spectrum_sections.py`) take their options from the fields, and their meaning from the text
-below.
+(`sweep/spectrum_sections.py`) take their options and the help texts from these fields.
 """
 
 from __future__ import annotations
@@ -26,30 +25,29 @@ from crackfront.surfaces.written_units import is_unit, si_value
 DetrendName = Literal["center", "height", "slope", "curvature"]
 
 Detrend = DetrendName | int
-"""Trend that is taken off: one by name, as in curvature, or a polynomial by its order."""
+"""Trend that is subtracted, by name, or a polynomial by its order."""
 
 HIGHEST_ORDER = 9
-"""Highest order of a polynomial; more would be a filter of waves, which its fit is not."""
+"""Highest order of a polynomial; higher orders would remove roughness."""
 
 PsdKind = Literal["1d", "2d", "radial", "q2d"]
 PsdAbscissa = Literal["wavevector", "frequency", "wavelength"]
 
 Region = tuple[tuple[float, float], ...]
-"""Ends of a part of a scan along every direction (Units: m)."""
+"""Part of a scan: both ends along each direction (Units: m)."""
 
 PER_SCAN = "One for all scans, one for each in order, or FILE=VALUE."
 """Marks a field for which every scan of a surface may have its own value."""
 
 REPEATED = "May be repeated."
-"""Marks a field of which one scan may have several values."""
-
+"""Marks a field with several values for one scan."""
 
 _ZERO = re.compile(r"\s*[-+]?0*\.?0+\.?\s*([^\s\d.].*?)?\s*")
-"""Zero, and its unit if it has one, which begins with no digit: 0.1um is not zero."""
+"""Zero with an optional unit, which cannot begin with a digit: 0.1um is not zero."""
 
 
 class Options(BaseModel):
-    """A record of options; the text below a field is its description."""
+    """A record of options; the docstring of a field is its help text."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, use_attribute_docstrings=True)
 
@@ -57,72 +55,72 @@ class Options(BaseModel):
 Record = TypeVar("Record", bound=Options)
 
 
-def checked_options(record: type[Record], given: Mapping[str, Any], prefix: str = "") -> Record:
-    """Record of its options among those that a user gives; None is not given.
+def checked_options(record: type[Record], options: Mapping[str, Any], prefix: str = "") -> Record:
+    """Record of the user's options that are its fields; None means the default.
 
-    The prefix stands before names in refusals: -- in commands. ValueError, of one sentence, if a
-    value cannot be used, TypeError if it is of another type.
+    Messages have the prefix before names, which is -- in commands. ValueError if a value cannot be
+    used, TypeError if it is of another type.
     """
-    known = {
+    values = {
         name: value
-        for name, value in given.items()
+        for name, value in options.items()
         if name in record.model_fields and value is not None
     }
     try:
-        return record.model_validate(known, context=prefix)
+        return record.model_validate(values, context=prefix)
     except ValidationError as error:
         first, *_ = error.errors(include_url=False)
         raise ValueError(_sentence(first, prefix)) from None
 
 
-def named_options(record: type[Options], given: Mapping[str, Any]) -> list[str]:
-    """Names of the options of a record that a user gives, and not by their defaults."""
+def named_options(record: type[Options], options: Mapping[str, Any]) -> list[str]:
+    """Names of a record's fields among a user's options, without empty and default values."""
     return [
         name
         for name, field in record.model_fields.items()
-        if given.get(name) not in (None, (), [], field.default)
+        if options.get(name) not in (None, (), [], field.default)
     ]
 
 
 def reading_options(
-    given: Mapping[str, Any], n_scan: int, prefix: str = ""
+    options: Mapping[str, Any], n_scan: int, prefix: str = ""
 ) -> list[ReadingOptions]:
-    """Options of reading so many scans of one surface; otherwise as :func:`checked_options`.
+    """Options for reading each of several scans of a surface; see :func:`checked_options`.
 
-    A list or tuple gives every scan its own value, where a field allows this.
+    If the field allows it, a list or tuple has a value for each scan.
     """
-    for name, field in ReadingOptions.model_fields.items():
-        value = given.get(name)
-        is_named = value is not None and not (isinstance(value, (list, tuple)) and not value)
-        if REPEATED in field.metadata and is_named and n_scan > 1:
-            raise ValueError(
-                f"{_shown_name(name, prefix)} is for one scan, and {n_scan} are named; read them "
-                "one by one"
-            )
-    for name, values in _values_per_scan(given):
+    if n_scan > 1:
+        for name in named_options(ReadingOptions, options):
+            if REPEATED in ReadingOptions.model_fields[name].metadata:
+                raise ValueError(
+                    f"{_shown_name(name, prefix)} is for one scan, and {n_scan} are named; read "
+                    "them one by one"
+                )
+    lists = _values_per_scan(options)
+    for name, values in lists.items():
         if len(values) not in (1, n_scan):
             raise ValueError(
                 f"{_shown_name(name, prefix)} is given {len(values)} times for "
                 f"{counted(n_scan, 'scan')}; give it once, or once for each in their order"
             )
-    found = []
+    records = []
     for scan in range(n_scan):
-        own = {name: values[scan % len(values)] for name, values in _values_per_scan(given)}
-        found.append(checked_options(ReadingOptions, {**given, **own}, prefix))
-    return found
+        of_scan = {name: values[scan % len(values)] for name, values in lists.items()}
+        records.append(checked_options(ReadingOptions, {**options, **of_scan}, prefix))
+    return records
 
 
-def _values_per_scan(given: Mapping[str, Any]) -> list[tuple[str, Any]]:
-    """Names and lists of the options that are given as lists, one entry a scan."""
-    return [
-        (name, given[name] or [None])
+def _values_per_scan(options: Mapping[str, Any]) -> dict[str, Sequence[Any]]:
+    """Options that are lists with an entry for each scan, or with one for all."""
+    return {
+        name: options[name] or [None]
         for name, field in ReadingOptions.model_fields.items()
-        if PER_SCAN in field.metadata and _is_per_scan(name, given.get(name))
-    ]
+        if PER_SCAN in field.metadata and _is_per_scan(name, options.get(name))
+    }
 
 
 def _is_per_scan(name: str, value: Any) -> bool:
-    """Whether a value has an entry for each scan, and is no pair of sides or region for all."""
+    """Whether a value is a list with entries for scans, not the sides or region of one scan."""
     if not isinstance(value, (list, tuple)):
         return False
     if name == "crop":
@@ -131,49 +129,52 @@ def _is_per_scan(name: str, value: Any) -> bool:
 
 
 def _are_numbers(value: Any) -> bool:
-    """Whether a value is a list or tuple of numbers alone."""
-    return isinstance(value, (list, tuple)) and all(isinstance(one, Real) for one in value)
+    """Whether a value is a list or tuple of numbers."""
+    return isinstance(value, (list, tuple)) and all(isinstance(entry, Real) for entry in value)
 
 
-def for_files(given: Mapping[str, Any], files: Sequence[Path]) -> dict[str, Any]:
-    """Options of a command with FILE=VALUE, as lists with a value or None for every file.
+def for_files(options: Mapping[str, Any], files: Sequence[Path]) -> dict[str, Any]:
+    """Options of a command, with FILE=VALUE replaced by lists of a value or None for each file.
 
-    ValueError, of one sentence, where a FILE is none of the files, or has two values.
+    ValueError if FILE is not one of the files, or has two values.
     """
-    found = dict(given)
+    replaced = dict(options)
     for name, field in ReadingOptions.model_fields.items():
-        values = given.get(name)
-        if PER_SCAN not in field.metadata or not values or not any("=" in one for one in values):
+        texts = options.get(name)
+        if PER_SCAN not in field.metadata or not texts or not any("=" in text for text in texts):
             continue
-        shown, own = _shown_name(name, "--"), dict[int, str]()
-        parts = [value.rpartition("=") for value in values]
-        named = [
-            [i for i, one in enumerate(files) if part[0] in (str(one), one.name)] for part in parts
-        ]
-        if name in ("channel", "surface") and not any(named):
-            continue  # A name with this sign in it.
-        for value, (_, sign, text), places in zip(values, parts, named, strict=True):
-            if not sign or len(places) != 1 or places[0] in own:
+        assignments = [text.rpartition("=") for text in texts]
+        indices = [_file_indices(file, files) for file, _, _ in assignments]
+        if name in ("channel", "surface") and not any(indices):
+            continue  # The name of a channel or surface contains an equals sign.
+        values: dict[int, str] = {}
+        for text, (_, sign, value), matches in zip(texts, assignments, indices, strict=True):
+            if not sign or len(matches) != 1 or matches[0] in values:
                 raise ValueError(
-                    f"{shown} is {value!r}; write FILE=VALUE once for each of some files, which "
-                    f"are {', '.join(map(str, files))}"
+                    f"{_shown_name(name, '--')} is {text!r}; write FILE=VALUE once for each of "
+                    f"some files, which are {', '.join(map(str, files))}"
                 )
-            own[places[0]] = text
-        found[name] = [own.get(place) for place in range(len(files))]
-    return found
+            values[matches[0]] = value
+        replaced[name] = [values.get(index) for index in range(len(files))]
+    return replaced
 
 
-def refuse_unknown(function: str, names: Iterable[str], *records: type[Options]) -> None:
-    """Raise TypeError if a keyword of a function is no option of some records."""
-    known = [name for record in records for name in record.model_fields]
+def _file_indices(text: str, files: Sequence[Path]) -> list[int]:
+    """Numbers of the files with a path or name."""
+    return [index for index, file in enumerate(files) if text in (str(file), file.name)]
+
+
+def check_option_names(function: str, names: Iterable[str], *records: type[Options]) -> None:
+    """Raise TypeError if a keyword of a function is not an option of the records."""
+    options = [name for record in records for name in record.model_fields]
     for name in names:
-        if name not in known:
-            hint = nearest_name(name, known, "the options are")
+        if name not in options:
+            hint = nearest_name(name, options, "the options are")
             raise TypeError(f"{function}() got an unexpected keyword argument {name!r}; {hint}")
 
 
 def _sentence(error: ErrorDetails, prefix: str) -> str:
-    """What one error of pydantic means: the sentence of a validator, or its own."""
+    """Message for an error of pydantic: from the validator, or from pydantic itself."""
     if "error" in error.get("ctx", {}):
         return str(error["ctx"]["error"])
     must = error["msg"].replace("Input should", "it must")
@@ -181,24 +182,24 @@ def _sentence(error: ErrorDetails, prefix: str) -> str:
 
 
 def _shown_name(name: str, prefix: str) -> str:
-    """Name of an option as the user writes it: --tip-radius in commands, else tip_radius."""
+    """Name of an option as a user writes it: --tip-radius in commands, else tip_radius."""
     return f"{prefix}{name.replace('_', '-')}" if prefix else name
 
 
 def _named(info: ValidationInfo) -> str:
-    """Name of the option that is validated, as the user writes it."""
+    """Name of the validated option, as a user writes it."""
     return _shown_name(str(info.field_name), info.context or "")
 
 
 def quantity(unit: str, name: str, example: str) -> BeforeValidator:
-    """Validator of values with units, as texts, or as numbers in the SI unit."""
+    """Validator of quantities, from texts with a unit or numbers in the SI unit."""
 
     def checked(value: Any, info: ValidationInfo) -> float:
-        what = _named(info)
-        refuse_other_type(what, value, (str, Real), f"a {name}, as '{example}' or in {unit}")
+        option = _named(info)
+        refuse_other_type(option, value, (str, Real), f"a {name}, as '{example}' or in {unit}")
         if isinstance(value, str):
-            return si_value(value, unit, what=what)
-        refuse_outside(what, float(value), SI[unit], unit)
+            return si_value(value, unit, what=option)
+        refuse_outside(option, float(value), SI[unit], unit)
         return float(value)
 
     return BeforeValidator(checked)
@@ -209,76 +210,76 @@ def number(bounds: Range) -> BeforeValidator:
 
     def checked(value: Any, info: ValidationInfo) -> float:
         try:
-            found = float(value)
+            converted = float(value)
         except (TypeError, ValueError) as error:
             raise ValueError(f"{_named(info)} is {value!r}; write a number") from error
-        refuse_outside(_named(info), found, bounds)
-        return found
+        refuse_outside(_named(info), converted, bounds)
+        return converted
 
     return BeforeValidator(checked)
 
 
 def _text(value: Any, info: ValidationInfo) -> str:
-    """A text, or a whole number as one."""
+    """Text, also from a whole number."""
     refuse_other_type(_named(info), value, (str, Integral), "a text or a number")
     return str(value)
 
 
 def _region(value: Any, info: ValidationInfo) -> Region:
-    """A part of a scan, from a text as in 2um:8um,0um:5um or from pairs of ends in metres."""
+    """Part of a scan, from a text as in 2um:8um,0um:5um or from pairs of ends in metres."""
     if isinstance(value, (list, tuple)) and value and all(map(_are_numbers, value)):
         return _checked_region(value, str(value), _named(info))
     refuse_other_type(_named(info), value, str, "a text, as in '2um:8um,0um:5um'")
-    return _region_of(value, _named(info))
+    return _region_from_text(value, _named(info))
 
 
-def _region_of(text: str, what: str) -> Region:
-    """The part of a scan that a text names."""
-    ends = [[_place(end, what) for end in part.split(":")] for part in text.split(",")]
-    return _checked_region(ends, repr(text), what)
+def _region_from_text(text: str, option: str) -> Region:
+    """Part of a scan from a text."""
+    ends = [[_position(end, option) for end in part.split(":")] for part in text.split(",")]
+    return _checked_region(ends, repr(text), option)
 
 
-def _checked_region(ends: Sequence[Sequence[float]], shown: str, what: str) -> Region:
-    """A part of a scan, whose ends along every direction are two in their order."""
+def _checked_region(ends: Sequence[Sequence[float]], shown: str, option: str) -> Region:
+    """Part of a scan from both ends along each direction; ValueError if they are not in order."""
     if not all(len(part) == 2 for part in ends) or len(ends) > 2:
         raise ValueError(
-            f"{what} is {shown}; write both ends along every direction, as in 2um:8um,0um:5um"
+            f"{option} is {shown}; write both ends along every direction, as in 2um:8um,0um:5um"
         )
     if not all(low < high for low, high in ends):
-        raise ValueError(f"{what} is {shown}, which ends where it begins or before; swap them")
+        raise ValueError(f"{option} is {shown}, which ends where it begins or before; swap them")
     return tuple((low, high) for low, high in ends)
 
 
-def _place(end: str, what: str) -> float:
-    """An end of a part of a scan, for which 0 needs no unit (Units: m)."""
-    found = _ZERO.fullmatch(end)
-    if found is None or (found[1] and not is_unit(found[1], "m")):
-        return si_value(end, "m", what=what)
+def _position(text: str, option: str) -> float:
+    """Position in a scan from a text, whose unit may be missing if it is zero (Units: m)."""
+    zero = _ZERO.fullmatch(text)
+    if zero is None or (zero[1] and not is_unit(zero[1], "m")):
+        return si_value(text, "m", what=option)
     return 0.0
 
 
 def _masks(value: Any, info: ValidationInfo) -> tuple[Region | Path, ...]:
-    """Parts of a scan and files, from one or several of them."""
-    given = value if isinstance(value, (list, tuple)) else (value,)
-    return tuple(_region_or_file(one, _named(info)) for one in given)
+    """Parts of a scan and files, from a single one or a list."""
+    entries = value if isinstance(value, (list, tuple)) else (value,)
+    return tuple(_region_or_file(entry, _named(info)) for entry in entries)
 
 
-def _region_or_file(value: Any, what: str) -> Region | Path:
-    """A part of a scan, from a text with colons, or the path of a file."""
+def _region_or_file(value: Any, option: str) -> Region | Path:
+    """Part of a scan from a text with colons or from numbers, else the path of a file."""
     if isinstance(value, tuple) and value and all(map(_are_numbers, value)):
-        return _checked_region(value, str(value), what)
-    refuse_other_type(what, value, (str, PathLike), "a part, or the path of a file")
+        return _checked_region(value, str(value), option)
+    refuse_other_type(option, value, (str, PathLike), "a part, or the path of a file")
     is_region = isinstance(value, str) and ":" in value
-    return _region_of(value, what) if is_region else Path(value)
+    return _region_from_text(value, option) if is_region else Path(value)
 
 
 def _detrend(value: Any, info: ValidationInfo) -> Detrend:
     """Name of a trend, or the order of a polynomial."""
     names = get_args(DetrendName)
-    found: Any = int(value) if str(value).isdecimal() else value
-    is_order = isinstance(found, int) and not isinstance(found, bool)
-    if found in names or (is_order and 0 <= found <= HIGHEST_ORDER):
-        return found
+    trend: Any = int(value) if str(value).isdecimal() else value
+    is_order = isinstance(trend, int) and not isinstance(trend, bool)
+    if trend in names or (is_order and 0 <= trend <= HIGHEST_ORDER):
+        return trend
     raise ValueError(
         f"{_named(info)} is {value!r}; choose one of {', '.join(names)}, or an order from 0 to "
         f"{HIGHEST_ORDER}"
@@ -287,16 +288,20 @@ def _detrend(value: Any, info: ValidationInfo) -> Detrend:
 
 def _sides(value: Any, info: ValidationInfo) -> tuple[float, ...]:
     """Sides of a scan, from a text with commas, a number or a sequence of numbers."""
-    given = (value,) if isinstance(value, Real) else value
+    entries: Any = value
+    if isinstance(value, str):
+        entries = value.split(",")
+    elif isinstance(value, Real):
+        entries = [value]
     try:
-        found = tuple(map(float, given.split(",") if isinstance(given, str) else given))
+        sides = tuple(map(float, entries))
     except (TypeError, ValueError) as error:
         raise ValueError(
             f"{_named(info)} is {value!r}; write one number for each direction, as in 50,50"
         ) from error
-    if not all(0 < side < float("inf") for side in found):
+    if not all(0 < side < float("inf") for side in sides):
         raise ValueError(f"{_named(info)} is {value!r}; sides must be positive and finite")
-    return found
+    return sides
 
 
 Length = Annotated[float, quantity("m", "length", "0.4um")]
@@ -306,7 +311,7 @@ Text = Annotated[str, BeforeValidator(_text)]
 
 
 class ReadingOptions(Options):
-    """How the file of a scan is read, and which of its waves are trusted.
+    """Options for reading the file of a scan, and for its trusted waves.
 
     Lengths are texts with a unit, as in 0.4um, or numbers in metres.
     """
@@ -332,13 +337,13 @@ class ReadingOptions(Options):
     """Unit of length of files that do not state it, as in um."""
 
     height_unit: Annotated[Text | None, PER_SCAN] = None
-    """Unit of the heights, as in nm, if it differs or if that of the file is impossible."""
+    """Unit of the heights, as in nm, if it differs or the unit in the file is impossible."""
 
     size: Annotated[Annotated[tuple[float, ...], BeforeValidator(_sides)] | None, PER_SCAN] = None
     """Sides of scans that do not state them, in --unit, as in 50,40; 50 for a square or a line."""
 
     tip_radius: Annotated[Length | None, PER_SCAN] = None
-    """Radius of the tip, as in 20nm; by default that of the file, or 10nm for formats of scanning
+    """Radius of the tip, as in 20nm; by default as in the file, or 10nm for formats of scanning
     probes that do not state it."""
 
     shortest: Length | None = None
@@ -350,17 +355,17 @@ class ReadingOptions(Options):
 
 
 class PredictionOptions(Options):
-    """What a prediction takes into account beside the surface and the sphere."""
+    """Further options of a prediction."""
 
     pull_off: Force | None = None
     """Measured pull-off force, as in 0.4mN; the w_int that would explain it is printed too."""
 
     range: Length | None = None
-    """Range of the attraction, as in 0.3nm; by default 0.5nm, that of van der Waals forces."""
+    """Range of the attraction, as in 0.3nm; by default 0.5nm, as for van der Waals forces."""
 
 
 class PsdOptions(Options):
-    """What a file of a spectral density does not say of its convention."""
+    """Convention of a spectral density, if its file does not state it."""
 
     psd_series: Text | None = None
     """Series by name or number, for files with several."""
@@ -404,7 +409,7 @@ class SelfAffineOptions(Options):
 
 
 class SphereOptions(Options):
-    """What is pressed on a surface; the library and configurations have its scales instead."""
+    """Sphere of a command; the library and configurations have :class:`Scales` instead."""
 
     modulus: Annotated[float, quantity("Pa", "pressure", "0.7MPa")] | None = None
     """Young's modulus, as in 0.7MPa."""
@@ -419,10 +424,10 @@ class SphereOptions(Options):
     """w_int, as in 63mJ/m2."""
 
 
-def sphere_scales(given: SphereOptions, prefix: str = "") -> Scales:
-    """Scene of a sphere, in SI units; ValueError where a number of it is missing."""
-    modulus, poisson, radius = given.modulus, given.poisson, given.radius
-    adhesion = given.work_of_adhesion
+def sphere_scales(options: SphereOptions, prefix: str = "") -> Scales:
+    """Scales of a sphere, in SI units; ValueError if a number is missing."""
+    modulus, poisson, radius = options.modulus, options.poisson, options.radius
+    adhesion = options.work_of_adhesion
     if modulus is None or poisson is None or radius is None or adhesion is None:
         names = [_shown_name(name, prefix) for name in SphereOptions.model_fields]
         raise ValueError(

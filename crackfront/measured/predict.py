@@ -1,4 +1,4 @@
-"""Scans in the library: a map as a surface to press on, and the prediction for a sphere."""
+"""Functions of the library for scans: a map as a surface, and predictions for a sphere."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ from crackfront.measured.options import (
     PsdOptions,
     ReadingOptions,
     SelfAffineOptions,
+    check_option_names,
     checked_options,
     reading_options,
-    refuse_unknown,
 )
 from crackfront.measured.prediction.prediction import Prediction, check_and_predict
 from crackfront.measured.prediction.remarks import remark_text
@@ -40,25 +40,25 @@ File = str | PathLike[str]
 
 
 def read_scan(path: File, sphere: Scales, **options: Any) -> DataArray:
-    """A measured map as a surface to press on, levelled and made periodic.
+    """A measured map as a surface for simulations, levelled and made periodic.
 
     Parameters
     ----------
     path : str or path
         File of an instrument, in any format that SurfaceTopography reads.
     sphere : Scales
-        What is pressed on it; it says what a reduced length is.
+        Sphere, which defines the reduced units.
     **options
         Fields of :class:`~crackfront.measured.options.ReadingOptions`, as
         ``crop="2um:8um,0um:5um"`` or ``shortest=4e-7``: channel, crop, detrend, mask, surface,
         unit, height_unit, size, tip_radius, shortest, longest. `crackfront surface --help`
-        says what each means.
+        explains them.
 
     Returns
     -------
     xarray.DataArray
         `height(x, y)` in reduced units, the apex of the sphere at the centre of the scan. The
-        attributes `source`, `levelling`, `tile`, `waves` and `notes` say what was done and why.
+        attributes `source`, `levelling`, `tile`, `waves` and `notes` document the treatment.
 
     Raises
     ------
@@ -69,35 +69,37 @@ def read_scan(path: File, sphere: Scales, **options: Any) -> DataArray:
     OSError
         If the file cannot be opened.
     """
-    refuse_unknown("read_scan", options, ReadingOptions)
+    check_option_names("read_scan", options, ReadingOptions)
     refuse_no_scales(sphere)
     file = _path(path, "path")
     [reading] = reading_options(options, 1)
     surface_library()  # All of it, as the user's program may import it too.
-    measured, *others = read_measurements([file], reading)
-    if others:
-        raise ValueError(f"{file} holds {1 + len(others)} measurements; name the file of one")
-    return scan_surface(analysed_scan(measured, reading.shortest, reading.longest), sphere)
+    measurements = read_measurements([file], reading)
+    if len(measurements) > 1:
+        raise ValueError(
+            f"{file} contains {len(measurements)} measurements; name a file with a single one"
+        )
+    return scan_surface(analysed_scan(measurements[0], reading.shortest, reading.longest), sphere)
 
 
-def _path(given: File, name: str) -> Path:
-    """Path that an argument names, refused where it is none."""
-    refuse_other_type(name, given, (str, PathLike), "the path of a file")
-    return Path(given)
+def _path(value: File, name: str) -> Path:
+    """Path from an argument; TypeError if it is not a path."""
+    refuse_other_type(name, value, (str, PathLike), "the path of a file")
+    return Path(value)
 
 
 def read_psd(path: File, **options: Any) -> StatedSurface:
-    """A surface by its spectral density, as another program has exported it.
+    """A surface from a spectral density that another program exported.
 
     Parameters
     ----------
     path : str or path
-        Text of two columns: exports of contact.engineering, Gwyddion, MountainsMap, or any other
-        whose heads say what the columns are.
+        Text with two columns: an export of contact.engineering, Gwyddion, MountainsMap, or another
+        program that names the columns in their heads.
     **options
         Fields of :class:`~crackfront.measured.options.PsdOptions`, as ``psd_units="1/um,um^3"``
-        or ``psd_sides="one"``: what the file does not say, or says wrongly, as they count in place
-        of its heads.
+        or ``psd_sides="one"``, for what the file does not state. They replace the heads of the
+        columns.
 
     Returns
     -------
@@ -107,18 +109,18 @@ def read_psd(path: File, **options: Any) -> StatedSurface:
     Raises
     ------
     ValueError
-        If the file holds no density, or its convention is not known.
+        If the file does not contain a density, or its convention is unknown.
     TypeError
         If an argument is of another type.
     OSError
         If the file cannot be opened.
     """
-    refuse_unknown("read_psd", options, PsdOptions)
+    check_option_names("read_psd", options, PsdOptions)
     return density_surface(read_psd_file(_path(path, "path"), checked_options(PsdOptions, options)))
 
 
 def self_affine_surface(**numbers: Any) -> StatedSurface:
-    """A surface by the numbers of a self-affine spectrum, for :func:`predict`.
+    """A surface from the numbers of a self-affine spectrum, for :func:`predict`.
 
     Parameters
     ----------
@@ -136,7 +138,7 @@ def self_affine_surface(**numbers: Any) -> StatedSurface:
     Raises
     ------
     ValueError
-        If a number is missing, or they contradict each other.
+        If a number is missing, or the numbers contradict each other.
     TypeError
         If an argument is of another type.
 
@@ -146,7 +148,7 @@ def self_affine_surface(**numbers: Any) -> StatedSurface:
     >>> f"{rough.measures[0].rms.value * 1e9:.4g} nm, {rough.longest * 1e6:.2g} um"
     '60 nm, 4.1 um'
     """
-    refuse_unknown("self_affine_surface", numbers, SelfAffineOptions)
+    check_option_names("self_affine_surface", numbers, SelfAffineOptions)
     return self_affine_surface_of(checked_options(SelfAffineOptions, numbers))
 
 
@@ -157,19 +159,19 @@ def predict(
     strict: bool = False,
     **options: Any,
 ) -> Prediction:
-    """How strongly a sphere sticks to a measured surface, by the law of k.
+    """Predict the adhesion of a sphere on a measured surface, by the law of k.
 
     Parameters
     ----------
     scans : path or list of paths, or StatedSurface
-        One measurement of the surface or several, maps or lines; or what :func:`read_psd` or
-        :func:`self_affine_surface` gives.
+        One or several measurements of the surface, maps or lines; or a result of :func:`read_psd`
+        or :func:`self_affine_surface`.
     sphere : Scales
-        What is pressed on it.
+        Sphere that is pressed on the surface.
     strict : bool, optional
-        Raise where the theory applies with reservations as well.
+        Whether reservations on the theory raise a ValueError.
     **options
-        Those of :func:`read_scan`, and fields of
+        Options of :func:`read_scan`, and fields of
         :class:`~crackfront.measured.options.PredictionOptions`, as ``range="0.3nm"``: pull_off,
         range. A list gives every scan its own channel, crop, surface, unit, height_unit, size or
         tip_radius.
@@ -177,8 +179,8 @@ def predict(
     Returns
     -------
     Prediction
-        e_el, k, w_appr, w_retr, pull-off forces and more, in SI units, with intervals; printed, it
-        is a page of those that matter most.
+        e_el, k, w_appr, w_retr, pull-off forces and more, in SI units, with intervals. Printed, it
+        is a page with the most important numbers.
 
     Raises
     ------
@@ -190,22 +192,24 @@ def predict(
         If a file cannot be opened.
     """
     is_stated = isinstance(scans, StatedSurface)
-    refuse_unknown("predict", options, PredictionOptions, *(() if is_stated else (ReadingOptions,)))
+    records = [PredictionOptions] if is_stated else [PredictionOptions, ReadingOptions]
+    check_option_names("predict", options, *records)
     refuse_no_scales(sphere)
-    given = checked_options(PredictionOptions, options)
+    prediction_options = checked_options(PredictionOptions, options)
     surface: Surface = scans if isinstance(scans, StatedSurface) else _measured(scans, options)
-    verdict, prediction = check_and_predict(surface, sphere, given)
+    verdict, prediction = check_and_predict(surface, sphere, prediction_options)
     if prediction is None:
-        failing = map(remark_text, verdict.of("fails", "undecided"))
+        failing = map(remark_text, verdict.with_severity("fails", "undecided"))
         raise ValueError(f"the theory does not apply: {' '.join(failing)}")
-    if strict and (found := verdict.of("undecided", "reservation")):
-        sentences = " ".join(map(remark_text, found))
+    reservations = verdict.with_severity("undecided", "reservation")
+    if strict and reservations:
+        sentences = " ".join(map(remark_text, reservations))
         raise ValueError(f"the theory applies with reservations: {sentences}")
     return prediction
 
 
 def _measured(scans: File | Iterable[File], options: dict[str, Any]) -> MeasuredSurface:
-    """Surface of one scan or several."""
+    """Surface from one or several scans."""
     paths = [scans] if isinstance(scans, (str, PathLike)) else scans
     refuse_other_type("scans", paths, Iterable, "the path of a file, or a list of such")
     files = [_path(path, "scan") for path in paths]

@@ -1,4 +1,4 @@
-"""Units of axes: reduced ones, or those of SI with one prefix for all ticks of an axis."""
+"""Units of axes: reduced units, or SI units with one prefix for all ticks of an axis."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class AxisUnits:
-    """Units of the axes of a figure: those of SI for a sphere, or reduced ones without it."""
+    """Units of the axes of a figure: SI units for a sphere, reduced units without one."""
 
     sphere: Scales | None = None
 
@@ -26,30 +26,30 @@ class AxisUnits:
         return self.sphere is not None
 
     def scale(self, unit: ReducedUnit) -> float:
-        """What a reduced unit is on an axis."""
+        """Value of a reduced unit in units of the axes."""
         return 1.0 if self.sphere is None else unit.scale(self.sphere)
 
-    def name(self, axis: Axis, what: str, unit: ReducedUnit) -> None:
-        """Write on an axis, or on that of a colour bar, what it shows between its limits.
+    def name(self, axis: Axis, quantity: str, unit: ReducedUnit) -> None:
+        """Label an axis, or the axis of a colour bar, with its quantity and unit.
 
-        Powers of ten, on a logarithmic axis, have no prefix.
+        In SI, ticks of a linear axis are scaled to the prefix of the unit.
         """
         if not self.is_si:
-            axis.set_label_text(f"{what} / ${unit.tex}$")
+            axis.set_label_text(f"{quantity} / ${unit.tex}$")
             return
         from matplotlib.ticker import Formatter
 
-        name, one = unit.si.replace(" / ", "/").replace("^2", "²"), 1.0
+        name = unit.si.replace(" / ", "/").replace("^2", "²")
         if axis.get_scale() != "log":
-            name, one = scaled_unit(name, max(map(abs, axis.get_view_interval())))
+            name, scale = scaled_unit(name, max(map(abs, axis.get_view_interval())))
             # A tick at zero may be off by rounding.
             axis.set_major_formatter(
-                lambda value, _: Formatter.fix_minus(f"{round(value / one, 6) + 0.0:g}")
+                lambda value, _: Formatter.fix_minus(f"{round(value / scale, 6) + 0.0:g}")
             )
-        axis.set_label_text(f"{what} ({name})")
+        axis.set_label_text(f"{quantity} ({name})")
 
     def adhesion_text(self, value: float) -> str:
-        """A work of adhesion that is given in w_int, in the mathematics of a label."""
+        """A work of adhesion (Units: w_int) as TeX for a label, in the units of the axes."""
         if not self.is_si:
             return rf"{value:.3f}\,{ADHESION.tex}"
         number, unit = prefixed("J/m^2", value * self.scale(ADHESION)).split(" ")
@@ -57,7 +57,7 @@ class AxisUnits:
 
 
 def scaled_unit(unit: str, value: float) -> tuple[str, float]:
-    """Unit with the prefix that a value calls for, and what one of it is without the prefix.
+    """Unit with the prefix that suits a value, and the factor of this prefix.
 
     Examples
     --------

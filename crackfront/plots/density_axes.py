@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -22,8 +22,8 @@ PROFILE_LABEL = r"$C^\mathrm{1D}$ (m$^3$)"
 ISOTROPIC_LABEL = r"$C^\mathrm{iso}$ (m$^4$)"
 _REDUCED_LABEL = r"$C^\mathrm{iso}$ / $(3\pi w_\mathrm{int}R/4E')^2$"
 
-_NAME = 0.4
-"""Part of the axis that the name of a bar covers."""
+_NAME_WIDTH = 0.4
+"""Width of the name of a bar. (Units: width of the axes)"""
 
 
 def draw_spectrum(
@@ -38,9 +38,9 @@ def draw_spectrum(
 ) -> None:
     """Isotropic density of a surface, with bars of the scales that dominate its rms measures.
 
-    Reduced are the n_wave wavevectors and densities, the three rms measures (height,
-    half-derivative, slope) and the wavelengths between which 80% of their squares lie. `ideal` is
-    the density of the spectrum that the surface was made from, zero where it has none.
+    Arrays are in reduced units: n_wave wavevectors and densities, three rms measures (height,
+    half-derivative, slope), and the wavelengths between which 80% of their squares lie. `ideal` is
+    the density of the spectrum from which the surface was made, zero outside its range.
     """
     axes.set(xscale="log", yscale="log")
     lateral, vertical = units.scale(LATERAL), units.scale(VERTICAL)
@@ -51,30 +51,31 @@ def draw_spectrum(
         measured = vertical * rms / lateral ** np.array([0.0, 0.5, 1.0])
         names, labels = _measured_names(measured**2), (WAVEVECTOR_LABEL, ISOTROPIC_LABEL)
     else:
-        orders = zip(("0", "1/2", "1"), rms, strict=True)
-        names = [rf"$h_\mathrm{{rms}}^{{({order})}} = {value:.3g}$" for order, value in orders]
+        names = [
+            rf"$h_\mathrm{{rms}}^{{({order})}} = {value:.3g}$"
+            for order, value in zip(("0", "1/2", "1"), rms, strict=True)
+        ]
         labels = rf"wavevector $q$ $\times$ ${LATERAL.tex}$", _REDUCED_LABEL
     _add_bars(axes, names, *(2 * np.pi / (lateral * ends) for ends in (longest, shortest)))
     axes.set(xlabel=labels[0], ylabel=labels[1])
     if ideal is not None:
-        kept = ideal > 0
-        curve = wave[kept], power * ideal[kept]
+        curve = wave[ideal > 0], power * ideal[ideal > 0]
         axes.plot(*curve, color=BLACK, dashes=(4, 2), label="spectrum", zorder=3)
     axes.set_ylim(bottom=0.1 * power * float(density.min()))
     axes.legend(loc="lower left")
 
 
 def draw_dominant_scales(axes: Axes, mean_square: Array, shortest: Array, longest: Array) -> None:
-    """Bars of the scales that carry 80% of the mean squares, above what is drawn.
+    """Bars of the scales that carry 80% of the mean squares, above the curves.
 
-    The axes are of an isotropic density, and their wavevectors have their limits. Mean squares are
-    those of heights, half-derivatives and slopes (units: m^(2 - 2 order)), ends of scales in m.
+    Call this after the limits of the wavevectors are set. The mean squares are of heights,
+    half-derivatives and slopes (Units: m^(2 - 2 order)), the ends of the scales in m.
     """
     _add_bars(axes, _measured_names(mean_square), 2 * np.pi / longest, 2 * np.pi / shortest)
 
 
 def _measured_names(mean_square: Array) -> list[str]:
-    """Names of the bars over wavevectors in 1/m; arguments as of :func:`draw_dominant_scales`."""
+    """Names of the bars in SI, from the mean squares of :func:`draw_dominant_scales`."""
     height, half, slope = mean_square**0.5
     power = math.floor(math.log10(half))
     return [
@@ -86,39 +87,41 @@ def _measured_names(mean_square: Array) -> list[str]:
 
 
 def _two_digits(value: float) -> str:
-    """A number with at least two digits, without a power of ten where it is large."""
+    """A number with two digits, or all digits before the decimal point."""
     return f"{value:.0f}" if value >= 10 else f"{value:.2g}"
 
 
 def _add_bars(axes: Axes, names: Sequence[str], lowest: Array, highest: Array) -> None:
-    """Bars between wavevectors with their names beside or on them, above what is drawn."""
-    left, right = np.log(axes.get_xlim())
+    """Bars between wavevectors, above the curves, with their names next to or above them."""
+    lower_limit, upper_limit = np.log(axes.get_xlim())
     top = max(float(np.max(line.get_ydata())) for line in axes.get_lines())
-    name_room = _NAME * (right - left)
-    bars = np.clip(np.log([lowest, highest]).T, left, right)
-    are_beside = all(max(low - left, right - high) > name_room for low, high in bars)
+    name_width = _NAME_WIDTH * (upper_limit - lower_limit)
+    bars = np.clip(np.log([lowest, highest]), lower_limit, upper_limit).T
+    room = np.max([bars[:, 0] - lower_limit, upper_limit - bars[:, 1]], axis=0)
+    names_next_to_bars = bool(np.all(room > name_width))
     # Heights are in decades; densities of more than ten make each decade shorter.
     stretch = max(1.0, 0.1 * math.log10(top / axes.get_ylim()[0]))
     for level, (name, (low, high)) in enumerate(zip(names, bars, strict=True)):
         height = top * 10.0 ** (stretch * (5.4 - 1.9 * level))
         ends = lowest[level], highest[level]
         axes.plot(ends, [height, height], color=BLACK, linewidth=2.5, solid_capstyle="butt")
-        on_right = bool(right - high > low - left)
-        middle = np.clip((low + high) / 2, left + name_room / 2, right - name_room / 2)
-        axes.annotate(
-            name,
-            (ends[on_right] if are_beside else math.exp(middle), height),
-            xytext=((4 if on_right else -4) if are_beside else 0, 0 if are_beside else 2),
-            textcoords="offset points",
-            ha=("left" if on_right else "right") if are_beside else "center",
-            va="center" if are_beside else "bottom",
-            bbox={"facecolor": "white", "linewidth": 0, "pad": 1},
-        )
-    axes.set_ylim(top=top * 10.0 ** (stretch * (6.6 if are_beside else 7.4)))
+        look: dict[str, Any]
+        if not names_next_to_bars:
+            half_width = name_width / 2
+            middle = (low + high) / 2
+            middle = np.clip(middle, lower_limit + half_width, upper_limit - half_width)
+            place, shift, look = math.exp(middle), (0, 2), {"ha": "center", "va": "bottom"}
+        elif upper_limit - high > low - lower_limit:
+            place, shift, look = ends[1], (4, 0), {"ha": "left", "va": "center"}
+        else:
+            place, shift, look = ends[0], (-4, 0), {"ha": "right", "va": "center"}
+        look["bbox"] = {"facecolor": "white", "linewidth": 0, "pad": 1}
+        axes.annotate(name, (place, height), xytext=shift, textcoords="offset points", **look)
+    axes.set_ylim(top=top * 10.0 ** (stretch * (6.6 if names_next_to_bars else 7.4)))
 
 
 def set_density_scales(axes: Axes, wavevector: Array) -> None:
-    """Logarithmic axes, over these wavevectors."""
+    """Make both axes logarithmic, with the range of some wavevectors."""
     from matplotlib.ticker import NullFormatter
 
     axes.set(xscale="log", yscale="log", xlim=(wavevector[0], wavevector[-1]))
@@ -126,7 +129,7 @@ def set_density_scales(axes: Axes, wavevector: Array) -> None:
 
 
 def add_wavelengths(axes: Axes) -> None:
-    """Wavelengths on the upper edge."""
+    """Add an axis of wavelengths at the upper edge."""
     from matplotlib.ticker import LogLocator, NullFormatter
 
     axes.tick_params(which="both", top=False)

@@ -1,6 +1,6 @@
-"""Figures of surfaces, loops, fronts and instabilities, each on axes that are given or new.
+"""Figures of surfaces, loops, fronts and instabilities, on new or existing axes.
 
-What is in SI units is drawn in them.
+Data in SI units are drawn in SI units.
 """
 
 from __future__ import annotations
@@ -32,14 +32,17 @@ from crackfront.surfaces.surface_array import surface_kind
 from crackfront.surfaces.tile_measures import tile_modes
 
 _ORDERS = (0.0, 0.5, 1.0)
-_REST = 0.1
-"""Part of a mean square below, and above, the scales that dominate it."""
+"""Orders of the derivatives whose dominant scales are drawn: heights, half-derivatives, slopes."""
+
+_TAIL = 0.1
+"""Part of a mean square in waves shorter than its dominant scales, and in longer ones."""
 
 _BINS_A_DECADE = 20
+"""Bins of a spectrum in a decade of wavevectors."""
 
 
 def _drawing(axes: Axes | None) -> AbstractContextManager[Axes]:
-    """Given axes in the style that they have, or new ones in that of the package."""
+    """The user's axes as they are, or new axes in the style of the package."""
     refuse_other_type(
         "axes", axes, (Axes, type(None)), "one Axes of matplotlib, as axes[0] of several"
     )
@@ -47,29 +50,30 @@ def _drawing(axes: Axes | None) -> AbstractContextManager[Axes]:
 
 
 def _reduced(data: Labelled) -> tuple[Labelled, AxisUnits]:
-    """Data in reduced units, and the units that they had."""
+    """Data in reduced units, and the units for their axes."""
     scales = stated_scales(data)
     if scales is None:
         return data, REDUCED
     return in_reduced_units(data, scales), AxisUnits(scales)
 
 
-def _refuse_no_loop(loop: object) -> None:
-    """Raise TypeError if an argument is no loop."""
-    wanted = "an xarray.Dataset, as run_loop returns it or crackfront cycle has written it"
-    refuse_other_type("loop", loop, Dataset, wanted)
+def _check_loop(loop: object) -> None:
+    """Raise TypeError unless an argument is a dataset."""
+    remedy = "an xarray.Dataset, as run_loop returns it or crackfront cycle has written it"
+    refuse_other_type("loop", loop, Dataset, remedy)
 
 
-def _refuse_no_state(loop: Dataset, name: str) -> None:
-    """Raise if the values of a name have no number, or no direction that goes with it."""
-    known = np.isfinite(loop[name].values) & np.isfinite(loop.direction.values)
-    if not np.any(known):
+def _check_states(loop: Dataset, name: str) -> None:
+    """Raise ValueError unless a loop has a state with a finite value and a direction."""
+    finite = np.isfinite(loop[name].values) & np.isfinite(loop.direction.values)
+    if not np.any(finite):
         raise ValueError(f"{name} of the loop has no finite value to plot; give another loop")
 
 
 def _fronts(loop: Dataset, name: str, site: str) -> tuple[Array, Array, NDArray[np.int64]]:
-    """Places of sites, fronts over (step, site) and directions; ValueError if one is missing."""
-    if missing := [one for one in (site, "direction") if one not in loop]:
+    """Coordinates of sites, fronts over (step, site), and directions of a loop with fronts."""
+    missing = [variable for variable in (site, "direction") if variable not in loop]
+    if missing:
         raise ValueError(f"the loop lacks {', '.join(missing)}; give it as run_loop returned it")
     fronts, direction = loop[name], loop.direction
     if {*fronts.dims} != {"step", site} or direction.dims != ("step",):
@@ -79,7 +83,7 @@ def _fronts(loop: Dataset, name: str, site: str) -> tuple[Array, Array, NDArray[
         )
     fronts = fronts.transpose("step", site)
     if not np.all(np.isfinite(fronts)):
-        raise ValueError(f"{name} holds values that are not finite; drop these states")
+        raise ValueError(f"{name} has values that are not finite; drop these states")
     return loop[site].values, fronts.values, direction.values
 
 
@@ -89,14 +93,14 @@ def plot_surface(surface: DataArray, axes: Axes | None = None) -> Axes:
     Parameters
     ----------
     surface : xarray.DataArray
-        A surface in reduced units, or what :func:`in_si_units` made of it.
+        A surface in reduced units, or in SI units (:func:`in_si_units`).
     axes : matplotlib.axes.Axes, optional
-        Where to draw; by default axes of a new figure.
+        Axes to draw on; by default axes of a new figure.
 
     Returns
     -------
     matplotlib.axes.Axes
-        The axes that it is drawn on.
+        The axes with the drawing.
 
     Raises
     ------
@@ -121,87 +125,90 @@ def plot_surface(surface: DataArray, axes: Axes | None = None) -> Axes:
 def plot_spectrum(surface: DataArray, axes: Axes | None = None) -> Axes:
     """Isotropic power spectrum of a rough surface, with the scales that dominate it.
 
-    A bar spans the wavevectors that carry 80% of the mean square of heights, half-derivatives (and
-    with them e_el) or slopes. The spectrum that the surface states is drawn beside it, if its e_el
-    is still that of the heights within a factor of two.
+    Each bar spans the wavevectors with 80% of a mean square: of heights, of half-derivatives
+    (which decide e_el), or of slopes. The spectrum in the attributes of the surface is drawn too,
+    unless its e_el differs from the heights by more than a factor of two.
 
     Parameters
     ----------
     surface, axes : optional
-        As of :func:`plot_surface`.
+        As for :func:`plot_surface`.
 
     Returns
     -------
     matplotlib.axes.Axes
-        The axes that it is drawn on.
+        The axes with the drawing.
 
     Raises
     ------
     ValueError
-        If the surface cannot be used, is not one of heights, or is flat.
+        If the surface cannot be used, is not made of heights, or is flat.
     TypeError
         If an argument is of another type.
     """
     if surface_kind(surface) != "roughness":
-        raise ValueError(f"{surface.name} has no height spectrum; plot that of height(x, y)")
+        raise ValueError(f"surface is {surface.name}; give heights, which have a height spectrum")
     surface, units = _reduced(surface)
     adhesion = surface_adhesion(surface)
     pixel = adhesion.pixel
     modes = tile_modes(surface.transpose("x", "y").values, pixel)
     if modes.power.size == 0:
-        raise ValueError("the surface is flat; it has no spectrum to plot")
+        raise ValueError("the surface is flat; give one with roughness, which has a spectrum")
     wavevector, density = modes.isotropic_density(_BINS_A_DECADE, pixel**2 * surface.size)
     shares = np.array([modes.power * modes.wavevector ** (2 * order) for order in _ORDERS])
-    totals = np.cumsum(shares, axis=1)
-    ends = [np.searchsorted(one, one[-1] * np.array([1 - _REST, _REST])) for one in totals]
+    sums = np.cumsum(shares, axis=1)
+    ends = [
+        np.searchsorted(cumulated, cumulated[-1] * np.array([1 - _TAIL, _TAIL]))
+        for cumulated in sums
+    ]
     shortest, longest = (2 * np.pi / modes.wavevector[np.array(ends)]).T
     shape, energy = stated_spectrum(surface), surface.attrs.get("elastic_energy_requested")
     ideal = None
-    # Heights that were multiplied keep the attributes, and have another spectrum.
+    # Heights keep their attributes when a user multiplies them, but the spectrum changes.
     if shape is not None and energy is not None and 0.5 < adhesion.e_el / float(energy) < 2:
         ideal = shape.with_elastic_energy(float(energy)).density(wavevector)
-    rms = np.sqrt(totals[:, -1])
+    rms = np.sqrt(sums[:, -1])
     with _drawing(axes) as drawn:
         draw_spectrum(drawn, wavevector, density, rms, shortest, longest, ideal, units)
     return drawn
 
 
 def plot_loop(loop: Dataset, axes: Axes | None = None) -> Axes:
-    """Force against mean radius, between the JKR curves of both branches and those of the paper.
+    """Force against mean radius, with the JKR curves of both branches and of the paper.
 
-    Of a straight front it is the force of its springs against their place.
+    For a straight front: the force of its springs against their position.
 
     Parameters
     ----------
     loop : xarray.Dataset
-        What :func:`run_loop` has returned or `crackfront cycle` written, in reduced units or in SI.
+        A result of :func:`run_loop` or `crackfront cycle`, in reduced units or in SI.
     axes : matplotlib.axes.Axes, optional
-        As of :func:`plot_surface`.
+        As for :func:`plot_surface`.
 
     Returns
     -------
     matplotlib.axes.Axes
-        The axes that it is drawn on.
+        The axes with the drawing.
 
     Raises
     ------
     ValueError
-        If it is no loop, or holds no state.
+        If it is not a loop, or has no state.
     TypeError
         If an argument is of another type.
     """
-    _refuse_no_loop(loop)
+    _check_loop(loop)
     if "pinning_force" in loop:
         states = cycle_record(loop).states
-        _refuse_no_state(loop, "pinning_force")
+        _check_states(loop, "pinning_force")
         with _drawing(axes) as drawn:
             draw_pinning(drawn, states)
         return drawn
     loop, units = _reduced(loop)
     states = cycle_record(loop).states
-    _refuse_no_state(loop, "force")
+    _check_states(loop, "force")
     names = "w_appr", "w_retr", "lowest_radius", "highest_radius", "e_el"
-    # A loop on rays has no such measures.
+    # Loops on rays lack these measures.
     w_appr, w_retr, lowest, highest, energy = (float(loop.get(name, math.nan)) for name in names)
     measures = (w_appr, w_retr), (lowest, highest)
     kind = loop.attrs.get("kind", "roughness")
@@ -221,37 +228,37 @@ def loop_figure(loop: Dataset) -> Figure:
 def plot_fronts(
     loop: Dataset, surface: DataArray | None = None, axes: Axes | None = None, most: int = 12
 ) -> Axes:
-    """Fronts of both branches, over the work of adhesion that pins them if the surface is given.
+    """Fronts of both branches, drawn over the work of adhesion if the surface is given.
 
     Parameters
     ----------
     loop : xarray.Dataset
-        As of :func:`plot_loop`, with its fronts.
+        As for :func:`plot_loop`, with its fronts.
     surface : xarray.DataArray, optional
-        As of :func:`plot_surface`, in the units of the loop or in others; none for straight fronts.
+        As for :func:`plot_surface`, in any units; not for straight fronts.
     axes : matplotlib.axes.Axes, optional
-        As of :func:`plot_surface`.
+        As for :func:`plot_surface`.
     most : int, optional
-        Largest number of fronts that are drawn of a branch.
+        Largest number of fronts drawn for each branch.
 
     Returns
     -------
     matplotlib.axes.Axes
-        The axes that they are drawn on.
+        The axes with the drawing.
 
     Raises
     ------
     ValueError
-        If loop or surface cannot be used, or the loop holds no fronts.
+        If loop or surface cannot be used, or the loop has no fronts.
     TypeError
         If an argument is of another type.
     """
-    _refuse_no_loop(loop)
+    _check_loop(loop)
     if isinstance(surface, Axes):
-        raise TypeError("surface is axes of matplotlib; give them by name, as axes=...")
+        raise TypeError("surface is an Axes of matplotlib; give axes by name, as axes=...")
     if ("radius" not in loop and "position" not in loop) or loop.sizes.get("step") == 0:
         raise ValueError(
-            "the loop holds no fronts; run it with fronts=True, or crackfront cycle with "
+            "the loop has no fronts; run it with fronts=True, or crackfront cycle with "
             "--record fronts"
         )
     refuse_other_type("most", most, Integral, "a whole number")
@@ -268,42 +275,48 @@ def plot_fronts(
     curves = _fronts(loop, "radius", "angle")
     with _drawing(axes) as drawn:
         if surface is not None:
-            surface_kind(surface)
-            adhesion = surface_adhesion(_reduced(surface)[0])
-            values = adhesion.work_of_adhesion / WORK_OF_ADHESION
-            # The apex is the centre of the tile, whatever the coordinates of a given surface.
-            x, y = (adhesion.pixel * (np.arange(count) - count / 2) for count in values.shape)
-            reach = max(2 * adhesion.w_rms, 0.05)
-            draw_field(drawn, x, y, values, float(np.mean(values)), reach, units)
+            _draw_pinning_field(drawn, surface, units)
         draw_fronts(drawn, *curves, most, units)
     return drawn
 
 
+def _draw_pinning_field(axes: Axes, surface: DataArray, units: AxisUnits) -> None:
+    """Draw the work of adhesion of a surface, with the apex at the centre of its tile."""
+    surface_kind(surface)
+    adhesion = surface_adhesion(_reduced(surface)[0])
+    values = adhesion.work_of_adhesion / WORK_OF_ADHESION
+    x, y = (adhesion.pixel * (np.arange(count) - count / 2) for count in values.shape)
+    reach = max(2 * adhesion.w_rms, 0.05)
+    draw_field(axes, x, y, values, float(np.mean(values)), reach, units)
+
+
 def plot_instabilities(jumps: Dataset, axes: Axes | None = None) -> Axes:
-    """What each instability of a branch has swept, coloured by the energy that it dissipated.
+    """Area that each instability of a branch swept, coloured by the dissipated energy.
 
     Parameters
     ----------
     jumps : xarray.Dataset
-        What :func:`find_instabilities` has returned, in reduced units or in SI.
+        A result of :func:`find_instabilities`, in reduced units or in SI.
     axes : matplotlib.axes.Axes, optional
-        As of :func:`plot_surface`.
+        As for :func:`plot_surface`.
 
     Returns
     -------
     matplotlib.axes.Axes
-        The axes that they are drawn on.
+        The axes with the drawing.
 
     Raises
     ------
     ValueError
-        If there is no instability.
+        If `jumps` is not a result of :func:`find_instabilities`, or is empty.
     TypeError
         If an argument is of another type.
     """
     refuse_other_type("jumps", jumps, Dataset, "what find_instabilities returns")
     if "before" not in jumps or "travel" not in jumps.attrs:
-        raise ValueError("the dataset holds no instabilities; give what find_instabilities returns")
+        raise ValueError("jumps is another dataset; give what find_instabilities returns")
+    if jumps.before.size == 0:
+        raise ValueError("the branch has no instability to draw; give another branch")
     jumps, units = _reduced(jumps)
     fronts = jumps.before.values, jumps.after.values
     energy, travel = jumps.dissipated_energy.values, float(jumps.attrs["travel"])

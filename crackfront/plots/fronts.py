@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -19,16 +20,16 @@ from crackfront.plots.parts import ON_WHITE, field_colours
 from crackfront.plots.style import BLUE, VERMILION
 
 _MOST_GREYS = 10
-"""Shades of the field; few, so that frames of an animation compress well."""
+"""Largest number of shades of the field; few, so that frames of an animation compress well."""
 
 RETRACTION = (0, (6, 1, 1, 1))
-"""Style of the line of a front in retraction, which grey print tells from one in approach."""
+"""Line style of fronts in retraction, which differ from approach in grey print too."""
 
-_FORWARD: dict[str, Any] = {"color": BLUE, "linewidth": 0.7}
-_BACK: dict[str, Any] = {"color": VERMILION, "linewidth": 0.7, "linestyle": RETRACTION}
+_APPROACH_LOOK: dict[str, Any] = {"color": BLUE, "linewidth": 0.7}
+_RETRACTION_LOOK: dict[str, Any] = {"color": VERMILION, "linewidth": 0.7, "linestyle": RETRACTION}
 
 _MARGIN = 1.15
-"""How far the axes reach, over the largest radius."""
+"""Half of the width of the axes. (Units: largest radius)"""
 
 
 def draw_field(
@@ -40,39 +41,41 @@ def draw_field(
     reach: float,
     units: AxisUnits = REDUCED,
 ) -> None:
-    """Work of adhesion in a few shades, mean - reach to mean + reach, with a colour bar.
+    """Work of adhesion in a few shades from mean - reach to mean + reach, with a colour bar.
 
-    Values at n_x abscissae and n_y ordinates (units: reduced lateral length) have the shape
-    (n_x, n_y) (units: w_int, as of mean and reach).
+    `adhesion` has the shape (n_x, n_y) (Units: w_int, as mean and reach) at n_x abscissae and n_y
+    ordinates (Units: reduced lateral length).
     """
     ends = units.scale(ADHESION) * (mean - reach), units.scale(ADHESION) * (mean + reach)
     levels = MaxNLocator(_MOST_GREYS).tick_values(*ends)
     shades = ScalarMappable(BoundaryNorm(levels, field_colours().N), field_colours())
-    # Coloured once, not once a frame.
+    # Animations draw the colours in every frame, so that they are computed here, once.
     _draw_image(axes, x, y, shades.to_rgba(units.scale(ADHESION) * adhesion.T, bytes=True), units)
     bar = axes.figure.colorbar(shades, ax=axes, pad=0.02, format="{x:.1f}", extend="both")
     units.name(bar.ax.yaxis, "local work of adhesion", ADHESION)
 
 
 def draw_heights(axes: Axes, x: Array, y: Array, heights: Array, units: AxisUnits) -> None:
-    """Heights in colours, peaks bright, with a colour bar; arrays as of :func:`draw_field`."""
+    """Heights in colours, peaks bright, with a colour bar; arrays as for :func:`draw_field`."""
     image = _draw_image(axes, x, y, units.scale(VERTICAL) * heights.T, units)
     bar = axes.figure.colorbar(image, ax=axes, pad=0.02)
     units.name(bar.ax.yaxis, "height", VERTICAL)
 
 
 def _draw_image(axes: Axes, x: Array, y: Array, values: Array, units: AxisUnits) -> AxesImage:
-    """Draw values, or their colours, at their places in the plane, and name the axes."""
-    # Pixels reach half of their width beyond the places of their values.
-    left, right, bottom, top = (
-        float(units.scale(LATERAL) * (places[end] + side * (places[1] - places[0]) / 2))
-        for places in (x, y)
-        for end, side in ((0, -1), (-1, 1))
-    )
+    """Draw values, or their colours, at points of a plane, and name the axes."""
+    extent = (*_pixel_edges(x, units), *_pixel_edges(y, units))
     look: dict[str, Any] = {"origin": "lower", "interpolation": "nearest", "cmap": "cividis"}
-    image = axes.imshow(values, extent=(left, right, bottom, top), **look)
+    image = axes.imshow(values, extent=extent, **look)
     label_plane(axes, units)
     return image
+
+
+def _pixel_edges(centres: Array, units: AxisUnits) -> tuple[float, float]:
+    """Outer edges of the first and the last pixel along an axis, from the centres of all."""
+    half_pixel = (centres[1] - centres[0]) / 2
+    edges = units.scale(LATERAL) * np.array([centres[0] - half_pixel, centres[-1] + half_pixel])
+    return float(edges[0]), float(edges[1])
 
 
 def draw_fronts(
@@ -83,13 +86,14 @@ def draw_fronts(
     most: int = 24,
     units: AxisUnits = REDUCED,
 ) -> None:
-    """Fronts of both branches as closed curves, at most so many of a branch, its last among them.
+    """Fronts of both branches as closed curves, at most `most` of each branch.
 
-    Radii (units: reduced lateral length) at n_angle angles (units: rad) have the shape
+    Radii (Units: reduced lateral length) at n_angle angles (Units: rad) have the shape
     (n_step, n_angle); n_step directions are +1 in approach, -1 in retraction.
     """
-    for sign, look, label in ((1, _FORWARD, "approach"), (-1, _BACK, "retraction")):
-        for count, front in enumerate(_few(radius[direction == sign], most)):
+    branches = (1, _APPROACH_LOOK, "approach"), (-1, _RETRACTION_LOOK, "retraction")
+    for sign, look, label in branches:
+        for count, front in enumerate(_thinned(radius[direction == sign], most)):
             name = label if count == 0 else None
             axes.plot(*closed_front(angle, units.scale(LATERAL) * front), label=name, **look)
     frame_plane(axes, _MARGIN * float(np.max(radius)), units)
@@ -99,13 +103,13 @@ def draw_fronts(
 def draw_straight_fronts(
     axes: Axes, y: Array, position: Array, direction: NDArray[np.int64], most: int = 24
 ) -> None:
-    """Straight fronts of both branches, at most so many of a branch, its last among them.
+    """Straight fronts of both branches, at most `most` of each branch.
 
-    Positions at n_site ordinates (units: length of the tile) have the shape (n_step, n_site);
-    n_step directions are +1 where the load advances, -1 where it recedes.
+    Positions at n_site ordinates (Units: length of the tile) have the shape (n_step, n_site);
+    n_step directions are +1 if the load advances, -1 if it recedes.
     """
-    for sign, look, label in ((1, _FORWARD, "forward"), (-1, _BACK, "back")):
-        for count, front in enumerate(_few(position[direction == sign], most)):
+    for sign, look, label in ((1, _APPROACH_LOOK, "forward"), (-1, _RETRACTION_LOOK, "back")):
+        for count, front in enumerate(_thinned(position[direction == sign], most)):
             name = label if count == 0 else None
             axes.plot(front, y, label=name, **look)
     axes.set_xlabel("$x$, along the motion (unit of the tile)")
@@ -113,20 +117,21 @@ def draw_straight_fronts(
     axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2)
 
 
-def _few(fronts: Array, most: int) -> Array:
-    """At most so many fronts of a branch, from its last backwards."""
-    return fronts[::-1][:: -(-len(fronts) // most) or 1]
+def _thinned(fronts: Array, most: int) -> Array:
+    """At most `most` evenly chosen fronts of a branch, the last one first."""
+    step = max(1, math.ceil(len(fronts) / most))
+    return fronts[::-1][::step]
 
 
 def frame_plane(axes: Axes, reach: float, units: AxisUnits = REDUCED) -> None:
-    """A square of the plane around the apex, with its names and units."""
+    """Limit the axes to a square around the apex, and name them."""
     ends = -units.scale(LATERAL) * reach, units.scale(LATERAL) * reach
     axes.set(xlim=ends, ylim=ends, aspect="equal")
     label_plane(axes, units)
 
 
 def label_plane(axes: Axes, units: AxisUnits = REDUCED) -> None:
-    """Names and units of both lateral axes."""
+    """Name both lateral axes, with their units."""
     units.name(axes.xaxis, "$x$", LATERAL)
     units.name(axes.yaxis, "$y$", LATERAL)
 

@@ -1,4 +1,4 @@
-"""What instabilities have swept, as patches in the colours of the energies that they dissipated."""
+"""Maps of instabilities: swept areas as patches, coloured by the dissipated energy."""
 
 from __future__ import annotations
 
@@ -27,21 +27,14 @@ def draw_instabilities(
     travel: float,
     units: AxisUnits = REDUCED,
 ) -> None:
-    """The instabilities of a branch, with a colour bar.
+    """The instabilities of a branch, at least one, with a colour bar.
 
-    Fronts before and after (units: reduced lateral length) at n_angle angles (units: rad) have the
-    shape (n_jump, n_angle), dissipated energies (n_jump,) (units: pi w_int R times a reduced
-    vertical length). Motions of a site are drawn from `travel` on.
-
-    Raises
-    ------
-    ValueError
-        If there is no instability.
+    Fronts before and after (Units: reduced lateral length) at n_angle angles (Units: rad) have the
+    shape (n_jump, n_angle), dissipated energies (n_jump,) (Units: pi w_int R times a reduced
+    vertical length). Sites that moved by less than `travel` are not drawn.
     """
-    if energy.size == 0:
-        raise ValueError("the branch has no instability; there is none to draw")
     shades = energy_shades(units.scale(ENERGY) * energy)
-    # Around from the site that moved least, so that no patch spans the ends of the array.
+    # Start at the site that moved least, so that no patch spans the ends of the array.
     start = np.argmin(np.abs(after - before), axis=1)
     site = (start[:, None] + np.arange(angle.size + 1)) % angle.size
     length = units.scale(LATERAL)
@@ -53,7 +46,7 @@ def draw_instabilities(
 
 
 def energy_shades(energy: Array) -> ScalarMappable:
-    """Logarithmic colours of energies, one for the few smallest."""
+    """Logarithmic colours of energies; the smallest 2% share a colour."""
     return ScalarMappable(LogNorm(np.quantile(energy, 0.02), energy.max()), "viridis")
 
 
@@ -68,19 +61,19 @@ def draw_patches(
 ) -> None:
     """Outlines of the contiguous parts of fronts that moved, in colours of the energies.
 
-    Arguments are as of :func:`draw_instabilities`, but for angles of the sites of each front, of
-    the shape of the fronts, and the abscissa of the apex (units: reduced lateral length).
+    Arguments are as for :func:`draw_instabilities`, but angles have the shape of the fronts, which
+    are a pair (before, after). `apex` is the abscissa of the apex (Units: reduced lateral length).
     """
     patches, energies = [], []
-    for around, one, other, lost in zip(angle, *fronts, energy, strict=True):
-        compass = np.stack([np.cos(around), np.sin(around)], axis=1)
-        moved = np.abs(other - one) > travel
+    for angles, before, after, lost in zip(angle, *fronts, energy, strict=True):
+        rays = np.stack([np.cos(angles), np.sin(angles)], axis=1)
+        moved = np.abs(after - before) > travel
         edges = np.flatnonzero(np.diff(moved.astype(int), prepend=0, append=0))
         for first, last in edges.reshape(-1, 2):
-            # One point more at each end, where the two fronts meet.
+            # Add a point at each end, because the two fronts meet there.
             part = slice(max(first - 1, 0), last + 1)
-            there, back = one[part, None] * compass[part], other[part, None] * compass[part]
-            patches.append(np.concatenate([there, back[::-1]]) + np.array([apex, 0.0]))
+            start, end = before[part, None] * rays[part], after[part, None] * rays[part]
+            patches.append(np.concatenate([start, end[::-1]]) + np.array([apex, 0.0]))
             energies.append(lost)
     collection = PolyCollection(patches, norm=shades.norm, cmap=shades.cmap)
     collection.set(array=np.array(energies), edgecolors="black", linewidths=0.2)

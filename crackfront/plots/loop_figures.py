@@ -1,4 +1,4 @@
-"""Figure of one cycle: force against mean radius between two JKR curves, or of a straight front."""
+"""Figures of one cycle: force against mean radius with JKR curves, or of a straight front."""
 
 from __future__ import annotations
 
@@ -28,21 +28,26 @@ if TYPE_CHECKING:
     from crackfront.simulate.run_simulation import SimulationResult
 
 FEWEST_FOR_ARROW = 5
-"""States that a branch must have for a part of it to have a direction."""
+"""Smallest number of states of a branch with an arrow for its direction."""
 
 MOST_MARKERS = 60
-"""Markers on a branch, roughly; of more states only every second, third ... is marked."""
+"""Approximate largest number of markers on a branch; further states have no marker."""
 
-_HALF_ARROW, _MARGIN, _LEGEND = 0.07, 0.02, 0.55
-"""Half of the length of an arrow, least distance from the edges, and what a legend takes at the
-upper left. (Units: axes)"""
+_HALF_ARROW = 0.07
+"""Half of the length of an arrow. (Units: axes)"""
 
-_ASIDE = (-0.09, -0.07, -0.05, 0.05, 0.07, 0.09)
-"""Distances from its branch at which an arrow may stand. (Units: axes)"""
+_MARGIN = 0.02
+"""Least distance of an arrow from the edges. (Units: axes)"""
+
+_LEGEND = 0.55
+"""Width and height of the space for a legend at the upper left. (Units: axes)"""
+
+_ARROW_OFFSETS = (-0.09, -0.07, -0.05, 0.05, 0.07, 0.09)
+"""Distances between a branch and its arrow that are tried. (Units: axes)"""
 
 
 class LoopStates(Protocol):
-    """What is drawn of the states of a cycle."""
+    """Columns of the states of a cycle that are drawn."""
 
     @property
     def direction(self) -> NDArray[np.int64]:
@@ -61,7 +66,7 @@ _BRANCHES = {
     direction: PointStyle(colour, marker, ContactState.branch_names[direction])
     for direction, colour, marker in ((1, BLUE, "o"), (-1, VERMILION, "s"))
 }
-"""How the branch of each direction is drawn."""
+"""Style of the branch of each direction."""
 
 
 def simulation_figure(result: SimulationResult) -> Figure:
@@ -85,7 +90,7 @@ def simulation_figure(result: SimulationResult) -> Figure:
             return figure
     steady = steady_adhesion(result.record, simulation.correlation_length)
     works, window = (steady.w_appr, steady.w_retr), (steady.lowest_radius, steady.highest_radius)
-    # Steady parts have no loop to draw but the one that they stand for.
+    # Steady parts are no closed loop; draw the loop that follows from their works of adhesion.
     if result.record.status is Status.STEADY and np.all(np.isfinite(works)):
         return steady_loop_figure(
             states, works, window, elastic_energy=energy, kind=kind, title=title
@@ -106,48 +111,55 @@ def steady_loop_figure(
     kind: FieldKind = "roughness",
     title: str = "",
 ) -> Figure:
-    """The loop that steady parts of two branches stand for, beside these parts.
+    """The steady parts of two branches, and the loop that follows from their works of adhesion.
 
-    Parameters are those of :func:`draw_loop`; both works of adhesion have values. The figure is a
-    page wide.
+    Parameters are as for :func:`draw_loop`, with finite works of adhesion. The figure is a page
+    wide.
     """
     with house_style():
         figure = blank_figure(PAGE, 0.44 * PAGE)
-        left, right = figure.subplots(1, 2)
-        _draw_whole(left, states, works, window)
+        left_axes, right_axes = figure.subplots(1, 2)
+        _draw_whole(left_axes, states, works, window)
         draw_loop(
-            right, states, works, window, elastic_energy=elastic_energy, kind=kind, arrows=False
+            right_axes,
+            states,
+            works,
+            window,
+            elastic_energy=elastic_energy,
+            kind=kind,
+            arrows=False,
         )
-        legends = (axes.get_legend_handles_labels() for axes in (right, left))
-        handles, labels = (one + other for one, other in zip(*legends, strict=True))
-        right.get_legend().remove()
+        handles, labels = right_axes.get_legend_handles_labels()
+        left_handles, left_labels = left_axes.get_legend_handles_labels()
+        right_axes.get_legend().remove()
+        handles, labels = handles + left_handles, labels + left_labels
         figure.legend(handles, labels, loc="outside upper center", ncols=4, title=title)
-        for axes, letter in ((left, "a"), (right, "b")):
+        for axes, letter in ((left_axes, "a"), (right_axes, "b")):
             axes.set_title(letter, loc="left", fontweight="bold")
-        left.set_title("loop of its works of adhesion", fontsize=7)
-        right.set_title("steady parts, which were simulated", fontsize=7)
+        left_axes.set_title("loop of its works of adhesion", fontsize=7)
+        right_axes.set_title("steady parts, which were simulated", fontsize=7)
         return figure
 
 
 def _draw_whole(
     axes: Axes, states: LoopStates, works: tuple[float, float], window: tuple[float, float]
 ) -> None:
-    """Loop of a smooth sphere with the work of adhesion of either branch, and the states on it."""
-    turn = float(np.max(states.mean_radius))
+    """Loop of a smooth sphere with each branch's work of adhesion, and the states."""
+    largest = float(np.max(states.mean_radius))
     starts = jkr.equilibrium_radius(0.0, works[0]), jkr.pull_off_radius(works[1])
     for direction, adhesion, start in zip(_BRANCHES, works, starts, strict=True):
         colour = _BRANCHES[direction].colour
         look: dict[str, Any] = {"color": colour, "zorder": 2}
-        radius = np.linspace(start, turn, 300)
+        radius = np.linspace(start, largest, 300)
         force = jkr.equilibrium_force(radius, adhesion)
         axes.plot(radius, force, linewidth=1.0, **look)
         axes.plot([0.0, start], [0.0, force[0]], linewidth=0.7, dashes=(4, 2), **look)
         _mark_states(axes, states, direction, markersize=2, markeredgewidth=0.5)
         middle = np.array([150, 151])[::direction]
         draw_arrow(axes, radius[middle], force[middle], colour)
-    ends = jkr.equilibrium_force(turn, np.array(works))
+    ends = jkr.equilibrium_force(largest, np.array(works))
     look = {"color": "0.35", "linewidth": 0.7, "dashes": (1, 1.5), "zorder": 1}
-    axes.plot([turn, turn], ends, label="edge pinned at the turn", **look)
+    axes.plot([largest, largest], ends, label="edge pinned at the turn", **look)
     axes.axvspan(*window, color="0.93", linewidth=0, zorder=0)
     axes.annotate(
         "jumps into and out of contact",
@@ -157,7 +169,7 @@ def _draw_whole(
         color="0.35",
     )
     low, high = jkr.pull_off_force(works[1]), float(max(ends[0], np.max(states.force)))
-    axes.set_xlim(0.0, 1.06 * turn)
+    axes.set_xlim(0.0, 1.06 * largest)
     axes.set_ylim(low - 0.08 * (high - low), max(high, 0.0) + 0.1 * (high - low))
     _name_axes(axes)
 
@@ -175,31 +187,37 @@ def draw_loop(
 ) -> None:
     """Draw the two branches, their JKR curves and the window of the averages.
 
-    No curves are drawn where w_appr and w_retr are NaN (units: w_int). They are averages over a
-    window of mean radii (units: reduced lateral length). The measured e_el (units: w_int) and the
-    kind of field are those of the curves that the paper predicts, none with NaN. Arrows beside the
-    branches have their directions.
-
-    Raises
-    ------
-    ValueError
-        If the record holds no state.
+    Parameters
+    ----------
+    axes : matplotlib.axes.Axes
+        Axes to draw on.
+    states : LoopStates
+        States of the cycle, at least one.
+    works : tuple of float
+        w_appr and w_retr for the JKR curves; NaN for no curve. (Units: w_int)
+    window : tuple of float
+        Range of mean radii over which they are averaged. (Units: reduced lateral length)
+    elastic_energy, kind : optional
+        Measured e_el (Units: w_int) and kind of field, for the curves of the paper; NaN for none.
+    arrows : bool, optional
+        Whether arrows show the directions of the branches.
+    units : AxisUnits, optional
+        Units of the axes.
     """
-    if states.mean_radius.size == 0:
-        raise ValueError("the record holds no state; there is no loop to draw")
     radius = np.linspace(0.0, 1.2 * np.max(states.mean_radius), 300)
 
     def draw_curve(adhesion: float, label: str | None, **look: Any) -> None:
         force = units.scale(FORCE) * jkr.equilibrium_force(radius, adhesion)
         axes.plot(units.scale(LATERAL) * radius, force, label=label, **look)
 
-    for (direction, look), adhesion in zip(_BRANCHES.items(), works, strict=True):
+    for (direction, style), adhesion in zip(_BRANCHES.items(), works, strict=True):
         every = max(1, np.count_nonzero(states.direction == direction) // MOST_MARKERS)
         sizes = {"markersize": 2.8, "markeredgewidth": 0.6, "markevery": every}
-        _mark_states(axes, states, direction, units, label=look.label, **sizes)
+        _mark_states(axes, states, direction, units, label=style.label, **sizes)
         if np.isfinite(adhesion):
-            label = rf"JKR, $w_\mathrm{{{look.label[:4]}}} = {units.adhesion_text(adhesion)}$"
-            draw_curve(adhesion, label, color=look.colour, linewidth=1.0, zorder=2)
+            branch = style.label[:4]  # appr or retr
+            label = rf"JKR, $w_\mathrm{{{branch}}} = {units.adhesion_text(adhesion)}$"
+            draw_curve(adhesion, label, color=style.colour, linewidth=1.0, zorder=2)
     if np.isfinite(elastic_energy):
         centre = 1 - elastic_energy if kind == "roughness" else 1.0
         text = f"JKR, $k = {PAPER_FACTOR:g}$ (paper)"
@@ -210,18 +228,18 @@ def draw_loop(
         ends = (units.scale(LATERAL) * end for end in window)
         axes.axvspan(*ends, color="0.93", linewidth=0, zorder=0, label="window of the averages")
     _set_limits(axes, states, units)
-    for direction in _BRANCHES if arrows else ():
-        _draw_motion(axes, *_places(states, direction, units), _BRANCHES[direction].colour)
+    if arrows:
+        for direction, style in _BRANCHES.items():
+            _draw_direction(axes, *_points(states, direction, units), style.colour)
     _name_axes(axes, units)
     axes.legend(loc="upper left")
 
 
-def _places(states: LoopStates, direction: int, units: AxisUnits) -> tuple[Array, Array]:
+def _points(states: LoopStates, direction: int, units: AxisUnits) -> tuple[Array, Array]:
     """Mean radii and forces of a branch in the units of the axes."""
     branch = states.direction == direction
-    return units.scale(LATERAL) * states.mean_radius[branch], units.scale(FORCE) * states.force[
-        branch
-    ]
+    radius, force = states.mean_radius[branch], states.force[branch]
+    return units.scale(LATERAL) * radius, units.scale(FORCE) * force
 
 
 def _mark_states(
@@ -229,12 +247,12 @@ def _mark_states(
 ) -> None:
     """Draw an open marker for each state of a branch."""
     look |= {"color": _BRANCHES[direction].colour, "marker": _BRANCHES[direction].marker}
-    places = _places(states, direction, units)
-    axes.plot(*places, linestyle="none", markerfacecolor="none", zorder=3, **look)
+    points = _points(states, direction, units)
+    axes.plot(*points, linestyle="none", markerfacecolor="none", zorder=3, **look)
 
 
 def _name_axes(axes: Axes, units: AxisUnits = REDUCED) -> None:
-    """Names of the axes of a loop."""
+    """Name the axes of a loop."""
     units.name(axes.xaxis, "mean contact radius", LATERAL)
     units.name(axes.yaxis, "normal force", FORCE)
 
@@ -246,18 +264,11 @@ def draw_pinning(
     *,
     elastic_energy: float | None = None,
 ) -> None:
-    """Draw both branches, and their means over the last period of the tile if it is given.
+    """Draw both branches of a straight front, and their means over the last period of the tile.
 
-    The last `n_period` states of each branch are a period. Its mean is k times the measured e_el
-    (units: w_int).
-
-    Raises
-    ------
-    ValueError
-        If there is no state, or a branch has fewer of them than a period.
+    The last `n_period` states of each branch are a period; their mean is k times the measured e_el
+    (Units: w_int). Without these two arguments, no means are drawn.
     """
-    if states.spring_position.size == 0:
-        raise ValueError("the record holds no state; there is no loop to draw")
     for direction, colour in ((1, BLUE), (-1, VERMILION)):
         name = states.branch_names[direction]
         branch = states.direction == direction
@@ -265,11 +276,6 @@ def draw_pinning(
         axes.plot(load, pinning, color=colour, linewidth=0.8, label=name, zorder=3)
         if n_period is None or elastic_energy is None:
             continue
-        if load.size < n_period:
-            raise ValueError(
-                f"the branch {name} has {load.size} states, fewer than the {n_period} of a period; "
-                "the front was left before it had passed the tile"
-            )
         mean = float(np.mean(pinning[-n_period:]))
         label = rf"mean of a period, $k={direction * mean / elastic_energy:.2f}$"
         look: dict[str, Any] = {"linewidth": 1.0, "dashes": (4, 2), "zorder": 4}
@@ -294,27 +300,33 @@ def _set_limits(axes: Axes, states: LoopStates, units: AxisUnits) -> None:
         setter(unit * (low - below * span), unit * (high + above * span))
 
 
-def _draw_motion(axes: Axes, radius: Array, force: Array, colour: str) -> None:
-    """Arrow beside a branch, in the direction of motion, where it is furthest from all curves."""
+def _draw_direction(axes: Axes, radius: Array, force: Array, colour: str) -> None:
+    """Draw an arrow next to a branch in its direction, as far from all curves as possible."""
     if radius.size < FEWEST_FOR_ARROW:
         return
     to_axes = axes.transData + axes.transAxes.inverted()
-    drawn = np.concatenate([to_axes.transform(line.get_xydata()) for line in axes.get_lines()])
-    places = to_axes.transform(np.stack([radius, force], axis=1))
+    curves = np.concatenate([to_axes.transform(line.get_xydata()) for line in axes.get_lines()])
+    points = to_axes.transform(np.stack([radius, force], axis=1))
     span = max(1, radius.size // 5)
-    tails, heads = places[:-span], places[span:]
-    along = (heads - tails) / np.hypot(*(heads - tails).T)[:, None]
-    centres = (tails + heads) / 2
-    found = []
-    for aside in _ASIDE:
-        middle = centres + aside * np.stack([-along[:, 1], along[:, 0]], axis=1)
-        ends = np.stack([middle + part * _HALF_ARROW * along for part in (-1, 0, 1)])
-        apart = np.hypot(*(ends[:, :, None] - drawn).transpose(3, 0, 1, 2)).min(axis=(0, 2))
-        inside = np.all((ends > _MARGIN) & (ends < 1 - _MARGIN), axis=(0, 2))
-        free = inside & ~np.any((ends < _LEGEND)[..., 0] & (ends > 1 - _LEGEND)[..., 1], axis=0)
-        found += [(apart[k], *ends[::2, k]) for k in np.flatnonzero(free)]
-    if not found:
+    chords = points[span:] - points[:-span]
+    along = chords / np.hypot(*chords.T)[:, None]
+    across = np.stack([-along[:, 1], along[:, 0]], axis=1)
+    centres = (points[:-span] + points[span:]) / 2
+    arrows = [
+        middle + _HALF_ARROW * np.outer([-1, 0, 1], direction)
+        for offset in _ARROW_OFFSETS
+        for middle, direction in zip(centres + offset * across, along, strict=True)
+    ]
+    arrows = [arrow for arrow in arrows if _fits_axes(arrow)]
+    if not arrows:
         return
-    _, tail, head = max(found, key=lambda one: float(one[0]))
+    best = max(arrows, key=lambda arrow: float(np.hypot(*(arrow[:, None] - curves).T).min()))
     look = {"arrowstyle": "-|>", "color": colour, "linewidth": 1.0, "mutation_scale": 8}
-    axes.annotate("", head, tail, "axes fraction", arrowprops=look, zorder=4)
+    axes.annotate("", best[-1], best[0], "axes fraction", arrowprops=look, zorder=4)
+
+
+def _fits_axes(arrow: Array) -> bool:
+    """Whether the points of an arrow, (3, 2), are inside the axes and outside the legend."""
+    on_legend = (arrow[:, 0] < _LEGEND) & (arrow[:, 1] > 1 - _LEGEND)
+    inside = (arrow > _MARGIN) & (arrow < 1 - _MARGIN)
+    return bool(np.all(inside) and not np.any(on_legend))

@@ -38,31 +38,31 @@ ON_WHITE: dict[str, Any] = {
     "framealpha": 1,
     "edgecolor": "none",
 }
-"""Of a legend that covers lines."""
+"""Style of a legend that covers lines."""
 
 
 def field_colours() -> Colormap:
-    """From weak to strong adhesion, light enough for black, blue and vermilion lines."""
+    """Colours from weak to strong adhesion, light enough for lines on top."""
     from matplotlib.colors import LinearSegmentedColormap
 
     return LinearSegmentedColormap.from_list("field", ["white", "0.45"])
 
 
 def _arrow(style: str, colour: str, width: float, head: float) -> dict[str, Any]:
-    """Style of an arrow that reaches both of its ends."""
+    """Style of an arrow that is as long as the distance of its ends."""
     look = {"arrowstyle": style, "color": colour, "linewidth": width, "mutation_scale": head}
     return {**look, "shrinkA": 0, "shrinkB": 0}
 
 
 def draw_arrow(axes: Axes, abscissa: Array, ordinate: Array, colour: str) -> None:
-    """Arrow head on a curve, from the first to the last of a few of its points."""
-    head, tail = ((abscissa[place], ordinate[place]) for place in (-1, 0))
+    """Arrow head on a curve, from the first to the last of some of its points."""
+    head, tail = (abscissa[-1], ordinate[-1]), (abscissa[0], ordinate[0])
     axes.annotate("", head, tail, arrowprops=_arrow("-|>", colour, 1.0, 8), zorder=4)
 
 
 @dataclass(frozen=True, slots=True)
 class PointStyle:
-    """How points of one kind are drawn, and their entry in a legend; empty for none."""
+    """Style of the points of one kind, and their entry in a legend, which may be empty."""
 
     colour: str
     marker: str
@@ -74,26 +74,26 @@ def spectrum_styles(table: SweepTable) -> tuple[PointStyle, ...]:
 
     Straight fronts of one spectrum on several springs share a colour and differ by marker.
     """
-    families, found = spectrum_families(table), []
+    families, styles = spectrum_families(table), []
     for index, family in enumerate(families):
         colour = marker = index
         label = spectrum_label(table, index)
         if table.on_springs:
             colour, marker = family, families[:index].count(family)
             label = "" if marker else label
-        found.append(PointStyle(spectrum_colour(colour), spectrum_marker(marker), label))
-    return tuple(found)
+        styles.append(PointStyle(spectrum_colour(colour), spectrum_marker(marker), label))
+    return tuple(styles)
 
 
 def spectrum_families(table: SweepTable) -> list[int]:
-    """Number of the spectrum of every entry of a table; fronts on several springs share one."""
+    """Number of each entry's spectrum; entries that only differ by their springs share a number."""
     shapes = [table.shape_of(index).identity for index in range(table.spectrum.size)]
-    known = list(dict.fromkeys(shapes))
-    return [known.index(shape) for shape in shapes]
+    distinct = list(dict.fromkeys(shapes))
+    return [distinct.index(shape) for shape in shapes]
 
 
 def spring_label(fit: SweepFit, index: int) -> str:
-    """Length of the springs in correlation lengths, or g where that is what amplitudes share."""
+    """Length of the springs in correlation lengths, or g if the amplitudes share g."""
     if _share_length(fit):
         length = fit.table.spring[index, 0] / fit.table.correlation_length[index]
         return rf"$L_\kappa={length:.3g}\,\xi$"
@@ -101,14 +101,14 @@ def spring_label(fit: SweepFit, index: int) -> str:
 
 
 def springs_explained(fit: SweepFit) -> str:
-    """What the symbols of :func:`spring_label` are."""
+    """Explanation of the symbols of :func:`spring_label`."""
     if _share_length(fit):
         return r"$L_\kappa$: length of the springs, $\xi$: correlation length of the field"
     return "$g$: length of the springs over the Larkin length"
 
 
 def _share_length(fit: SweepFit) -> bool:
-    """Whether the springs of a spectrum have one length at all amplitudes."""
+    """Whether the springs of each spectrum have the same length at all amplitudes."""
     springs = fit.table.spring
     return bool(np.all(np.ptp(springs, axis=1) < 1e-6 * np.max(springs, axis=1)))
 
@@ -128,7 +128,7 @@ def draw_estimates(
         axes.errorbar(
             abscissa[chosen],
             estimate.value[chosen],
-            # Without a bar among the points, there is none in the legend.
+            # With None, the legend does not show bars either.
             yerr=reach[chosen] if np.any(reach) else None,
             linestyle="none",
             marker=style.marker,
@@ -145,7 +145,7 @@ def draw_estimates(
 
 
 def draw_below(axes: Axes, index: int, colour: str, abscissa: Array) -> None:
-    """Draw an arrow at the lower edge for each mean below it, those of the spectra side by side."""
+    """Draw an arrow at the lower edge for each mean below it, with a shift for each spectrum."""
     for position in abscissa * 1.05 ** (index - 1):
         ends, look = ((position, 0.005), (position, 0.05)), _arrow("->", colour, 0.8, 5)
         axes.annotate("", *ends, xycoords=axes.get_xaxis_transform(), arrowprops=look)
@@ -165,7 +165,7 @@ def draw_fit(axes: Axes, fit: SweepFit) -> None:
 def draw_law(
     axes: Axes, fit: SweepFit, curve: Callable[[Array, Array], tuple[Array, Array]]
 ) -> None:
-    """Curves of k by the law, one a spectrum, of points that are made of e_el and k."""
+    """Curves of k by the law, one for each spectrum; `curve` maps e_el and k to points."""
     law = SweepLaw(fit.table, fit.kind, fit.uncorrelated)
     drawn = False
     for index, style in enumerate(spectrum_styles(fit.table)):
@@ -178,7 +178,7 @@ def draw_law(
 
 
 def draw_theory(axes: Axes, ends: Array, unit: ArrayLike = 1.0) -> None:
-    """Lines of the paper's k and that of perturbation theory; `unit` is the ordinate of k = 1."""
+    """Lines of k by the paper and by perturbation theory; `unit` is the ordinate of k = 1."""
     look: dict[str, Any] = {"color": "0.35", "linewidth": 0.7, "zorder": 1}
     for factor, dashes, name in (
         (PAPER_FACTOR, (4, 2), "paper"),
@@ -189,7 +189,7 @@ def draw_theory(axes: Axes, ends: Array, unit: ArrayLike = 1.0) -> None:
 
 
 def legend_entries(axes: Axes) -> tuple[list[Artist], list[str]]:
-    """Handles and labels, the spectra before the lines."""
+    """Handles and labels of a legend, the spectra before the lines."""
     from matplotlib.lines import Line2D
 
     handles, labels = axes.get_legend_handles_labels()
@@ -197,17 +197,17 @@ def legend_entries(axes: Axes) -> tuple[list[Artist], list[str]]:
     return [handles[entry] for entry in order], [labels[entry] for entry in order]
 
 
-def label_decimals(axis: Axis, places: Locator | None = None) -> None:
-    """Label places of a logarithmic axis, by default 1, 2 and 5 of every decade, as decimals."""
+def label_decimals(axis: Axis, locator: Locator | None = None) -> None:
+    """Label a logarithmic axis with decimals, by default at 1, 2 and 5 in every decade."""
     from matplotlib.ticker import LogLocator, NullFormatter
 
-    axis.set_major_locator(places or LogLocator(subs=(1.0, 2.0, 5.0)))
+    axis.set_major_locator(locator or LogLocator(subs=(1.0, 2.0, 5.0)))
     axis.set_major_formatter("{x:g}")
     axis.set_minor_formatter(NullFormatter())
 
 
 def spectrum_label(table: SweepTable, index: int) -> str:
-    """Parameters of a spectrum."""
+    """Parameters of a spectrum, for a legend."""
     cutoff = rf"$\lambda_\mathrm{{s}}={table.short_cutoff[index]:g}$"
     if np.isnan(table.hurst[index]):
         name = str(table.spectrum[index])
@@ -219,21 +219,21 @@ def spectrum_label(table: SweepTable, index: int) -> str:
 
 
 def name_without_spring(name: str) -> str:
-    """Name that the configuration gives to a spectrum, of one that a sweep of springs gives."""
+    """Name of a spectrum in the configuration, without the suffix for its springs."""
     return name.rpartition("-L")[0] or name
 
 
 def spectrum_colour(index: int) -> str:
-    """Colour of a spectrum."""
+    """Colour of a spectrum, by its number."""
     return COLOURS[index % len(COLOURS)]
 
 
 def spectrum_marker(index: int) -> str:
-    """Marker of a spectrum."""
+    """Marker of a spectrum, by its number."""
     return MARKERS[index % len(MARKERS)]
 
 
-def label_panel(axes: Axes, name: str, left: float = 4.0) -> None:
-    """Bold letter of a panel above its upper left corner, so many points to the left of it."""
+def label_panel(axes: Axes, name: str, shift: float = 4.0) -> None:
+    """Bold letter of a panel above its upper left corner, shifted to the left (Units: point)."""
     look: dict[str, Any] = {"fontsize": 9, "fontweight": "bold", "ha": "right"}
-    axes.annotate(name, (0, 1), (-left, 4), "axes fraction", "offset points", **look)
+    axes.annotate(name, (0, 1), (-shift, 4), "axes fraction", "offset points", **look)

@@ -1,6 +1,6 @@
-"""Style of every figure: sizes, colours, fonts, and how a figure is written.
+"""Style of every figure: sizes, colours, fonts, and the writing of files.
 
-matplotlib is imported by the functions that draw, so that who only computes does without it.
+Functions import matplotlib only when they draw, because it is slow to import.
 """
 
 from __future__ import annotations
@@ -19,25 +19,35 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-COLUMN, PAGE = 85 / 25.4, 170 / 25.4
-"""Widths in print of one column and of a page (Units: inch)."""
+COLUMN = 85 / 25.4
+"""Width of a column in print. (Units: inch)"""
 
-BLUE, VERMILION, GREEN, PURPLE = "#0072B2", "#D55E00", "#009E73", "#CC79A7"
-ORANGE, SKY, BLACK = "#E69F00", "#56B4E9", "#000000"
-"""Colours of Okabe and Ito, which the colour-blind tell apart."""
+PAGE = 170 / 25.4
+"""Width of a page in print. (Units: inch)"""
+
+# Colours of Okabe and Ito, which colour-blind readers can distinguish.
+BLUE = "#0072B2"
+VERMILION = "#D55E00"
+GREEN = "#009E73"
+PURPLE = "#CC79A7"
+ORANGE = "#E69F00"
+SKY = "#56B4E9"
+BLACK = "#000000"
 
 COLOURS = (GREEN, BLUE, PURPLE, VERMILION, ORANGE, SKY, BLACK)
+"""Colours of the spectra."""
+
 MARKERS = ("s", "o", "^", "D", "v", "P", "X")
-"""One colour and marker a spectrum; after seven both repeat, out of step."""
+"""Markers of the spectra."""
 
-_SMALL = 6.5
-"""Size of the font of explanations."""
+_EXPLANATION_FONT = 6.5
+"""Size of the font of explanations. (Units: point)"""
 
-_SHOWN = 4.0
-"""Width of a figure on a screen (Units: inch)."""
+_SCREEN_WIDTH = 4.0
+"""Width of a figure on a screen. (Units: inch)"""
 
-_SCREEN = 144
-"""Pixels an inch of pictures for a screen."""
+_SCREEN_RESOLUTION = 144
+"""Resolution of pictures for a screen. (Units: pixels per inch)"""
 
 STYLE: dict[Any, Any] = {
     "font.family": "DejaVu Sans",
@@ -72,7 +82,7 @@ STYLE: dict[Any, Any] = {
 
 @contextmanager
 def house_style() -> Iterator[None]:
-    """Style of all figures, whatever the user's own settings; left as it was found."""
+    """Use the style of all figures, whatever the user's settings, and restore these afterwards."""
     import matplotlib
 
     with matplotlib.rc_context():
@@ -82,7 +92,7 @@ def house_style() -> Iterator[None]:
 
 
 def blank_figure(width: float, height: float) -> Figure:
-    """Empty figure on a canvas of its own; width and height in inches."""
+    """Empty figure that no window shows; width and height in inches."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
@@ -92,19 +102,19 @@ def blank_figure(width: float, height: float) -> Figure:
 
 
 def explain(figure: Figure, text: str) -> None:
-    """Lines below a figure that say what its legend does not: bars, open symbols, grey lines."""
-    per_inch = 72 / (0.56 * _SMALL)
+    """Write lines below a figure that explain what is missing in its legend."""
+    per_inch = 72 / (0.56 * _EXPLANATION_FONT)
     lines = textwrap.fill(text, int(per_inch * figure.get_figwidth()))
-    figure.supxlabel(lines, fontsize=_SMALL, color="0.25")
+    figure.supxlabel(lines, fontsize=_EXPLANATION_FONT, color="0.25")
 
 
 @contextmanager
 def shown_axes() -> Iterator[Axes]:
-    """Axes of a new figure that a notebook shows, unless drawing on them fails."""
+    """Axes of a new figure for pyplot or a notebook; closed again if drawing fails."""
     from matplotlib import pyplot
 
     with house_style():
-        figure = pyplot.figure(figsize=(_SHOWN, 0.8 * _SHOWN), dpi=_SCREEN)
+        figure = pyplot.figure(figsize=(_SCREEN_WIDTH, 0.8 * _SCREEN_WIDTH), dpi=_SCREEN_RESOLUTION)
         try:
             yield figure.add_subplot()
         except BaseException:
@@ -113,23 +123,23 @@ def shown_axes() -> Iterator[Axes]:
 
 
 _DATES = {".pdf": "CreationDate", ".png": "Software", ".svg": "Date"}
-"""Metadata in which each format states the date or the program of a figure; they are left out."""
+"""Metadata with the date or the program, left out so that equal figures have equal bytes."""
 
 
 _SUBJECTS = {".pdf": "Subject", ".png": "Description", ".svg": "Description"}
-"""Metadata in which each format states what it is a figure of."""
+"""Metadata with the subject of a figure."""
 
 
 def save_figure(figure: Figure, stem: Path, subject: str = "") -> tuple[Path, ...]:
-    """Write a figure as PDF and PNG (300 dpi), its folder too; equal figures give equal bytes.
+    """Write a figure as PDF and PNG (300 dpi) and return their paths.
 
-    A name that ends in .pdf, .png or .svg is that of the one file to write. Each file states a
-    subject, which :func:`picture_subject` reads.
+    If `stem` ends in .pdf, .png or .svg, only that file is written. Missing folders are made, and
+    equal figures give equal bytes. :func:`picture_subject` reads the subject.
     """
     paths = [stem.with_name(stem.name + suffix) for suffix in (".pdf", ".png")]
     if stem.suffix in _DATES:
         paths = [stem]
-    # It warns, once a font, that the fonts of matplotlib carry no date.
+    # fontTools warns that the fonts of matplotlib have no date.
     logger = logging.getLogger("fontTools.ttLib.tables._h_e_a_d")
     disabled, logger.disabled = logger.disabled, True
     try:
@@ -144,7 +154,7 @@ def save_figure(figure: Figure, stem: Path, subject: str = "") -> tuple[Path, ..
 
 
 def picture_subject(path: Path) -> str:
-    """Subject that a PNG states; empty where it states none, or is no picture."""
+    """Subject of a PNG; empty if it has none, or cannot be read."""
     from PIL import Image
 
     try:
@@ -155,6 +165,6 @@ def picture_subject(path: Path) -> str:
 
 
 def save_picture(figure: Figure, path: Path) -> None:
-    """Write a figure as a PNG for a screen, a third as large as that for print."""
+    """Write a figure as a PNG for a screen."""
     with house_style():
-        figure.savefig(path, dpi=_SCREEN, metadata={"Software": None})
+        figure.savefig(path, dpi=_SCREEN_RESOLUTION, metadata={"Software": None})

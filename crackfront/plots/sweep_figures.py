@@ -1,8 +1,8 @@
-"""Figures of a sweep: hysteresis, and how k depends on disorder and on size, beside the law of k.
+"""Figures of a sweep: hysteresis, and k against disorder and size, with the law of k.
 
-Error bars are 95% intervals of the mean over realisations. Filled symbols lie in the range of the
-fit, open ones outside it; an arrow at the lower edge stands for a mean below the axes. Straight
-fronts of one spectrum share a colour, their springs differ by the marker.
+Error bars are 95% intervals of the mean over realisations. Filled symbols are in the range of the
+fit, open symbols outside. An arrow at the lower edge marks a mean below the axes. Straight fronts
+of one spectrum share a colour; the marker shows their springs.
 """
 
 from __future__ import annotations
@@ -49,46 +49,51 @@ from crackfront.plots.parts import (
 )
 from crackfront.plots.style import BLACK, PAGE, blank_figure, explain, house_style
 
-SHIFTS_EXPLAINED = "points of one amplitude are set off sideways by up to 6%"
-"""What figures of k against disorder say of their points below themselves."""
+SHIFTS_EXPLAINED = "points of one amplitude are shifted sideways by up to 6%"
+"""Explanation below figures of k against disorder."""
+
+_MOST_FOR_DECIMALS = 100.0
+"""Ratio of the ends of a logarithmic axis up to which its labels are decimal numbers."""
+
+_FACTOR_LABEL = r"$k = (w_\mathrm{retr}-w_\mathrm{appr})\,/\,2e_\mathrm{el}$"
 
 
 def points_explained(fit: SweepFit) -> list[str]:
-    """What bars and open symbols are, where the points of a sweep have them."""
-    hysteresis, found = fit.cells.hysteresis, []
+    """Explanation of bars and open symbols, if a sweep has them."""
+    hysteresis, texts = fit.cells.hysteresis, []
     if np.any(np.isfinite(hysteresis.high)):
-        found.append("bars: 95% intervals over realisations")
+        texts.append("bars: 95% intervals over realisations")
     if np.any(np.isfinite(hysteresis.value[:, ~fit.in_range])):
-        found.append("open symbols: amplitudes outside the range of the fit")
-    return found
+        texts.append("open symbols: amplitudes outside the range of the fit")
+    return texts
 
 
 def arrows_explained(fit: SweepFit) -> list[str]:
-    """What the arrows of :func:`draw_hysteresis` are, where it draws any."""
+    """Explanation of the arrows of :func:`draw_hysteresis`, if it draws any."""
     return ["arrows: means below the lower edge"] if np.any(_below(fit)) else []
 
 
 def pooled_explained(fit: SweepFit) -> list[str]:
-    """What the interval of the pooled k leaves out."""
+    """Errors that the interval of the pooled k does not include."""
     limits = pooled_limits(fit, fit.spectra.factor)
     return [f"pooled $k$: {', '.join(limits)}"] if limits else []
 
 
 def shapes_explained(fit: SweepFit) -> list[str]:
-    """What the lines of :func:`draw_factor_by_length` are, where spectra share a shape."""
+    """Explanation of the lines of :func:`draw_factor_by_length`, if spectra share a shape."""
     shared = np.unique(fit.table.shape).size < fit.table.shape.size
     return ["grey line: spectra of one shape"] if shared else []
 
 
 def hysteresis_figure(fit: SweepFit) -> Figure:
-    """Hysteresis against the variance of w_loc, beside the spectra (SI Fig. S-5)."""
+    """Hysteresis against the variance of w_loc, and the spectra (SI Fig. S-5)."""
     with house_style():
         figure = blank_figure(PAGE, 0.5 * PAGE)
-        left, right = figure.subplots(1, 2, width_ratios=(1.5, 1))
-        draw_hysteresis(left, fit)
-        draw_spectra(right, fit)
-        figure.legend(*legend_entries(left), loc="outside upper center", ncols=4)
-        for axes, letter in ((left, "a"), (right, "b")):
+        left_axes, right_axes = figure.subplots(1, 2, width_ratios=(1.5, 1))
+        draw_hysteresis(left_axes, fit)
+        draw_spectra(right_axes, fit)
+        figure.legend(*legend_entries(left_axes), loc="outside upper center", ncols=4)
+        for axes, letter in ((left_axes, "a"), (right_axes, "b")):
             axes.set_title(letter, loc="left", fontweight="bold")
         texts = [*points_explained(fit), *arrows_explained(fit)]
         if fit.table.on_springs:
@@ -98,38 +103,38 @@ def hysteresis_figure(fit: SweepFit) -> Figure:
 
 
 def factor_figure(fit: SweepFit) -> Figure:
-    """Dependence of k on disorder and, averaged over the range, on correlation length.
+    """Factors k against disorder and, averaged over the range, against correlation length.
 
-    Of straight fronts it is that on size at every amplitude, and that of the infinite contact on
+    For straight fronts: k against size at every amplitude, and k of the infinite contact against
     disorder.
     """
     with house_style():
         figure = blank_figure(PAGE, 0.45 * PAGE)
-        left, right = figure.subplots(1, 2, sharey=True, width_ratios=(1.35, 1))
+        left_axes, right_axes = figure.subplots(1, 2, sharey=True, width_ratios=(1.35, 1))
         texts = points_explained(fit)
         if fit.table.on_springs:
-            _draw_line_factors(left, right, fit)
+            _draw_line_factors(left_axes, right_axes, fit)
             texts += ["colours: amplitudes (a), spectra (b, with the symbols of a)"]
         else:
-            draw_factor_by_disorder(left, fit)
-            draw_factor_by_length(right, fit)
-            set_factor_limits(left, fit)
-            figure.legend(*legend_entries(left), loc="outside upper center", ncols=3)
+            draw_factor_by_disorder(left_axes, fit)
+            draw_factor_by_length(right_axes, fit)
+            set_factor_limits(left_axes, fit)
+            figure.legend(*legend_entries(left_axes), loc="outside upper center", ncols=3)
             texts += [f"{SHIFTS_EXPLAINED} (a)", *pooled_explained(fit)]
             texts += [f"{text} (b)" for text in shapes_explained(fit)]
-        for axes, letter in ((left, "a"), (right, "b")):
+        for axes, letter in ((left_axes, "a"), (right_axes, "b")):
             axes.set_title(letter, loc="left", fontweight="bold")
         explain(figure, "; ".join(texts))
         return figure
 
 
-def _draw_line_factors(left: Axes, right: Axes, fit: SweepFit) -> None:
-    """Draw k of straight fronts against size, and its limit against disorder.
+def _draw_line_factors(left_axes: Axes, right_axes: Axes, fit: SweepFit) -> None:
+    """Draw k of straight fronts against size, and k of the infinite contact against disorder.
 
-    Markers, which both panels share, are named in the first one alone.
+    Both panels share the markers, which the legend of the first explains.
     """
-    draw_factor_by_size(left, fit)
-    draw_infinite_law(right)
+    draw_factor_by_size(left_axes, fit)
+    draw_infinite_law(right_axes)
     table, cells = fit.table, fit.cells
     families = spectrum_families(table)
     for index, family in enumerate(families):
@@ -137,41 +142,32 @@ def _draw_line_factors(left: Axes, right: Axes, fit: SweepFit) -> None:
         s = np.zeros_like(cells.w_rms[index]) if fit.uncorrelated else cells.w_rms[index]
         shown = np.nan_to_num(cells.size[index]) > LARGE
         row = cells.infinite_factor.at(index).only(shown)
-        draw_estimates(right, style, s, row, fit.in_range)
-    right.legend(*legend_entries(right), loc="lower left")
-    right.set_ylabel(r"$k$, infinite contact (points: $g>1$)")
-    left.set_ylim(0.0, 1.1 * PERTURBATION_FACTOR)
+        draw_estimates(right_axes, style, s, row, fit.in_range)
+    right_axes.legend(*legend_entries(right_axes), loc="lower left")
+    right_axes.set_ylabel(r"$k$, infinite contact (points: $g>1$)")
+    left_axes.set_ylim(0.0, 1.1 * PERTURBATION_FACTOR)
 
 
 def draw_factor_by_size(axes: Axes, fit: SweepFit) -> None:
-    """Draw mean k of straight fronts against g, a colour an amplitude, a marker a spectrum."""
-    table, size, law = fit.table, fit.cells.size, shipped_law()
-    families = spectrum_families(table)
-    spectra = (table.shape_of(index) for index in range(table.spectrum.size))
-    breadth = float(np.mean([spectral_breadth(fit.kind, spectrum) for spectrum in spectra]))
-    ends = _ends(size, 1.5)
-    abscissa = np.geomspace(max(law.size[0], ends[0]), ends[1], 100)
+    """Draw mean k of straight fronts against g; colours are amplitudes, markers are spectra."""
+    table, size = fit.table, fit.cells.size
+    families, ends = spectrum_families(table), _ends(size, 1.5)
     shades = colormaps["viridis"](np.linspace(0, 0.88, table.amplitude.size))
-
-    def draw_curve(s: float, colour: str) -> None:
-        curve, label = law_value(law.coefficients, s, abscissa, breadth), rf"law, $s={s:.3g}$"
-        axes.plot(abscissa, curve, color=colour, linewidth=0.8, label=label)
-
     for amplitude, energy in enumerate(table.amplitude):
         colour = to_hex(shades[amplitude])
         for index, family in enumerate(families):
             style = PointStyle(colour, spectrum_marker(family), "")
             cell = fit.cells.factor.at(([index], amplitude))
-            here = fit.in_range[[amplitude]]
-            draw_estimates(axes, style, size[[index], amplitude], cell, here)
+            in_range = fit.in_range[[amplitude]]
+            draw_estimates(axes, style, size[[index], amplitude], cell, in_range)
         if fit.uncorrelated:
             label = rf"$e_\mathrm{{el}}={energy:.3g}\,w_\mathrm{{int}}$"
             axes.plot([], [], color=colour, linewidth=3.0, label=label)
         else:
-            draw_curve(2 * math.sqrt(energy), colour)
+            _draw_law_by_size(axes, fit, 2 * math.sqrt(energy), colour)
     if fit.uncorrelated:
         # The law of weak disorder is the same at all amplitudes.
-        draw_curve(0.0, BLACK)
+        _draw_law_by_size(axes, fit, 0.0, BLACK)
     for family in dict.fromkeys(families):
         label = spectrum_label(table, families.index(family))
         axes.plot([], [], spectrum_marker(family), color="0.4", label=label)
@@ -181,18 +177,21 @@ def draw_factor_by_size(axes: Axes, fit: SweepFit) -> None:
     axes.legend(loc="upper left", ncols=2)
 
 
+def _draw_law_by_size(axes: Axes, fit: SweepFit, s: float, colour: str) -> None:
+    """Draw k by the law against g at a disorder s, for the mean breadth of the spectra."""
+    table, law, ends = fit.table, shipped_law(), _ends(fit.cells.size, 1.5)
+    spectra = [table.shape_of(index) for index in range(table.spectrum.size)]
+    breadth = float(np.mean([spectral_breadth(fit.kind, spectrum) for spectrum in spectra]))
+    abscissa = np.geomspace(max(law.size[0], ends[0]), ends[1], 100)
+    curve = law_value(law.coefficients, s, abscissa, breadth)
+    axes.plot(abscissa, curve, color=colour, linewidth=0.8, label=rf"law, $s={s:.3g}$")
+
+
 def set_factor_limits(axes: Axes, fit: SweepFit) -> None:
-    """Limits of an ordinate that shows all k of a sweep and those of the theories."""
+    """Limit the ordinate so that it shows all k of a sweep and of the theories."""
     factor = fit.cells.factor.value
     highest = max(PERTURBATION_FACTOR, float(np.nanmax(factor)))
     axes.set_ylim(min(0.0, float(np.nanmin(factor))) - 0.05 * highest, 1.1 * highest)
-
-
-_DECIMALS = 100.0
-"""Ratio of the ends of a logarithmic axis up to which its labels are decimal numbers."""
-
-_VARIANCE = r"(w_\mathrm{rms}/w_\mathrm{int})^2"
-_FACTOR_LABEL = r"$k = (w_\mathrm{retr}-w_\mathrm{appr})\,/\,2e_\mathrm{el}$"
 
 
 def _ends(values: Array, margin: float) -> Array:
@@ -201,10 +200,10 @@ def _ends(values: Array, margin: float) -> Array:
 
 
 def draw_hysteresis(axes: Axes, fit: SweepFit) -> None:
-    """Draw mean hysteresis against (w_rms / w_int)^2 on log-log axes, the law and the theory."""
+    """Draw mean hysteresis against (w_rms / w_int)^2 on log-log axes, with law and theory."""
     variance, hysteresis, below = _variance(fit), fit.cells.hysteresis, _below(fit)
     ends = _ends(variance, 1.8)
-    # Without an interval, that of one realisation, a point reaches down to its mean.
+    # The mean of one realisation has no interval.
     lows = np.fmax(np.fmin(hysteresis.low, hysteresis.value), _floor(variance))
     least = float(np.min(lows, where=~below, initial=np.inf))
     lowest = min(least, PAPER_FACTOR / 2 * float(ends[0])) / 1.6
@@ -218,26 +217,33 @@ def draw_hysteresis(axes: Axes, fit: SweepFit) -> None:
     highest = PERTURBATION_FACTOR / 2 * float(ends[1])
     axes.set_ylim(lowest, highest)
     for axis, low, high in ((axes.xaxis, *ends), (axes.yaxis, lowest, highest)):
-        if high < _DECIMALS * low:
+        if high < _MOST_FOR_DECIMALS * low:
             label_decimals(axis)
-    disorder = r"4e_\mathrm{el}/w_\mathrm{int}" if fit.uncorrelated else _VARIANCE
+    disorder = r"(w_\mathrm{rms}/w_\mathrm{int})^2"
+    if fit.uncorrelated:
+        disorder = r"4e_\mathrm{el}/w_\mathrm{int}"
     axes.set_xlabel(f"disorder ${disorder}$")
     axes.set_ylabel(r"hysteresis $(w_\mathrm{retr}-w_\mathrm{appr})/w_\mathrm{int}$")
+    _add_spring_entries(axes, fit)
+
+
+def _add_spring_entries(axes: Axes, fit: SweepFit) -> None:
+    """Add the springs of the first spectrum of straight fronts to the legend, by their markers."""
+    styles = spectrum_styles(fit.table)
     for index, family in enumerate(spectrum_families(fit.table)):
         if family == 0 and np.all(np.isfinite(fit.table.spring[index])):
-            marker = spectrum_styles(fit.table)[index].marker
-            axes.plot([], [], marker, color="0.4", label=spring_label(fit, index))
+            axes.plot([], [], styles[index].marker, color="0.4", label=spring_label(fit, index))
 
 
 def _variance(fit: SweepFit) -> Array:
     """Variance of w_loc at every spectrum and amplitude (Units: w_int^2)."""
-    # The rms of uncorrelated sites is that of their pixels; the law and the theory have e_el.
+    # For uncorrelated sites w_rms is the rms of the pixels; law and theory depend on e_el.
     return 4 * fit.cells.e_el if fit.uncorrelated else fit.cells.w_rms**2
 
 
 def _floor(variance: Array) -> float:
-    """Hysteresis down to which points are drawn (Units: w_int)."""
-    # Below its onset hysteresis falls to nothing; such points must not stretch the axes.
+    """Smallest hysteresis that is drawn as a point (Units: w_int)."""
+    # Hysteresis vanishes below its onset; such points must not stretch the axes.
     return 0.05 * PAPER_FACTOR / 2 * float(_ends(variance, 1.8)[0])
 
 
@@ -271,15 +277,15 @@ def draw_spectra(axes: Axes, fit: SweepFit) -> None:
 
 
 def draw_factor_by_disorder(axes: Axes, fit: SweepFit) -> None:
-    """Draw mean k against measured e_el, the law, the pooled mean over the range and the theory.
+    """Draw mean k against measured e_el, with the law, the pooled mean and the theory.
 
-    Points of different spectra are set off sideways by up to 6% so that their bars do not hide
+    Points of different spectra are shifted sideways by up to 6%, so that their bars do not hide
     each other.
     """
     energy, n_spectrum = fit.cells.e_el, fit.table.spectrum.size
-    aside = 1 + 0.12 * (np.arange(n_spectrum) - (n_spectrum - 1) / 2) / max(n_spectrum - 1, 1)
+    shifts = 0.12 * (np.arange(n_spectrum) - (n_spectrum - 1) / 2) / max(n_spectrum - 1, 1)
     for index, style in enumerate(spectrum_styles(fit.table)):
-        abscissa = energy[index] * aside[index]
+        abscissa = energy[index] * (1 + shifts[index])
         draw_estimates(axes, style, abscissa, fit.cells.factor.at(index), fit.in_range)
     draw_law(axes, fit, lambda energy, factor: (energy, factor))
     ends = _ends(energy, 1.4)
@@ -293,7 +299,7 @@ def draw_factor_by_disorder(axes: Axes, fit: SweepFit) -> None:
 def draw_factor_by_length(axes: Axes, fit: SweepFit) -> None:
     """Draw k, averaged over the range, against the correlation length.
 
-    Spectra of one shape are joined by a line.
+    A line connects the spectra of one shape.
     """
     length, factor, shapes = fit.table.correlation_length, fit.spectra.factor, fit.table.shape
     for shape in np.unique(shapes):
@@ -301,8 +307,8 @@ def draw_factor_by_length(axes: Axes, fit: SweepFit) -> None:
         family = family[np.argsort(length[family])]
         axes.plot(length[family], factor.value[family], color="0.6", linewidth=0.6, zorder=1)
     for index, style in enumerate(spectrum_styles(fit.table)):
-        here = factor.at([index])
-        draw_estimates(axes, replace(style, label=""), length[[index]], here, np.array([True]))
+        point = factor.at([index])
+        draw_estimates(axes, replace(style, label=""), length[[index]], point, np.array([True]))
     ends = _ends(length, 1.6)
     draw_theory(axes, ends)
     axes.set(xscale="log", xlim=ends)
@@ -316,7 +322,7 @@ def draw_factor_by_length(axes: Axes, fit: SweepFit) -> None:
 
 
 def draw_infinite_law(axes: Axes) -> None:
-    """Draw k of the infinite contact against disorder with its 95% band, and the theories."""
+    """Draw k of the infinite contact against disorder with its 95% band, and with theory."""
     strongest = shipped_law().disorder[1]
     disorder = np.linspace(WEAKEST, strongest, 100)
     factor, label = pinning_factors(disorder, math.inf).factor, "95% interval, all breadths"

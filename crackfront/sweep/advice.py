@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 from crackfront.analysis.law import mean_w_loc
-from crackfront.analysis.law_spheres import held_factors
+from crackfront.analysis.law_spheres import factors_on_springs
 from crackfront.analysis.standard_error import FEWEST_STATES
 from crackfront.core.adhesion import force_correlation_length, larkin_length
 from crackfront.simulate.contact import Pressed
@@ -39,7 +39,7 @@ def expectation(simulation: Simulation) -> Expectation:
     kind, spectrum, energy = simulation.kind, simulation.spectrum, simulation.elastic_energy
     schedule, disorder = simulation.schedule, 2 * math.sqrt(energy)
     try:
-        factors = held_factors(kind, spectrum, energy, schedule.spring_at)
+        factors = factors_on_springs(kind, spectrum, energy, schedule.spring_at)
     except ValueError:
         larkin = larkin_length(kind, spectrum, disorder)
         return Expectation(disorder, schedule.spring_at(1.0) / larkin, None)

@@ -77,9 +77,3 @@ def test_too_few_steady_states_give_no_value_and_say_why(record, length, words):
     steady = steady_adhesion(record, correlation_length=length)
     assert np.isnan([steady.w_appr, steady.w_retr, steady.w_appr_from_force]).all()
     assert words in steady.sentence
-
-
-@pytest.mark.parametrize("length", [0.0, -1.0, np.nan, np.inf])
-def test_a_correlation_length_that_is_none_is_refused(length):
-    with pytest.raises(ValueError, match="correlation length"):
-        steady_adhesion(smooth_record(0.8, 1.3), length)

@@ -192,7 +192,7 @@ def test_failed_simulations_are_left_out_and_told(rng):
     np.testing.assert_array_equal(fit.n_realisation, [4, 4, 0])
     np.testing.assert_array_equal(fit.cells.count[0], [4, 4, 4, 4, 1])
     notes = "\n".join(fit_notes(fit))
-    assert "flat-0.02: simulations in the range without a value: 3" in notes
+    assert "flat-0.02: 3 simulations in the range have no value" in notes
     assert "flat-0.04: no value at e_el = 0.005 w_int" in notes
     assert "flat-0.08: no simulation in the range has a value" in notes
 
@@ -274,7 +274,7 @@ def test_a_cell_of_one_realisation_narrows_no_interval_of_a_slope(rng):
     assert np.isnan(fit.pooled.exponent.value)
     assert np.isnan(fit.pooled.disorder_slope.value)
     assert covered(fit.pooled.factor, 3.0)
-    assert any("one realisation alone has a value at e_el = 0.1" in one for one in fit_notes(fit))
+    assert any("only one realisation has a value at e_el = 0.1" in one for one in fit_notes(fit))
     three = synthetic_table(rng, constant, n_realisation=4, amplitudes=AMPLITUDES[2:])
     gaps = np.zeros(three.e_el.shape, bool)
     gaps[:, 2, 1:] = True
@@ -349,7 +349,7 @@ def test_a_sweep_without_sizes_has_no_k_by_the_law():
     fit = fit_all(replace(table, contact_radius=np.full(table.e_el.shape, np.nan)))
     assert np.all(np.isnan(fit.cells.law_factor.value))
     assert np.isnan(fit.law_departure)
-    assert "in this sweep no contact is large enough to tell" in fit_table(fit)
+    assert "this sweep cannot test it" in fit_table(fit)
     assert "nan" not in fit_table(fit)
     # At the pull-off of the smooth contact nothing holds the edge either.
     fit = fit_all(replace(table, contact_radius=np.full(table.e_el.shape, 0.5)))
@@ -366,44 +366,12 @@ def test_a_range_below_the_onset_of_hysteresis_is_pointed_out(rng):
     table = synthetic_table(rng, lambda energy, _: np.where(energy > 0.01, 3.0, -0.3), noise=0.0)
     fit = fit_all(table)
     notes = "\n".join(fit_notes(fit))
-    assert "reaches below the onset" in notes
+    assert "below the onset of" in notes
     assert "mean hysteresis at e_el = 0.005, 0.01 w_int is not positive" in notes
     assert np.isfinite(fit.pooled.exponent.value)
 
 
-@pytest.mark.parametrize(
-    ("options", "words"),
-    [
-        ({"lowest_elastic_energy": 0.2, "highest_elastic_energy": 0.1}, "two positive ends"),
-        ({"lowest_elastic_energy": 0.0, "highest_elastic_energy": 0.1}, "two positive ends"),
-        ({"lowest_elastic_energy": np.nan, "highest_elastic_energy": 0.1}, "two positive ends"),
-        ({"lowest_elastic_energy": 0.3, "highest_elastic_energy": 0.4}, "no amplitude lies"),
-        (
-            {"lowest_elastic_energy": 0.01, "highest_elastic_energy": 0.1, "n_bootstrap": 1},
-            "n_bootstrap is 1",
-        ),
-    ],
-)
-def test_a_range_that_holds_nothing_is_refused(rng, options, words):
-    with pytest.raises(ValueError, match=words):
-        fit_sweep(synthetic_table(rng, constant), **options)
-
-
 def test_a_sweep_in_which_everything_failed_is_refused(rng):
     table = synthetic_table(rng, constant)
-    with pytest.raises(ValueError, match="none of the 60 simulations"):
+    with pytest.raises(ValueError, match=r"all 60 simulations .* failed"):
         fit_all(with_gaps(table, np.ones(table.e_el.shape, dtype=bool)))
-
-
-@pytest.mark.parametrize(
-    ("name", "values", "words"),
-    [
-        ("hurst", np.ones(2), "hurst has shape"),
-        ("w_appr", np.ones((3, 5, 2)), "w_appr has shape"),
-        ("spring", np.ones((3, 4)), "spring has shape"),
-        ("e_el", np.zeros((3, 5, 4)), "measured e_el is 0.0"),
-    ],
-)
-def test_a_table_whose_arrays_disagree_is_refused(rng, name, values, words):
-    with pytest.raises(ValueError, match=words):
-        replace(synthetic_table(rng, constant), **{name: values})

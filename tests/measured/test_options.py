@@ -136,7 +136,7 @@ def test_the_range_of_attraction_reaches_the_verdict_of_the_library():
 
 @pytest.mark.usefixtures("measured_once")
 def test_reservations_fail_where_the_library_is_strict():
-    assert cf.predict(OVERVIEW, SCENE).verdict.of("reservation")
+    assert cf.predict(OVERVIEW, SCENE).verdict.with_severity("reservation")
     with pytest.raises(ValueError, match=r"^the theory applies with reservations: small slopes"):
         cf.predict(OVERVIEW, SCENE, strict=True)
 

@@ -1,7 +1,5 @@
 """Figures of one loop: what is drawn where."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
@@ -66,11 +64,6 @@ def test_the_pinning_force_is_averaged_over_the_last_period_of_each_branch():
     assert axes.get_legend() is not None
 
 
-def test_a_front_that_was_left_before_a_period_is_refused():
-    with pytest.raises(ValueError, match="has 9 states, fewer than the 20"):
-        drawn(draw_pinning, line_states(), 20, elastic_energy=0.1)
-
-
 def measured(steady):
     """Works of adhesion and their window, as a loop is drawn with them."""
     return (steady.w_appr, steady.w_retr), (steady.lowest_radius, steady.highest_radius)
@@ -120,9 +113,3 @@ def test_a_loop_without_steady_states_is_drawn_without_curves(record):
     steady = steady_adhesion(record, correlation_length=10.0)
     axes = drawn(draw_loop, record.states, *measured(steady))
     assert not [line for line in axes.get_lines() if "JKR" in str(line.get_label())]
-
-
-def test_an_empty_record_is_refused(record):
-    empty = replace(record.states, mean_radius=np.array([]))
-    with pytest.raises(ValueError, match="holds no state"):
-        drawn(draw_loop, empty, *measured(steady_adhesion(record, 0.1)))

@@ -206,7 +206,7 @@ def test_the_report_is_one_page_that_a_browser_shows_without_a_network(tmp_path,
     summary = seen_in_browser(whole / "results/test/summary.html", tmp_path / "profile")
     # Both open on the sentences of the fit, and on its figures.
     fit = (whole / "results/test/fit.md").read_text(encoding="utf-8")
-    first = re.search(r"The factor k of .*? is no constant", fit)
+    first = re.search(r"The factor k of .*? is not constant", fit)
     assert first
     for page in (seen, summary):
         assert first[0] in page

@@ -17,33 +17,46 @@ _BINS_PER_DECADE = 20
 """Bins of wavevectors; their edges are the same for all scans."""
 
 _WINDOWS = {"hann": (0.5, 0.5), "blackman": (0.42, 0.50, 0.08)}
-"""Cosines of windows; scipy.signal has them too, but takes half a second to import."""
+"""Coefficients of cosine windows; importing them from scipy.signal would take half a second."""
 
-_AXIS = 1
-"""Modes beside an axis that hold what does not change along one direction: rows, steps, seams."""
+_AXIS_WIDTH = 1
+"""Width of an axis in Fourier space, where rows, steps and seams appear. (Units: modes)"""
 
 _FIRST_ON_AXIS = 6
-"""Modes from which on the axes are compared with all other directions."""
+"""First mode at which an axis is compared with other directions."""
 
-_STRIPES, _STRIPE_SIGMA = 1.5, 5.0
-"""Ratio of the density on an axis to that beside it, and its significance, that are stripes."""
+_STRIPE_RATIO = 1.5
+"""Least ratio of densities on an axis and elsewhere if there are stripes."""
 
-_NEAR, _PEAK = 2.5, 30.0
-"""Modes about a wave over which a window spreads it, and how far its power is above those of
-similar waves where it is periodic: powers of random surfaces are distributed exponentially."""
+_STRIPE_SIGMA = 5.0
+"""Least significance of this ratio. (Units: standard errors)"""
 
-_PARTS, _EDGE = 4, 24
-"""Parts along a side whose e_el is compared, and which part of a side is left out at its ends."""
+_PEAK_WIDTH = 2.5
+"""Half of the width to which the window spreads a periodic wave. (Units: modes)"""
 
-_ROUNDING = 1e-12
-"""Noise of heights in parts of the highest one, below which a density is that of computers."""
+_PEAK_RATIO = 30.0
+"""Least power of a periodic wave over the mean of similar waves.
+
+Powers of random surfaces are distributed exponentially, so that it is very improbable there.
+"""
+
+_PARTS = 4
+"""Parts along a side whose e_el is compared."""
+
+_EDGE = 24
+"""Side over the width of the margin that is left out at either end."""
+
+_HEIGHT_ROUNDING = 1e-12
+"""Rounding of heights relative to the highest one, added as noise to the power."""
 
 _ROUND_OFF = 1e-9
-"""Relative rounding of wavevectors: half of a side, up to which scans are trusted, is a wave."""
+"""Relative rounding of wavevectors, so that a wave at the end of a range is inside."""
 
 _UNEVEN = (1.5, 2.5)
-"""Variance between parts over that of a Gaussian surface: below the first ratio the excess does not
-count, above the second it counts in full."""
+"""Ratios of the variance between parts to the variance for a Gaussian surface.
+
+Below the first ratio the excess does not count, above the second it counts in full.
+"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,16 +68,16 @@ class Density:
     value: Array
     """Isotropic density C of a map, C_1D of lines. Shape (n,). (Units: m^4 or m^3)"""
     modes: Array
-    """Independent modes in the mean; the window makes neighbours dependent. Shape (n,)."""
+    """Number of independent modes in each bin; the window correlates neighbours. Shape (n,)."""
     is_profile: bool
-    """Whether it is C_1D."""
+    """Whether the density is C_1D."""
 
     def within(self, shortest: float, longest: float) -> Density:
         """Part of the density between two wavelengths (Units: m)."""
         low, high = 2 * np.pi / longest, 2 * np.pi / shortest
-        chosen = _between(self.wavevector, low, high)
+        inside = _between(self.wavevector, low, high)
         return Density(
-            self.wavevector[chosen], self.value[chosen], self.modes[chosen], self.is_profile
+            self.wavevector[inside], self.value[inside], self.modes[inside], self.is_profile
         )
 
 
@@ -77,9 +90,9 @@ class Periodogram:
     power: Array
     """Density of each wave. (Units: m^4 of a map, m^3 of a line)"""
     count: Array
-    """Waves that an entry stands for, 2 where its conjugate is not among them; as `power`."""
+    """Number of waves of each entry, 2 if its conjugate is omitted; of the shape of `power`."""
     dependence: float
-    """Modes of which the window makes one."""
+    """Number of modes over one independent mode, because of the window."""
 
     @property
     def wavevector(self) -> Array:
@@ -89,36 +102,36 @@ class Periodogram:
     @property
     def steps(self) -> tuple[float, ...]:
         """Least wavevectors along the axes (Units: 1 / m)."""
-        return tuple(float(np.min(np.abs(one[one != 0]))) for one in self.along)
+        return tuple(float(np.min(np.abs(waves[waves != 0]))) for waves in self.along)
 
     def near_axis(self, axis: int) -> NDArray[np.bool_]:
-        """Waves that hardly change along the other axis of a map: rows or columns as wholes."""
-        near = np.abs(self.along[1 - axis]) < (_AXIS + 0.5) * self.steps[1 - axis]
+        """Waves of a map whose wavevectors are parallel to an axis: shifts of rows or columns."""
+        near = np.abs(self.along[1 - axis]) < (_AXIS_WIDTH + 0.5) * self.steps[1 - axis]
         return np.broadcast_to(near, self.power.shape)
 
-    def density(self, without: NDArray[np.bool_] | None = None) -> Density:
-        """Means in logarithmic bins, but for some waves."""
+    def density(self, left_out: NDArray[np.bool_] | None = None) -> Density:
+        """Means in logarithmic bins, without some of the waves."""
         wavevector = self.wavevector
         used = wavevector > 0
-        if without is not None:
-            used &= ~without
+        if left_out is not None:
+            used &= ~left_out
         values, count = wavevector[used], self.count[used]
-        place = bin_numbers(values)
-        place -= place.min()
-        modes = np.bincount(place, count)
-        known = modes > 0
-        number = np.where(known, modes, 1.0)
+        bins = bin_numbers(values)
+        bins -= bins.min()
+        modes = np.bincount(bins, count)
+        filled = modes > 0
+        number = np.where(filled, modes, 1.0)
         return Density(
-            wavevector=np.exp(np.bincount(place, count * np.log(values)) / number)[known],
-            value=(np.bincount(place, count * self.power[used]) / number)[known],
-            # Every wave stands twice in a two-sided transform.
-            modes=modes[known] / (2 * self.dependence),
+            wavevector=np.exp(np.bincount(bins, count * np.log(values)) / number)[filled],
+            value=(np.bincount(bins, count * self.power[used]) / number)[filled],
+            # A two-sided transform counts every wave twice.
+            modes=modes[filled] / (2 * self.dependence),
             is_profile=len(self.along) == 1,
         )
 
 
 def _between(wavevector: Array, low: float, high: float) -> NDArray[np.bool_]:
-    """Whether wavevectors lie between two, which may be theirs but for round-off."""
+    """Whether wavevectors are between two limits, apart from round-off."""
     return (wavevector >= low * (1 - _ROUND_OFF)) & (wavevector <= high * (1 + _ROUND_OFF))
 
 
@@ -135,11 +148,11 @@ def periodogram(
     *,
     is_profile: bool = False,
 ) -> Periodogram:
-    """Power of all waves of a measurement, or of other heights in its place.
+    """Power of all waves of a measurement, or of other heights on the same points.
 
-    A profile holds the waves along x, with the mean power of all lines along x of a map; of these,
-    the modes of one line are counted. A periodic measurement needs no window. Points that were
-    missing hold no modes.
+    A profile has the waves along x with the mean power of all lines of a map, and counts the modes
+    of a single line. A periodic measurement has no window. Missing points reduce the number of
+    independent modes.
     """
     heights = measurement.heights if heights is None else heights
     axes = (0,) if is_profile else tuple(range(heights.ndim))
@@ -148,35 +161,41 @@ def periodogram(
         for axis, count in enumerate(heights.shape)
     ]
     weight = np.asarray(math.prod(np.ix_(*windows)))
-    square = math.prod(float(np.mean(one**2)) for one in windows)
-    dependence = math.prod(float(np.mean(one**4)) for one in windows) / square**2
+    square = math.prod(float(np.mean(factor**2)) for factor in windows)
+    dependence = math.prod(float(np.mean(factor**4)) for factor in windows) / square**2
     if measurement.gaps is not None and not is_profile:
-        known = np.where(measurement.gaps, 0.0, weight)
-        dependence = float(np.mean(known**4) / np.mean(known**2) ** 2)
+        measured = np.where(measurement.gaps, 0.0, weight)
+        dependence = float(np.mean(measured**4) / np.mean(measured**2) ** 2)
     level = np.sum(weight * heights, axes, keepdims=True) / np.sum(weight, axes, keepdims=True)
     heights = heights - level
     transform = rfftn(weight * heights, axes=axes, norm="forward")
-    rounding = square * (_ROUNDING * np.max(np.abs(heights))) ** 2
+    rounding = square * (_HEIGHT_ROUNDING * np.max(np.abs(heights))) ** 2
     power = transform.real**2 + transform.imag**2
     power += rounding / math.prod(heights.shape[axis] for axis in axes)
     if len(axes) < heights.ndim:
         power = np.mean(power, axis=1)
-    counts = [(heights.shape[axis], measurement.pixels[axis]) for axis in axes]
-    waves = [*(fftfreq(*one) for one in counts[:-1]), rfftfreq(*counts[-1])]
+    shape = [heights.shape[axis] for axis in axes]
+    waves = frequencies(shape, [measurement.pixels[axis] for axis in axes])
     count = np.full(waves[-1].size, 2.0)
     count[0] = 1.0
-    if counts[-1][0] % 2 == 0:
+    if shape[-1] % 2 == 0:
         count[-1] = 1.0
     return Periodogram(
-        along=tuple(2 * np.pi * one for one in np.ix_(*waves)),
+        along=tuple(2 * np.pi * frequency for frequency in waves),
         power=power * (math.prod(measurement.size[axis] for axis in axes) / square),
         count=np.broadcast_to(count, power.shape),
         dependence=dependence,
     )
 
 
+def frequencies(shape: Sequence[int], pixels: Sequence[float]) -> tuple[Array, ...]:
+    """Frequencies of a real transform along its axes, shaped to broadcast."""
+    axes = [fftfreq(count, pixel) for count, pixel in zip(shape, pixels, strict=True)]
+    return np.ix_(*axes[:-1], rfftfreq(shape[-1], pixels[-1]))
+
+
 def weight_of_gaps(measurement: Measurement) -> float:
-    """Part of the window's weight that lies on points that were missing."""
+    """Part of the window's weight that lies on missing points."""
     if measurement.gaps is None:
         return 0.0
     windows = [
@@ -188,52 +207,53 @@ def weight_of_gaps(measurement: Measurement) -> float:
 
 
 def cosine_window(name: str, count: int) -> Array:
-    """Weights of points of a period, a sum of cosines that is least at its ends."""
+    """Weights of the points along a side: a sum of cosines that is smallest at the ends."""
     angle = np.linspace(-np.pi, np.pi, count + 1)[:-1]
-    return np.asarray(sum(part * np.cos(k * angle) for k, part in enumerate(_WINDOWS[name])))
+    terms = [weight * np.cos(k * angle) for k, weight in enumerate(_WINDOWS[name])]
+    return np.asarray(sum(terms))
 
 
 def stripes(waves: Periodogram, shortest: float) -> tuple[int, ...]:
-    """Axes on which a density departs from that beside them: rows or columns moved as wholes."""
+    """Axes on which the density differs from other directions: shifted rows or columns."""
     wavevector = waves.wavevector
-    beside = ~(waves.near_axis(0) | waves.near_axis(1)) & (wavevector > 0)
+    off_axes = ~(waves.near_axis(0) | waves.near_axis(1)) & (wavevector > 0)
     inside = wavevector <= 2 * np.pi / shortest
-    place = bin_numbers(np.where(wavevector > 0, wavevector, np.max(wavevector)))
-    place -= place.min()
-    size, count, found = int(place.max()) + 1, waves.count, []
-    base = np.bincount(place[beside], (count * waves.power)[beside], size)
-    number = np.bincount(place[beside], count[beside], size)
+    bins = bin_numbers(np.where(wavevector > 0, wavevector, np.max(wavevector)))
+    bins -= bins.min()
+    n_bin, count = int(bins.max()) + 1, waves.count
+    power = np.bincount(bins[off_axes], (count * waves.power)[off_axes], n_bin)
+    number = np.bincount(bins[off_axes], count[off_axes], n_bin)
+    axes = []
     for axis, step in enumerate(waves.steps):
         chosen = waves.near_axis(axis) & inside & (wavevector > (_FIRST_ON_AXIS - 0.5) * step)
-        chosen &= number[place] > 0
-        here = place[chosen]
-        ratio = waves.power[chosen] * number[here] / base[here]
+        chosen &= number[bins] > 0
+        ratio = waves.power[chosen] * number[bins[chosen]] / power[bins[chosen]]
         modes = np.sum(count[chosen]) / (2 * waves.dependence)
         if modes < 4:
             continue
-        # That of half of the waves, as grooves are one wave among many. Powers are distributed
-        # exponentially: with this median, which is known less well than a mean.
+        # The median, because grooves are a single strong wave. Powers are distributed
+        # exponentially: with this median, which is less precise than a mean.
         level = float(np.median(ratio)) / math.log(2)
-        apart = abs(math.log(max(level, 1e-300))) * math.sqrt(modes) * math.log(2)
-        if max(level, 1 / level) > _STRIPES and apart > _STRIPE_SIGMA:
-            found.append(axis)
-    return tuple(found)
+        significance = abs(math.log(max(level, 1e-300))) * math.sqrt(modes) * math.log(2)
+        if max(level, 1 / level) > _STRIPE_RATIO and significance > _STRIPE_SIGMA:
+            axes.append(axis)
+    return tuple(axes)
 
 
 def periodic_part(waves: Periodogram, shortest: float, longest: float) -> tuple[float, float]:
-    """Part of e_el in the wave within bounds that stands out most, and its wavelength; else 0."""
+    """Part of e_el in a periodic wave within bounds, and its wavelength; zeros without one."""
     wavevector = waves.wavevector
     inside = _between(wavevector, 2 * np.pi / longest, 2 * np.pi / shortest)
     energy = np.where(inside, waves.count * waves.power * wavevector, 0.0)
     index = np.unravel_index(np.argmax(energy), energy.shape)
-    apart = [
-        np.abs(np.abs(one) - abs(one.flat[place])) / step
-        for one, place, step in zip(waves.along, index, waves.steps, strict=True)
+    distances = [
+        np.abs(np.abs(along) - abs(along.flat[peak])) / step
+        for along, peak, step in zip(waves.along, index, waves.steps, strict=True)
     ]
-    near = np.max(np.broadcast_arrays(*apart), axis=0) < _NEAR
-    alike = np.abs(np.log(np.where(inside, wavevector, np.inf) / wavevector[index])) < 0.1
-    others = waves.power[alike & ~near]
-    if not others.size or waves.power[index] < _PEAK * np.mean(others):
+    near = np.max(np.broadcast_arrays(*distances), axis=0) < _PEAK_WIDTH
+    similar = np.abs(np.log(np.where(inside, wavevector, np.inf) / wavevector[index])) < 0.1
+    background = waves.power[similar & ~near]
+    if not background.size or waves.power[index] < _PEAK_RATIO * np.mean(background):
         return 0.0, 0.0
     return float(energy[near].sum() / energy.sum()), float(2 * np.pi / wavevector[index])
 
@@ -241,22 +261,22 @@ def periodic_part(waves: Periodogram, shortest: float, longest: float) -> tuple[
 def energy_share(
     waves: Periodogram, chosen: NDArray[np.bool_], shortest: float, longest: float
 ) -> float:
-    """Part of e_el within bounds that some waves hold."""
+    """Part of e_el within bounds in some of the waves."""
     inside = _between(waves.wavevector, 2 * np.pi / longest, 2 * np.pi / shortest)
     energy = np.where(inside, waves.count * waves.power * waves.wavevector, 0.0)
     return float(np.sum(energy, where=chosen) / np.sum(energy))
 
 
 def anisotropy(waves: Periodogram, shortest: float) -> tuple[float, float]:
-    """Largest rms slope over that across it, of the trusted waves of a map, and its direction.
+    """Largest rms slope of a map over the rms slope perpendicular to it, and its direction.
 
-    The direction is an angle from x to y, -90 to 90. (Units: degree)
+    Only trusted waves count. The direction is an angle from x to y, -90 to 90. (Units: degree)
     """
     weight = waves.count * waves.power * (waves.wavevector <= 2 * np.pi / shortest)
     along_x, along_y = waves.along
-    square_x, product, square_y = (
-        float(np.sum(weight * one)) for one in (along_x**2, along_x * along_y, along_y**2)
-    )
+    square_x = float(np.sum(weight * along_x**2))
+    square_y = float(np.sum(weight * along_y**2))
+    product = float(np.sum(weight * (along_x * along_y)))
     squares, directions = np.linalg.eigh([[square_x, product], [product, square_y]])
     x, y = directions[:, 1]
     angle = math.degrees(math.atan(y / x)) if x else 90.0
@@ -264,15 +284,14 @@ def anisotropy(waves: Periodogram, shortest: float) -> tuple[float, float]:
 
 
 def unevenness(measurement: Measurement) -> float:
-    """Relative standard error of e_el where parts differ more than Gaussian ones; else 0.
+    """Relative standard error of e_el if parts differ more than on a Gaussian surface, else 0.
 
-    The variance of the square of a Gaussian field of the covariance R is twice the integral of R^2
-    (Isserlis' theorem), over the places that two parts have apart.
+    For a Gaussian field of covariance R, the covariance of its square is 2 R^2 (Isserlis' theorem),
+    which is averaged over the distances of points in one part and in any part.
     """
     shape = measurement.heights.shape
-    *others, last = zip(shape, measurement.pixels, strict=True)
-    waves = np.ix_(*(fftfreq(*one) for one in others), rfftfreq(*last))
-    root = np.sqrt(np.sqrt(sum(one**2 for one in waves)))
+    waves = frequencies(shape, measurement.pixels)
+    root = np.sqrt(np.sqrt(sum(frequency**2 for frequency in waves)))
     transform = root * rfftn(measurement.heights)
     energy, same, every = irfftn(transform, shape) ** 2, np.ones(1), np.ones(1)
     if measurement.gaps is not None:
@@ -281,21 +300,22 @@ def unevenness(measurement: Measurement) -> float:
         inner = np.arange(count // _EDGE, count - count // _EDGE)
         parts = np.array_split(inner, _PARTS)
         energy = np.stack([np.mean(np.take(energy, part, axis), axis) for part in parts], axis)
-        one, whole = _overlaps(parts, count)
-        same, every = np.multiply.outer(same, one), np.multiply.outer(every, whole)
-    found = float(np.var(energy, ddof=1) / np.mean(energy) ** 2 / energy.size)
+        same_part, any_part = _distance_probabilities(parts, count)
+        same = np.multiply.outer(same, same_part)
+        every = np.multiply.outer(every, any_part)
+    measured = float(np.var(energy, ddof=1) / np.mean(energy) ** 2 / energy.size)
     covariance = irfftn(np.abs(transform) ** 2, shape)
     excess = np.sum((covariance / covariance.flat[0]) ** 2 * (same - every)[0])
     gaussian = 2 * float(excess) / (energy.size - 1)
-    counted = np.interp(found / gaussian, _UNEVEN, (0.0, 1.0))
-    return math.sqrt(counted * max(0.0, found - gaussian))
+    counted = np.interp(measured / gaussian, _UNEVEN, (0.0, 1.0))
+    return math.sqrt(counted * max(0.0, measured - gaussian))
 
 
-def _overlaps(parts: Sequence[NDArray[np.int64]], count: int) -> tuple[Array, Array]:
-    """Probabilities of the distances of two points along a period, both in one part or in any."""
+def _distance_probabilities(parts: Sequence[NDArray[np.int64]], count: int) -> tuple[Array, Array]:
+    """Probabilities of the distances of two points along a side, in one part and in any part."""
     inside = np.zeros((len(parts) + 1, count))
     for row, part in zip(inside, [*parts, np.concatenate(parts)], strict=True):
         row[part] = 1 / part.size
     power = np.abs(rfftn(inside, axes=[1])) ** 2
-    found = irfftn(power, [count], axes=[1])
-    return np.mean(found[:-1], axis=0), found[-1]
+    probability = irfftn(power, [count], axes=[1])
+    return np.mean(probability[:-1], axis=0), probability[-1]

@@ -1,7 +1,7 @@
-"""Missing points of a scan: what their interpolation takes from its density, given back.
+"""Correction of a density for the interpolation of missing points.
 
-Surrogate surfaces, random ones with the density of the scan, have the same points missing and
-interpolated. The ratio of their densities before and after is what the interpolation took away.
+Surrogate surfaces are random and have the density of the scan. The points that miss in the scan are
+interpolated in them too. The ratio of their densities before and after is the correction.
 """
 
 from __future__ import annotations
@@ -10,35 +10,38 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from scipy.fft import fftfreq, irfftn, rfftfreq, rfftn
+from scipy.fft import irfftn, rfftn
 
 from crackfront.core.arrays import Array
-from crackfront.measured.density.densities import Density, Periodogram, periodogram
+from crackfront.measured.density.densities import Density, Periodogram, frequencies, periodogram
 from crackfront.measured.scan.library import library_scan
 from crackfront.measured.scan.reading import Measurement, interpolated
 
-_POINTS, _MOST = 2**20, 16
-"""Points of all surrogates together, and their largest number."""
+_POINTS = 2**20
+"""Points of all surrogates together."""
+
+_MOST_SURROGATES = 16
+"""Largest number of surrogates."""
 
 _SEED = 20240229
-"""Seed of the surrogates, which are thus the same every time."""
+"""Seed of the surrogates, so that results can be repeated."""
 
 Pairs = Sequence[tuple[Array, Array]]
+"""Heights of surrogates, whole and with their missing points interpolated."""
 
 
 def surrogate_pairs(measurement: Measurement) -> Pairs:
-    """Surrogates of a scan, whole and with its missing points interpolated; none if it has none."""
+    """Surrogates of a scan, whole and interpolated; empty for a scan without missing points."""
     if measurement.gaps is None:
         return ()
     heights, density = measurement.heights, periodogram(measurement).density()
-    *others, last = zip(heights.shape, measurement.pixels, strict=True)
-    waves = np.ix_(*(fftfreq(*one) for one in others), rfftfreq(*last))
-    wavevector = 2 * np.pi * np.sqrt(np.asarray(sum(one**2 for one in waves)))
+    waves = frequencies(heights.shape, measurement.pixels)
+    wavevector = 2 * np.pi * np.sqrt(np.asarray(sum(frequency**2 for frequency in waves)))
     amplitude = np.sqrt(_interpolated_in_logarithms(density, density.value, wavevector))
-    chance = np.random.default_rng(_SEED)
-    number = min(max(_POINTS // heights.size, 1), _MOST)
+    rng = np.random.default_rng(_SEED)
+    number = min(max(_POINTS // heights.size, 1), _MOST_SURROGATES)
     wholes = [
-        irfftn(amplitude * rfftn(chance.standard_normal(heights.shape)), heights.shape)
+        irfftn(amplitude * rfftn(rng.standard_normal(heights.shape)), heights.shape)
         for _ in range(number)
     ]
     return [(whole, _filled(measurement, whole)) for whole in wholes]
@@ -52,29 +55,32 @@ def restored_periodogram(
     *,
     is_profile: bool = False,
 ) -> Periodogram:
-    """Periodogram of a measurement, with the power that the interpolation of points took away."""
+    """Periodogram of a measurement, corrected for the interpolation of missing points."""
     waves = periodogram(measurement, heights, window, is_profile=is_profile)
     if not pairs:
         return waves
-    whole, filled = (
-        [periodogram(measurement, one, window, is_profile=is_profile).density() for one in column]
-        for column in zip(*pairs, strict=True)
-    )
-    before, after = (np.sum([one.value for one in column], axis=0) for column in (whole, filled))
+
+    def density(surrogate: Array) -> Density:
+        return periodogram(measurement, surrogate, window, is_profile=is_profile).density()
+
+    densities = [(density(whole), density(filled)) for whole, filled in pairs]
+    before = np.sum([whole.value for whole, _ in densities], axis=0)
+    after = np.sum([filled.value for _, filled in densities], axis=0)
+    correction = _interpolated_in_logarithms(densities[0][0], before / after, waves.wavevector)
     return replace(
         waves,
-        power=waves.power * _interpolated_in_logarithms(whole[0], before / after, waves.wavevector),
-        # The ratio has the noise of as many modes as its surrogates.
+        power=waves.power * correction,
+        # The noise of the surrogates adds to the noise of the scan.
         dependence=waves.dependence * (1 + 1 / len(pairs)),
     )
 
 
 def _interpolated_in_logarithms(density: Density, values: Array, wavevector: Array) -> Array:
-    """Positive values of the bins of a density at other wavevectors."""
+    """Values in the bins of a density, interpolated at other wavevectors on logarithmic axes."""
     least = np.finfo(float).tiny
-    places = np.log(np.maximum(wavevector, density.wavevector[0]))
+    positions = np.log(np.maximum(wavevector, density.wavevector[0]))
     logarithms = np.log(np.maximum(values, least))
-    return np.exp(np.interp(places, np.log(density.wavevector), logarithms))
+    return np.exp(np.interp(positions, np.log(density.wavevector), logarithms))
 
 
 def _filled(measurement: Measurement, heights: Array) -> Array:

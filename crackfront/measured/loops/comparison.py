@@ -86,4 +86,7 @@ def machine_readable(loop: MeasuredLoop, prediction: Prediction | None) -> dict[
 
 def _remarks(prediction: Prediction) -> list[str]:
     """Remarks on a prediction that concern whoever compares it with a loop."""
-    return [remark_text(remark) for remark in prediction.verdict.of("undecided", "reservation")]
+    return [
+        remark_text(remark)
+        for remark in prediction.verdict.with_severity("undecided", "reservation")
+    ]

@@ -1,10 +1,9 @@
-"""A measured surface and the adhesion that is predicted for it, in SI units."""
+"""Figures of a surface and its predicted adhesion, in SI units."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -39,29 +38,32 @@ from crackfront.plots.style import (
     house_style,
 )
 
-_MOST_MAPS, _FEWEST_PLACES = 4, 2
-"""Scans that are shown as maps, and places for them."""
+_MOST_MAPS = 4
+"""Largest number of scans that are drawn as maps."""
+
+_FEWEST_MAPS = 2
+"""Smallest number of panels for maps, so that a single map is not too large."""
 
 _MOST_PIXELS = 512
-"""Points along a side that a drawn map has at most; others are left out."""
+"""Largest number of points along a side of a drawn map; the rest is skipped."""
 
-_SHOWN = (0.002, 0.998)
-"""Quantiles of the heights between which colours are spread."""
+_COLOUR_RANGE = (0.002, 0.998)
+"""Quantiles of the heights at both ends of the colours."""
 
-_LAST = 0.4
-"""Part of the last wavevector from which on a limit is named on its left."""
+_LATE_LIMIT = 0.4
+"""Wavevector over the end of the axis above which the name of a limit is to its left."""
 
-_BESIDE_TICKS = 12.0
-"""Points to the left of a panel where its letter is beside the ticks of an upper axis."""
+_LETTER_SHIFT = 12.0
+"""Shift of the letter of a panel, away from the ticks of an upper axis. (Units: point)"""
 
-_ROOM = 3.0
-"""How far beyond the longest trusted wavelength the spectrum is shown."""
+_LONGEST_SHOWN = 3.0
+"""Longest wavelength of the axes over the longest trusted wavelength."""
 
 
 def prediction_figure(surface: Surface, prediction: Prediction, panel: str | None = None) -> Figure:
     """Densities with the spectrum, forces of both branches and scans; or one panel, by letter.
 
-    Of a spectrum alone there are panels a and c; ValueError of any other.
+    A surface without scans only has the panels a and c; ValueError for others.
     """
     with house_style():
         if isinstance(surface, StatedSurface):
@@ -80,10 +82,10 @@ def prediction_figure(surface: Surface, prediction: Prediction, panel: str | Non
         panels["a"].sharex(panels["b"])
         for name, draw in _DRAWINGS.items():
             draw(panels[name], surface, prediction)
-            label_panel(panels[name], name, _BESIDE_TICKS)
+            label_panel(panels[name], name, _LETTER_SHIFT)
         panels["a"].tick_params(labelbottom=False)
         panels["a"].set_xlabel("")
-        _draw_scans(below, surface, _FEWEST_PLACES)
+        _draw_scans(below, surface, _FEWEST_MAPS)
         below.text(0.005, 0.97, "d", fontsize=9, fontweight="bold", va="top")
         return figure
 
@@ -92,7 +94,7 @@ def _stated_figure(surface: StatedSurface, prediction: Prediction, panel: str | 
     """The spectrum and the forces of both branches, or one of them."""
     names = ["a", "c"] if panel is None else [panel]
     if not set(names) <= {"a", "c"}:
-        raise ValueError(f"panel {panel} shows scans, and there are none; choose a or c")
+        raise ValueError(f"panel is {panel}, which shows scans; without scans choose a or c")
     figure = blank_figure(PAGE if panel is None else 0.6 * PAGE, 0.45 * PAGE)
     for name, axes in zip(names, figure.subplots(1, len(names), squeeze=False)[0], strict=True):
         if name == "a":
@@ -100,12 +102,12 @@ def _stated_figure(surface: StatedSurface, prediction: Prediction, panel: str | 
         else:
             _draw_forces(axes, surface, prediction)
         if panel is None:
-            label_panel(axes, name, _BESIDE_TICKS)
+            label_panel(axes, name, _LETTER_SHIFT)
     return figure
 
 
 def _draw_stated(axes: Axes, surface: StatedSurface) -> None:
-    """A spectrum that is stated, and the scales that dominate."""
+    """The spectrum of a surface without scans, and its dominant scales."""
     spectrum = surface.spectrum
     wavevector = _set_wavevectors(axes, surface)
     shown = wavevector[wavevector <= 2 * np.pi / spectrum.short_cutoff]
@@ -131,18 +133,18 @@ def _draw_stated(axes: Axes, surface: StatedSurface) -> None:
 
 
 def _draw_scans(figure: FigureBase, surface: MeasuredSurface, fewest: int = 1) -> None:
-    """The scans as used, in a row of at least so many places."""
+    """The scans as used, in a row of panels."""
     shown = surface.scans[:_MOST_MAPS]
     maps = figure.subplots(1, max(len(shown), fewest), squeeze=False)[0]
-    for axes, one in zip(maps, shown, strict=False):
-        draw_scan(axes, one.measurement, one.band.stripes)
+    for axes, scan in zip(maps, shown, strict=False):
+        draw_scan(axes, scan.measurement, scan.band.stripes)
     for axes in maps[len(shown) :]:
         axes.set_axis_off()
 
 
 def _set_wavevectors(axes: Axes, surface: Surface) -> Array:
-    """Wavevectors at which the spectrum is drawn, for which axes are prepared (Units: 1 / m)."""
-    ends = surface.longest * _ROOM, surface.spectrum.short_cutoff / 1.5
+    """Prepare axes for the spectrum, and return its wavevectors (Units: 1 / m)."""
+    ends = surface.longest * _LONGEST_SHOWN, surface.spectrum.short_cutoff / 1.5
     wavevector = np.geomspace(2 * np.pi / ends[0], 2 * np.pi / ends[1], 400)
     set_density_scales(axes, wavevector)
     axes.set_xlabel(WAVEVECTOR_LABEL)
@@ -150,14 +152,14 @@ def _set_wavevectors(axes: Axes, surface: Surface) -> Array:
 
 
 def _draw_isotropic(axes: Axes, surface: MeasuredSurface, _: Prediction) -> None:
-    """Densities of maps, trusted and not, the spectrum and the scales that dominate."""
+    """Densities of maps at all wavelengths, the spectrum and its dominant scales."""
     spectrum, measures = surface.joint.spectrum, surface.measures
     wavevector = _set_wavevectors(axes, surface)
     shown = wavevector[wavevector <= 2 * np.pi / spectrum.short_cutoff]
-    for index, one in enumerate(surface.scans):
-        if not one.measurement.is_line:
-            _draw_density(axes, index, one.trusted, one.measurement.path.name)
-            whole = one.density.within(2 * np.pi / wavevector[-1], 2 * np.pi / wavevector[0])
+    for index, scan in enumerate(surface.scans):
+        if not scan.measurement.is_line:
+            _draw_density(axes, index, scan.trusted, scan.measurement.path.name)
+            whole = scan.density.within(2 * np.pi / wavevector[-1], 2 * np.pi / wavevector[0])
             colour = COLOURS[index % len(COLOURS)]
             axes.plot(
                 whole.wavevector, whole.value, color=colour, linewidth=0.5, alpha=0.6, zorder=2
@@ -178,26 +180,36 @@ def _draw_isotropic(axes: Axes, surface: MeasuredSurface, _: Prediction) -> None
 
 
 def _draw_limits(axes: Axes, surface: MeasuredSurface, *, named: bool) -> None:
-    """Ends of the trusted bands, with what ends them above the data."""
-    for index, one in enumerate(surface.scans):
+    """Ends of the trusted bands, with their causes if `named`."""
+    for index, scan in enumerate(surface.scans):
         colour = COLOURS[index % len(COLOURS)]
-        for limit in one.band.ends:
-            place = 2 * np.pi / limit.wavelength
-            axes.axvline(place, color=colour, linewidth=0.5, dashes=(2, 2), zorder=1)
-            is_last = place > _LAST * axes.get_xlim()[1]
-            if named:
-                side, aside = ("right", -1.5) if is_last else ("left", 1.5)
-                beside = (aside, -2 - 7 * index), ("data", "axes fraction"), "offset points"
-                look: dict[str, Any] = {"ha": side, "va": "top", "fontsize": 6, "color": colour}
-                axes.annotate(limit.cause, (place, 1.0), *beside, **look)
+        for limit in scan.band.ends:
+            wavevector = 2 * np.pi / limit.wavelength
+            axes.axvline(wavevector, color=colour, linewidth=0.5, dashes=(2, 2), zorder=1)
+            if not named:
+                continue
+            alignment, shift = "left", 1.5
+            if wavevector > _LATE_LIMIT * axes.get_xlim()[1]:
+                alignment, shift = "right", -1.5
+            axes.annotate(
+                limit.cause,
+                (wavevector, 1.0),
+                xytext=(shift, -2 - 7 * index),
+                xycoords=("data", "axes fraction"),
+                textcoords="offset points",
+                ha=alignment,
+                va="top",
+                fontsize=6,
+                color=colour,
+            )
 
 
 def _draw_profiles(axes: Axes, surface: MeasuredSurface, _: Prediction) -> None:
     """Densities of profiles and the projection of the model that continues the spectrum."""
     wavevector = _set_wavevectors(axes, surface)
-    for index, one in enumerate(surface.scans):
-        name = one.measurement.path.name if one.measurement.is_line else ""
-        _draw_density(axes, index, one.profile, name)
+    for index, scan in enumerate(surface.scans):
+        name = scan.measurement.path.name if scan.measurement.is_line else ""
+        _draw_density(axes, index, scan.profile, name)
     projection = surface.joint.fit.projected_density(wavevector)
     axes.plot(wavevector, projection, color=BLACK, label="projection of the model", zorder=4)
     low, high = axes.get_ylim()
@@ -224,41 +236,41 @@ def _draw_density(axes: Axes, index: int, density: Density, name: str) -> None:
 
 
 def _draw_forces(axes: Axes, _: Surface, prediction: Prediction) -> None:
-    """Force against contact radius of both branches with their intervals, and of a smooth one."""
+    """Force against contact radius of both branches with intervals, and of a smooth sphere."""
     w_int = prediction.work_of_adhesion
     scales = Scales(prediction.radius, w_int, prediction.contact_modulus)
     strongest = max(prediction.w_retr.high, w_int)
     radius = np.linspace(1e-3, 1.15 * jkr.radius_at_force(0.0, strongest / w_int), 400)
     unit, newtons = scaled_unit("N", scales.force)
-    place = 1e6 * radius * scales.lateral
+    micrometres = 1e6 * radius * scales.lateral
 
     def force(adhesion: float) -> Array:
         return jkr.equilibrium_force(radius, max(adhesion, 0.0) / w_int) * scales.force / newtons
 
-    for name, colour, found in (
+    for name, colour, adhesion in (
         ("approach", BLUE, prediction.w_appr),
         ("retraction", VERMILION, prediction.w_retr),
     ):
-        label = rf"{name}, $w = {1e3 * found.value:.3g}$ mJ m$^{{-2}}$"
-        axes.plot(place, force(found.value), color=colour, label=label, zorder=3)
-        ends = force(found.low), force(found.high)
-        axes.fill_between(place, *ends, color=colour, alpha=0.2, linewidth=0)
+        label = rf"{name}, $w = {1e3 * adhesion.value:.3g}$ mJ m$^{{-2}}$"
+        axes.plot(micrometres, force(adhesion.value), color=colour, label=label, zorder=3)
+        ends = force(adhesion.low), force(adhesion.high)
+        axes.fill_between(micrometres, *ends, color=colour, alpha=0.2, linewidth=0)
     smooth = rf"smooth, $w_\mathrm{{int}} = {1e3 * w_int:.3g}$ mJ m$^{{-2}}$"
-    axes.plot(place, force(w_int), color="0.35", dashes=(4, 2), label=smooth)
+    axes.plot(micrometres, force(w_int), color="0.35", dashes=(4, 2), label=smooth)
     axes.axhline(0.0, color="0.6", linewidth=0.5, zorder=1)
-    axes.set_xlim(0, place[-1])
+    axes.set_xlim(0, micrometres[-1])
     axes.set_xlabel("contact radius (µm)")
     axes.set_ylabel(f"normal force ({unit})")
     axes.legend(loc="upper left", title="95% intervals shaded", title_fontsize=6)
 
 
 _DRAWINGS = {"a": _draw_isotropic, "b": _draw_profiles, "c": _draw_forces}
-"""What draws a panel, by its letter."""
+"""Functions that draw the panels, by their letters."""
 
 
 def draw_scan(axes: Axes, measurement: Measurement, stripes: Sequence[int] = ()) -> None:
     """A map in colours, or heights along a line; its density leaves out waves along `stripes`."""
-    low, high = (float(end) for end in np.quantile(measurement.heights, _SHOWN))
+    low, high = (float(end) for end in np.quantile(measurement.heights, _COLOUR_RANGE))
     unit, scale = scaled_unit("m", max(abs(low), abs(high)))
     lateral, side = scaled_unit("m", max(measurement.size))
     channel = f", channel {measurement.channel}" if measurement.channel else ""

@@ -1,4 +1,4 @@
-"""A figure of a series of samples: predicted numbers with their intervals, beside measured ones."""
+"""A figure of a series of samples: predicted and measured numbers with their intervals."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from crackfront.analysis.estimate import Estimate
+from crackfront.plots.parts import PointStyle
 from crackfront.plots.style import BLACK, COLOURS, MARKERS, PAGE, blank_figure, explain, house_style
 
 PREDICTED = {
@@ -20,17 +21,16 @@ PREDICTED = {
     "e_el": (r"$e_\mathrm{el}$ (mJ m$^{-2}$)", 1e3),
     "pull_off_force": ("pull-off force (µN)", 1e6),
 }
-"""Numbers that a series may show: label of the axis, and factor from SI units to it."""
+"""Numbers that a series may show: label of the axis, and factor from SI units."""
 
 _BOUNDS = {"hysteresis": "↑", "e_el": "↑", "w_appr": "↓"}
-"""Where the true number lies if shorter waves than the points add to e_el; elsewhere k, which
-falls, decides."""
+"""Direction in which a number changes if missing short waves add to e_el; others can do both."""
 
-_ASIDE = 0.14
-"""Distance of measured points from predicted ones, in samples."""
+_SHIFT = 0.14
+"""Half of the distance of measured from predicted points. (Units: distance of samples)"""
 
 _MOST_NAMED = 60
-"""Samples with their names on the axis."""
+"""Largest number of samples with names on the axis."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,32 +41,28 @@ class SeriesPoint:
     group: str
     predicted: Estimate[float]
     measured: Estimate[float]
-    """NaN where there is none. (Units: SI)"""
+    """NaN if there is no such number. (Units: SI)"""
     is_lower_bound: bool
-    """Whether e_el is a least one."""
+    """Whether e_el is a lower bound."""
 
 
 def series_figure(points: Sequence[SeriesPoint], name: str) -> Figure:
-    """One number of every sample; groups have a marker and colour, and measured ones are open."""
+    """One number of every sample; groups have a marker and colour, measured points are open."""
     label, factor = PREDICTED[name]
-    groups = list(dict.fromkeys(one.group for one in points))
+    groups = list(dict.fromkeys(point.group for point in points))
     with house_style():
         figure = blank_figure(min(PAGE, 1.6 + 0.35 * len(points)), 0.42 * PAGE)
         axes = figure.subplots()
-        for place, one in enumerate(points):
-            colour, marker = _look(groups.index(one.group))
-            _draw(axes, place - _ASIDE, one.predicted, factor, colour, marker, filled=True)
-            _draw(axes, place + _ASIDE, one.measured, factor, colour, marker, filled=False)
-            arrow = _BOUNDS.get(name, "") if one.is_lower_bound else ""
-            end, side = one.predicted.high, "bottom"
-            if arrow == "↓":
-                end, side = one.predicted.low, "top"
-            if arrow and math.isfinite(end):
-                axes.annotate(arrow, (place - _ASIDE, end * factor), ha="center", va=side)
-            if not math.isfinite(one.predicted.value):
+        for sample, point in enumerate(points):
+            style = _group_style(groups.index(point.group))
+            _draw(axes, sample - _SHIFT, point.predicted, factor, style, filled=True)
+            _draw(axes, sample + _SHIFT, point.measured, factor, style, filled=False)
+            if point.is_lower_bound:
+                _draw_bound(axes, sample - _SHIFT, point.predicted, factor, name)
+            if not math.isfinite(point.predicted.value):
                 axes.annotate(
                     "none",
-                    (place - _ASIDE, 0.02),
+                    (sample - _SHIFT, 0.02),
                     xycoords=("data", "axes fraction"),
                     ha="center",
                     va="bottom",
@@ -78,78 +74,85 @@ def series_figure(points: Sequence[SeriesPoint], name: str) -> Figure:
         axes.set_xlim(-0.6, len(points) - 0.4)
         axes.set_ylim(bottom=min(0.0, axes.get_ylim()[0]))
         named = points if len(points) <= _MOST_NAMED else ()
-        axes.set_xticks(range(len(named)), [one.name for one in named], rotation=45, ha="right")
+        names = [point.name for point in named]
+        axes.set_xticks(range(len(named)), names, rotation=45, ha="right")
         axes.tick_params(axis="x", top=False, length=0)
-        _add_legend(axes, groups, any(math.isfinite(one.measured.value) for one in points))
-        explain(figure, _sentences(points, _BOUNDS.get(name, "")))
+        _add_legend(axes, groups, any(math.isfinite(point.measured.value) for point in points))
+        explain(figure, _explanation(points, _BOUNDS.get(name, "")))
         return figure
 
 
-def _look(group: int) -> tuple[str, str]:
+def _group_style(group: int) -> PointStyle:
     """Colour and marker of a group, by its number."""
-    return COLOURS[group % len(COLOURS)], MARKERS[group % len(MARKERS)]
+    return PointStyle(COLOURS[group % len(COLOURS)], MARKERS[group % len(MARKERS)], "")
 
 
 def _draw(
     axes: Axes,
-    place: float,
-    found: Estimate[float],
+    abscissa: float,
+    number: Estimate[float],
     factor: float,
-    colour: str,
-    marker: str,
+    style: PointStyle,
     *,
     filled: bool,
 ) -> None:
-    """A number with its interval, if it has one."""
-    if not math.isfinite(found.value):
+    """Draw a number, unless it is NaN, and its interval if it has one."""
+    if not math.isfinite(number.value):
         return
-    ends = None
-    if math.isfinite(found.low):
-        pair = found.value - found.low, found.high - found.value
-        ends = [[factor * max(one, 0.0)] for one in pair]
+    interval = None
+    if math.isfinite(number.low):
+        below, above = number.value - number.low, number.high - number.value
+        interval = [[factor * max(below, 0.0)], [factor * max(above, 0.0)]]
     axes.errorbar(
-        [place],
-        [factor * found.value],
-        ends,
-        color=colour,
-        marker=marker,
-        markerfacecolor=colour if filled else "white",
+        [abscissa],
+        [factor * number.value],
+        interval,
+        color=style.colour,
+        marker=style.marker,
+        markerfacecolor=style.colour if filled else "white",
         linewidth=0.8,
         linestyle="none",
         zorder=3,
     )
 
 
+def _draw_bound(
+    axes: Axes, abscissa: float, number: Estimate[float], factor: float, name: str
+) -> None:
+    """Draw an arrow at the end of an interval in the direction of the true number."""
+    arrow = _BOUNDS.get(name, "")
+    end, side = (number.low, "top") if arrow == "↓" else (number.high, "bottom")
+    if arrow and math.isfinite(end):
+        axes.annotate(arrow, (abscissa, end * factor), ha="center", va=side)
+
+
 def _add_legend(axes: Axes, groups: Sequence[str], is_measured: bool) -> None:
-    """Groups by marker, and filled beside open points where any are measured."""
-    entries = [
-        Line2D([], [], color=colour, marker=marker, linestyle="none", label=group)
-        for group, (colour, marker) in zip(groups, map(_look, range(len(groups))), strict=True)
-        if group
-    ]
+    """Legend of the groups, and of filled and open points if there are measured ones."""
+    entries = []
+    for number, group in enumerate(groups):
+        style = _group_style(number)
+        if group:
+            entries.append(_legend_entry(style.colour, style.marker, style.colour, group))
     if is_measured:
-        entries += [
-            Line2D([], [], color=BLACK, marker="o", linestyle="none", label="predicted"),
-            Line2D(
-                [],
-                [],
-                color=BLACK,
-                marker="o",
-                markerfacecolor="white",
-                linestyle="none",
-                label="measured",
-            ),
-        ]
+        entries.append(_legend_entry(BLACK, "o", BLACK, "predicted"))
+        entries.append(_legend_entry(BLACK, "o", "white", "measured"))
     if entries:
         axes.legend(handles=entries, loc="best")
 
 
-def _sentences(points: Sequence[SeriesPoint], arrow: str) -> str:
-    """What bars, arrows and words in the figure mean."""
-    found = ["Bars: 95% intervals of predictions, two standard errors of measurements."]
-    if arrow and any(one.is_lower_bound for one in points):
+def _legend_entry(colour: str, marker: str, face: str, label: str) -> Line2D:
+    """A marker for a legend."""
+    return Line2D(
+        [], [], color=colour, marker=marker, markerfacecolor=face, linestyle="none", label=label
+    )
+
+
+def _explanation(points: Sequence[SeriesPoint], arrow: str) -> str:
+    """Explanation of bars, arrows and words in the figure."""
+    sentences = ["Bars: 95% intervals of predictions, two standard errors of measurements."]
+    if arrow and any(point.is_lower_bound for point in points):
         word = "at least" if arrow == "↑" else "at most"
-        found.append(f"Arrows: {word}, as waves shorter than the points are left out.")
-    if any(not math.isfinite(one.predicted.value) for one in points):
-        found.append("none: no prediction; the table says why.")
-    return " ".join(found)
+        sentences.append(f"Arrows: {word}, as waves shorter than the points are left out.")
+    if any(not math.isfinite(point.predicted.value) for point in points):
+        sentences.append("none: no prediction; the table says why.")
+    return " ".join(sentences)

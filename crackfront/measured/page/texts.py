@@ -1,17 +1,17 @@
-"""A surface and its prediction as texts, and as a mapping for machines in SI units."""
+"""A surface and its prediction as text, and as a mapping for JSON in SI units."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator
-from dataclasses import fields
+from dataclasses import fields, replace
 from typing import TYPE_CHECKING, Any
 
-from crackfront.analysis.estimate import Estimate
+from crackfront.analysis.estimate import UNKNOWN, Estimate
 from crackfront.core.units import Scales
 from crackfront.core.variables import variables
 from crackfront.core.words import counted
-from crackfront.measured.density.bands import BandLimit
+from crackfront.measured.density.bands import BandLimit, Scan
 from crackfront.measured.prediction.prediction import Prediction
 from crackfront.measured.prediction.remarks import (
     Remark,
@@ -29,13 +29,13 @@ from crackfront.simulate.jsonable import to_jsonable
 from crackfront.surfaces.written_units import prefixed
 
 if TYPE_CHECKING:
-    # Importing it compiles nothing, but takes a second that a prediction does not need.
+    # The import takes a second that a prediction without simulations does not need.
     from crackfront.measured.prediction.simulated_prediction import Simulated
 
 Number = Estimate[float]
 
 _MEASURES = {0.0: ("heights", "m"), 0.5: ("half-derivative", "m^1/2"), 1.0: ("slopes", "1")}
-"""Names and units of rms measures by the orders of their derivatives."""
+"""Names and units of rms measures, by the order of the derivative."""
 
 _ADHESIONS = ("w_appr", "w_retr", "hysteresis")
 
@@ -46,18 +46,17 @@ def report_text(
     verdict: Verdict | None = None,
     prediction: Prediction | None = None,
 ) -> str:
-    """All of surface, verdict and prediction, each where it is known, with all remarks.
+    """All results for a surface, with all remarks.
 
-    The verdict stands first where the theory does not apply. Without a prediction, scales in SI
-    units add the energy of full conformity.
+    The verdict comes first if the theory does not apply. Without a prediction, scales in SI units
+    add the energy of full conformity.
     """
     parts = [_surface_lines(surface)]
     if verdict is None:
         parts.append(remark_lines(surface_remarks(surface)))
     else:
-        first = verdict.outcome == "does not apply"
-        said = iter([verdict.heading, *remark_lines(verdict.remarks)])
-        parts.insert(0 if first else 1, said)
+        verdict_lines = iter([verdict.heading, *remark_lines(verdict.remarks)])
+        parts.insert(0 if verdict.outcome == "does not apply" else 1, verdict_lines)
     if prediction is not None:
         parts.append(_prediction_lines(prediction))
     elif scales is not None:
@@ -66,29 +65,24 @@ def report_text(
     return "\n\n".join("\n".join(lines) for lines in parts)
 
 
-def simulation_text(found: Simulated, prediction: Prediction) -> str:
-    """What simulations found beside what is predicted: of the front itself, and corrected."""
-    surfaces = counted(found.realisations, "synthesised surface")
-    lines = [f"Simulated on {surfaces}, beside the prediction"]
-    front = (
-        estimate_text(ENERGY, found.hysteresis),
-        estimate_text(ENERGY, prediction.front_hysteresis),
-    )
-    lines.append(f"  {'front, not corrected':22}{front[0]}; predicted {front[1]}")
-    corrected = found.corrected(prediction)
-    for name in _ADHESIONS:
-        ours, theirs = getattr(corrected, name), getattr(prediction, name)
-        lines.append(
-            f"  {name:22}{estimate_text(ENERGY, ours)}; predicted {estimate_text(ENERGY, theirs)}"
-        )
+def simulation_text(simulated: Simulated, prediction: Prediction) -> str:
+    """Results of simulations and of the prediction, for the front itself and corrected."""
+    surfaces = counted(simulated.realisations, "synthesised surface")
+    lines = [f"Simulated on {surfaces}, with the prediction"]
+    corrected = simulated.corrected(prediction)
+    rows = {"front, not corrected": (simulated.hysteresis, prediction.front_hysteresis)}
+    rows |= {name: (getattr(corrected, name), getattr(prediction, name)) for name in _ADHESIONS}
+    for name, (result, predicted) in rows.items():
+        expected = estimate_text(ENERGY, predicted)
+        lines.append(f"  {name:22}{estimate_text(ENERGY, result)}; predicted {expected}")
     law = estimate_text("1", prediction.factors.both)
     lines.append(
-        f"  {'k of the front':22}{estimate_text('1', found.k)}, numerical error "
-        f"{found.numerical_error:.2g}; predicted {law}"
+        f"  {'k of the front':22}{estimate_text('1', simulated.k)}, numerical error "
+        f"{simulated.numerical_error:.2g}; predicted {law}"
     )
-    if found.remark:
-        lines.append(f"  {found.remark}")
-    lines += [f"  Without a value: {sentence}" for sentence in found.failed]
+    if simulated.remark:
+        lines.append(f"  {simulated.remark}")
+    lines += [f"  Without a value: {sentence}" for sentence in simulated.failed]
     return "\n".join(lines)
 
 
@@ -97,9 +91,9 @@ def machine_readable(
     scales: Scales | None = None,
     verdict: Verdict | None = None,
     prediction: Prediction | None = None,
-    found: Simulated | None = None,
+    simulated: Simulated | None = None,
 ) -> dict[str, Any]:
-    """What the texts say, for JSON, by the names of records and in their SI units."""
+    """All results for JSON, by the names of the records and in SI units."""
     if isinstance(surface, StatedSurface):
         origin = _stated_entries(surface)
     else:
@@ -112,25 +106,30 @@ def machine_readable(
         "longest": surface.longest,
         "end": surface.spectrum.short_cutoff,
     }
-    return {
+    remarks = surface_remarks(surface) if verdict is None else verdict.remarks
+    entries = {
         **origin,
         "measures": to_jsonable(surface.measures),
         "e_el": None if scales is None else _energy_entry(surface, scales.contact_modulus),
-        "prediction": None if prediction is None else _prediction_entries(prediction),
-        "factors": None if prediction is None else to_jsonable(prediction.factors),
-        "excess": None if prediction is None else to_jsonable(prediction.excess),
+        "prediction": None,
+        "factors": None,
+        "excess": None,
         "outcome": None if verdict is None else verdict.outcome,
-        "remarks": _remark_entries(
-            surface_remarks(surface) if verdict is None else verdict.remarks
-        ),
-        "simulation": None
-        if found is None or prediction is None
-        else _simulation(found, prediction),
+        "remarks": _remark_entries(remarks),
+        "simulation": None,
     }
+    if prediction is not None:
+        entries["prediction"] = _prediction_entries(prediction)
+        entries["factors"] = to_jsonable(prediction.factors)
+        entries["excess"] = to_jsonable(prediction.excess)
+        if simulated is not None:
+            corrected = to_jsonable(simulated.corrected(prediction))
+            entries["simulation"] = to_jsonable(simulated) | {"corrected": corrected}
+    return entries
 
 
 def _stated_entries(surface: StatedSurface) -> dict[str, Any]:
-    """What a spectrum comes from that is stated."""
+    """Origin of a surface without scans."""
     return {"measurements": [], "spectrum": {"origin": surface.origin}, "continuation": None}
 
 
@@ -155,41 +154,36 @@ def _measured_entries(surface: MeasuredSurface) -> dict[str, Any]:
     }
 
 
-def _simulation(found: Simulated, prediction: Prediction) -> dict[str, Any]:
-    """What simulations found: of the front itself, and corrected as the prediction is."""
-    return to_jsonable(found) | {"corrected": to_jsonable(found.corrected(prediction))}
-
-
 def sample_row(
     surface: Surface, scales: Scales, verdict: Verdict, prediction: Prediction | None
 ) -> dict[str, Any]:
     """Row of a surface in a table: numbers and the ends of their 95% intervals, in SI units."""
-    remarks = " ".join(map(remark_text, verdict.of("fails", "undecided", "reservation")))
+    remarks = verdict.with_severity("fails", "undecided", "reservation")
     sentences = {
         "outcome": verdict.outcome,
-        "failed": "; ".join(one.concerns for one in verdict.of("fails")),
-        "undecided": "; ".join(one.concerns for one in verdict.of("undecided")),
+        "failed": "; ".join(remark.concerns for remark in verdict.with_severity("fails")),
+        "undecided": "; ".join(remark.concerns for remark in verdict.with_severity("undecided")),
         "at_least": is_lower_bound(surface),
         "none_expected": None if prediction is None else prediction.none_is_expected,
-        "remarks": remarks,
+        "remarks": " ".join(map(remark_text, remarks)),
     }
-    numbers = {
-        f"rms_{_MEASURES[one.order][0].replace('-', '_')}": to_jsonable(one.rms)
-        for one in surface.measures
-    }
+    numbers = {}
+    for measure in surface.measures:
+        name, _ = _MEASURES[measure.order]
+        numbers[f"rms_{name.replace('-', '_')}"] = to_jsonable(measure.rms)
     numbers["e_el"] = to_jsonable(surface.conformity_energy(scales.contact_modulus))
-    numbers |= {} if prediction is None else _prediction_entries(prediction)
-    heads = {"value": "", "low": "_low", "high": "_high"}
-    return sentences | {
-        f"{name}{head}": entry[end]
-        for name, entry in numbers.items()
-        for end, head in heads.items()
-        if end in entry
-    }
+    if prediction is not None:
+        numbers |= _prediction_entries(prediction)
+    row = dict(sentences)
+    for name, entry in numbers.items():
+        for end, suffix in (("value", ""), ("low", "_low"), ("high", "_high")):
+            if end in entry:
+                row[f"{name}{suffix}"] = entry[end]
+    return row
 
 
 def _continuation(fit: Fit) -> tuple[tuple[str, Number, str], ...]:
-    """Parameters of the model that continues a density, and units."""
+    """Names, values and units of the parameters of the model that continues a density."""
     return (
         ("roll_off", fit.roll_off, "m"),
         ("hurst", fit.hurst, "1"),
@@ -198,7 +192,7 @@ def _continuation(fit: Fit) -> tuple[tuple[str, Number, str], ...]:
 
 
 def _surface_lines(surface: Surface) -> Iterator[str]:
-    """Lines on what is known of a surface, and its rms measures."""
+    """Lines on a surface and its rms measures."""
     if isinstance(surface, StatedSurface):
         yield surface.origin
         yield f"  {'waves':22}{wavelengths_text(surface.shortest, surface.longest)}"
@@ -214,20 +208,8 @@ def _surface_lines(surface: Surface) -> Iterator[str]:
 
 def _measured_lines(surface: MeasuredSurface) -> Iterator[str]:
     """Lines on the measurements and their spectrum."""
-    for one in surface.scans:
-        item = one.measurement
-        points = " x ".join(map(str, item.heights.shape))
-        sides = " x ".join(prefixed("m", side) for side in item.size)
-        yield f"{item.path}: {item.format}, {points} points, {sides}"
-        yield f"  trusted wavelengths   {' to '.join(map(_limit_text, one.band.ends))}"
-        others = [limit for limit in one.band.limits if limit not in one.band.ends]
-        if others:
-            yield f"  other limits          {', '.join(map(_limit_text, others))}"
-        if item.channel:
-            yield f"  channel               {item.channel}"
-        yield f"  taken off             {item.levelling}"
-        if item.comment:
-            yield f"  comment               {item.comment}"
+    for scan in surface.scans:
+        yield from _scan_lines(scan)
     yield ""
     joint = surface.joint
     yield "Spectrum"
@@ -240,9 +222,11 @@ def _measured_lines(surface: MeasuredSurface) -> Iterator[str]:
         f"  {'continued':22}down to {prefixed('m', joint.spectrum.short_cutoff)} and to longer "
         f"waves, {shares.continued:.0%} of e_el"
     )
-    for name, found, units in _continuation(joint.fit):
-        unsure = name == "roll_off" and not joint.fit.has_roll_off
-        yield f"    {name:20}{estimate_text(units, found)}{', not resolved' if unsure else ''}"
+    for name, number, units in _continuation(joint.fit):
+        text = estimate_text(units, number)
+        if name == "roll_off" and not joint.fit.has_roll_off:
+            text += ", not resolved"
+        yield f"    {name:20}{text}"
     yield (
         f"  {'missing':22}two more decades of short waves would add "
         f"{part_of_energy(shares.missing_short)}; waves above {prefixed('m', joint.longest)} have "
@@ -250,14 +234,32 @@ def _measured_lines(surface: MeasuredSurface) -> Iterator[str]:
     )
 
 
-def _prediction_lines(item: Prediction) -> Iterator[str]:
+def _scan_lines(scan: Scan) -> Iterator[str]:
+    """Lines on one measurement."""
+    measurement, band = scan.measurement, scan.band
+    points = " x ".join(map(str, measurement.heights.shape))
+    sides = " x ".join(prefixed("m", side) for side in measurement.size)
+    yield f"{measurement.path}: {measurement.format}, {points} points, {sides}"
+    yield f"  trusted wavelengths   {' to '.join(map(_limit_text, band.ends))}"
+    other_limits = [limit for limit in band.limits if limit not in band.ends]
+    if other_limits:
+        yield f"  other limits          {', '.join(map(_limit_text, other_limits))}"
+    if measurement.channel:
+        yield f"  channel               {measurement.channel}"
+    yield f"  taken off             {measurement.levelling}"
+    if measurement.comment:
+        yield f"  comment               {measurement.comment}"
+
+
+def _prediction_lines(prediction: Prediction) -> Iterator[str]:
     """Lines with all predicted numbers, as files and JSON name them."""
     yield "Prediction (95% intervals)"
-    for one in variables(Prediction):
-        found = getattr(item, one.name)
-        number = found if isinstance(found, Estimate) else Estimate(found, *[math.nan] * 3)
+    for variable in variables(Prediction):
+        value = getattr(prediction, variable.name)
+        number = value if isinstance(value, Estimate) else replace(UNKNOWN, value=value)
         if math.isfinite(number.value):
-            yield f"  {one.attributes['long_name']:58}{estimate_text(one.units, number)}"
+            text = estimate_text(variable.units, number)
+            yield f"  {variable.attributes['long_name']:58}{text}"
 
 
 def _conformity_lines(energy: Number, work_of_adhesion: float) -> Iterator[str]:
@@ -269,53 +271,52 @@ def _conformity_lines(energy: Number, work_of_adhesion: float) -> Iterator[str]:
 
 
 def _remark_entries(remarks: Iterable[Remark]) -> list[dict[str, Any]]:
-    """Remarks, with the margins of conditions."""
-    return [
-        to_jsonable(one)
-        | {
-            "comparison": None
-            if one.comparison is None
-            else to_jsonable(one.comparison) | {"margin": to_jsonable(one.comparison.margin)}
-        }
-        for one in remarks
-    ]
+    """Remarks for JSON, with the margins of conditions."""
+    entries = []
+    for remark in remarks:
+        entry = to_jsonable(remark)
+        if remark.comparison is not None:
+            entry["comparison"]["margin"] = to_jsonable(remark.comparison.margin)
+        entries.append(entry)
+    return entries
 
 
 def _limit_text(limit: BandLimit) -> str:
-    """A wavelength with the cause of its being a limit."""
+    """A limit of the trusted wavelengths with its cause."""
     return f"{prefixed('m', limit.wavelength)} ({limit.cause})"
 
 
 def _scan_entries(surface: MeasuredSurface) -> Iterator[dict[str, Any]]:
-    """Scans without heights: their files, trusted wavelengths, and what their densities show."""
-    joined = surface.joint.density
-    for index, one in enumerate(surface.scans):
-        item = one.measurement
-        names = (entry.name for entry in fields(item) if entry.name not in ("heights", "gaps"))
+    """Scans for JSON, without heights: files, trusted wavelengths and densities."""
+    joint = surface.joint.density
+    for index, scan in enumerate(surface.scans):
+        measurement = scan.measurement
+        names = [item.name for item in fields(measurement) if item.name not in ("heights", "gaps")]
         yield {
-            **{name: to_jsonable(getattr(item, name)) for name in names},
-            "missing": item.missing,
-            "missing_weight": one.missing_weight,
-            "points": list(item.heights.shape),
-            **to_jsonable(one.band),
-            "density": to_jsonable(one.trusted),
-            "profile_density": to_jsonable(one.profile),
-            "level": to_jsonable(joined.levels[index]),
-            "disagrees": joined.disagrees(index),
+            **{name: to_jsonable(getattr(measurement, name)) for name in names},
+            "missing": measurement.missing,
+            "missing_weight": scan.missing_weight,
+            "points": list(measurement.heights.shape),
+            **to_jsonable(scan.band),
+            "density": to_jsonable(scan.trusted),
+            "profile_density": to_jsonable(scan.profile),
+            "level": to_jsonable(joint.levels[index]),
+            "disagrees": joint.disagrees(index),
         }
 
 
 def _energy_entry(surface: Surface, contact_modulus: float) -> dict[str, Any]:
-    """e_el, and that of what is recorded (Units: J / m^2)."""
+    """e_el by the spectrum and by the recorded waves (Units: J / m^2)."""
     return to_jsonable(surface.conformity_energy(contact_modulus)) | {
         "recorded": to_jsonable(surface.conformity_energy(contact_modulus, surface.recorded))
     }
 
 
 def _prediction_entries(prediction: Prediction) -> dict[str, dict[str, Any]]:
-    """Numbers of a prediction by name, with what they have of standard errors and intervals."""
-    items = [(item, to_jsonable(getattr(prediction, item.name))) for item in variables(Prediction)]
-    return {
-        item.name: (found if isinstance(found, dict) else {"value": found}) | item.attributes
-        for item, found in items
-    }
+    """Numbers of a prediction by name, with standard errors, intervals and attributes."""
+    entries = {}
+    for variable in variables(Prediction):
+        value = to_jsonable(getattr(prediction, variable.name))
+        entry = value if isinstance(value, dict) else {"value": value}
+        entries[variable.name] = entry | variable.attributes
+    return entries

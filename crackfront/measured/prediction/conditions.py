@@ -1,4 +1,4 @@
-"""Conditions of the theory for a sphere on a surface, each with what would meet it."""
+"""Conditions of the theory for a sphere on a surface, each with changes that would meet it."""
 
 from __future__ import annotations
 
@@ -24,33 +24,45 @@ from crackfront.measured.spectrum.stated import Surface
 from crackfront.surfaces.written_units import prefixed
 
 ASSUMED_RANGE = 0.5e-9
-"""Range of van der Waals attraction, where no other is named (Units: m)."""
+"""Range of van der Waals attraction, the default (Units: m)."""
 
-_CONTACT = (0.3, 0.7)
-"""Contact radius over that of the sphere, whose profile a paraboloid misses by 3% and by 24%."""
+# Pairs: a condition is in doubt beyond the first number and fails beyond the second.
 
-_TABOR = (5.0, 1.0)
-"""Tabor parameter down to which adhesion is that of cracks, and to which there are cracks."""
+_CONTACT_LIMITS = (0.3, 0.7)
+"""Contact radius over radius of the sphere; a paraboloid approximates it to 3% and 24% there."""
 
-_SLOPES = (0.3, 1.0)
-"""Rms slope, whose square linear elasticity leaves out."""
+_TABOR_LIMITS = (5.0, 1.0)
+"""Tabor parameter, below which the edge of the contact is less and less a crack."""
+
+_SLOPE_LIMITS = (0.3, 1.0)
+"""Rms slope, whose square linear elasticity neglects."""
 
 _MOST_PERIODIC = 0.5
-"""Part of e_el in one wave from which on the law of k is that of another surface."""
+"""Part of e_el in a single wave above which the law of k does not apply."""
 
 _MOST_NEGATIVE = 0.25
 """Part of the surface where w_loc is negative at the strongest disorder of the law."""
 
 _DEVIATE = float(ndtri(_MOST_NEGATIVE))
+"""Quantile (e_el - w_int) / w_rms of the normal distribution at this part."""
 
 LARGEST_ENERGY = (_DEVIATE + math.sqrt(_DEVIATE**2 + 1)) ** 2
-"""The e_el at which w_loc is negative on the largest part of the surface. (Units: w_int)"""
+"""The e_el at which w_loc is negative on this part of the surface. (Units: w_int)"""
 
-_FAR = 1000.0
-"""Factor to a limit above which the text says "far inside" and no number."""
+_FAR_INSIDE = 1000.0
+"""Margin of a condition above which the text has "far inside" instead of a number."""
 
-_MOST_UNSURE = 2.0
+_MOST_UNCERTAIN = 2.0
 """Ratio of the ends of the interval of e_el above which a reservation states it."""
+
+
+_ASSUMPTION = Remark(
+    "range of attraction",
+    "note",
+    f"The range of attraction is unknown and assumed to be {1e9 * ASSUMED_RANGE:g} nm, as for van "
+    "der Waals forces; --range gives another.",
+)
+"""Note if the user did not name a range of attraction."""
 
 
 def zero_load_radius(scales: Scales) -> float:
@@ -64,11 +76,12 @@ def theory_verdict(
     attraction_range: float | None = None,
     further: Iterable[Remark] = (),
 ) -> Verdict:
-    """Whether the theory applies to a surface under a sphere, of scales in SI units.
+    """Whether the theory applies to a surface under a sphere, with scales in SI units.
 
-    The range of attraction (Units: m) is :data:`ASSUMED_RANGE` where none is given. Further
-    remarks, as those on the law of k, count as well.
+    The range of attraction (Units: m) is by default :data:`ASSUMED_RANGE`. `further` has more
+    remarks for the verdict, for example on the law of k.
     """
+    assumption = [_ASSUMPTION] if attraction_range is None else []
     assumed_range = ASSUMED_RANGE if attraction_range is None else attraction_range
     return Verdict(
         (
@@ -79,7 +92,7 @@ def theory_verdict(
             *further,
             *scan_remarks(surface.scans, zero_load_radius(scales)),
             measure_next(surface),
-            *([_ASSUMPTION] if attraction_range is None else []),
+            *assumption,
         )
     )
 
@@ -87,7 +100,7 @@ def theory_verdict(
 def condition_remarks(
     surface: Surface, scales: Scales, attraction_range: float
 ) -> Iterator[Remark]:
-    """A remark on every condition of the theory, met or not."""
+    """A remark for every condition of the theory, whether it is met or not."""
     yield from _energy_conditions(surface, scales)
     yield from _contact_conditions(surface, scales)
     yield from _range_conditions(surface, scales, attraction_range)
@@ -96,7 +109,7 @@ def condition_remarks(
 
 def _condition(
     name: str,
-    found: str,
+    finding: str,
     reason: str,
     comparison: LimitCheck,
     remedies: tuple[str, ...],
@@ -105,32 +118,32 @@ def _condition(
 ) -> Remark:
     """Remark on a condition.
 
-    It says what was found, what is wrong beyond the limit, and what would bring the value there.
-    A share is written in per cent.
+    The sentence has the finding with its value and, if the condition is not met, the reason for
+    the limit. Remedies are changes that would meet it. A share is printed in per cent.
     """
     severity = comparison.severity
     if severity == "holds":
         margin = comparison.margin
         factor = f"inside by a factor of {float(f'{margin:.2g}'):g}"
-        sentence = f"{name}: {found}, {factor if margin < _FAR else 'far inside'}."
+        sentence = f"{name}: {finding}, {factor if margin < _FAR_INSIDE else 'far inside'}."
         return Remark(name, severity, sentence, comparison=comparison)
     beyond = "below" if comparison.rising else "above"
     if severity == "reservation":
         doubtful = _shown(comparison.doubtful, comparison.units, is_share=is_share)
-        sentence = f"{name}: {found}, in doubt {beyond} {doubtful}; {reason}."
+        sentence = f"{name}: {finding}, in doubt {beyond} {doubtful}; {reason}."
         return Remark(name, severity, sentence, comparison=comparison)
     limit = _shown(comparison.limit, comparison.units, is_share=is_share)
-    sentence = f"{name} fails: {found}, {beyond} the limit of {limit}; {reason}."
+    sentence = f"{name} fails: {finding}, {beyond} the limit of {limit}; {reason}."
     if severity == "undecided":
         sentence = (
-            f"{name} cannot be decided: {found}, and the limit of {limit} lies within the "
+            f"{name} cannot be decided: {finding}, and the limit of {limit} lies within the "
             f"uncertainty; beyond it {reason}."
         )
     return Remark(name, severity, sentence, remedies, comparison)
 
 
 def _shown(number: float, units: str, *, is_share: bool) -> str:
-    """A value or limit of a condition as a text."""
+    """A limit of a condition as text."""
     if units != "1":
         return prefixed(units, number)
     return f"{number:.2%}" if is_share else f"{number:.3g}"
@@ -148,7 +161,7 @@ def _energy_conditions(surface: Surface, scales: Scales) -> Iterator[Remark]:
         LimitCheck(e_el, w_int, w_int, "J/m2", best_case=e_el / energy.low),
         _lower_energy(scales, e_el / w_int),
     )
-    share, least = (_negative_share(one / w_int) for one in (e_el, energy.low))
+    share, least = _negative_share(e_el / w_int), _negative_share(energy.low / w_int)
     yield _condition(
         "attraction nearly everywhere",
         f"w_loc negative on {share:.2%} of the surface",
@@ -169,25 +182,25 @@ def _energy_conditions(surface: Surface, scales: Scales) -> Iterator[Remark]:
 def _contact_conditions(surface: Surface, scales: Scales) -> Iterator[Remark]:
     """Conditions on the contact at zero load, against the sphere and against the roughness."""
     modulus, radius, contact = scales.contact_modulus, scales.radius, zero_load_radius(scales)
-    part = contact / radius / _CONTACT[1]
+    excess = contact / radius / _CONTACT_LIMITS[1]
     yield _condition(
         "contact small against the sphere",
         f"contact of {prefixed('m', contact)} on a sphere of {prefixed('m', radius)}",
         "the paraboloid that approximates the sphere deviates from it",
-        LimitCheck(contact, _CONTACT[0] * radius, _CONTACT[1] * radius, "m"),
+        LimitCheck(contact, _CONTACT_LIMITS[0] * radius, _CONTACT_LIMITS[1] * radius, "m"),
         # a / R goes as the cube root of w_int / (E' R).
-        (_modulus("above", modulus, part**3), _radius_above(radius * part**3)),
+        (_modulus("above", modulus, excess**3), _radius_above(radius * excess**3)),
     )
     half, waves = _dominant_waves(surface)
-    part = half.shortest / contact
+    excess = half.shortest / contact
     yield _condition(
         "roughness fine against the contact",
         f"waves that matter to e_el of {waves} under a contact of {prefixed('m', contact)}",
-        "the contact has too few of them for an average",
+        "too few of them are in the contact for an average",
         LimitCheck(half.longest, contact, contact * half.longest / half.shortest, "m"),
         (
-            _radius_above(radius * part**1.5),
-            _modulus("below", modulus, part**-3.0),
+            _radius_above(radius * excess**1.5),
+            _modulus("below", modulus, excess**-3.0),
             "a finer roughness",
         ),
     )
@@ -200,15 +213,15 @@ def _range_conditions(
     w_int, modulus, radius = scales.work_of_adhesion, scales.contact_modulus, scales.radius
     half, waves = _dominant_waves(surface)
     tabor = (radius * w_int**2 / (modulus**2 * attraction_range**3)) ** (1 / 3)
-    part = _TABOR[1] / tabor
+    excess = _TABOR_LIMITS[1] / tabor
     yield _condition(
         "attraction short against the sphere",
         f"Tabor parameter of {tabor:.3g}",
-        "adhesion is not that of a crack at the edge of the contact",
-        LimitCheck(tabor, *_TABOR, "1", rising=True),
-        (_modulus("below", modulus, part**-1.5), _radius_above(radius * part**3)),
+        "the edge of the contact is not a crack",
+        LimitCheck(tabor, *_TABOR_LIMITS, "1", rising=True),
+        (_modulus("below", modulus, excess**-1.5), _radius_above(radius * excess**3)),
     )
-    # Dugdale's zone of a stress w/z over a range z: (pi/8) (K z/w)^2 with K^2 = 2 E' w.
+    # Dugdale's zone for a stress w/z over a range z: (pi/8) (K z/w)^2 with K^2 = 2 E' w.
     zone = math.pi / 4 * modulus * attraction_range**2 / w_int
     yield _condition(
         "attraction short against the roughness",
@@ -220,30 +233,32 @@ def _range_conditions(
 
 
 def _dominant_waves(surface: Surface) -> tuple[RmsMeasure, str]:
-    """Measure of the half-derivative, and the waves that dominate it as a text."""
+    """Measure of the half-derivative, and its dominant waves as text."""
     half = surface.measures[1]
     return half, f"{prefixed('m', half.shortest)} to {prefixed('m', half.longest)}"
 
 
 def _roughness_conditions(surface: Surface) -> Iterator[Remark]:
-    """Conditions on the rms slope, and on waves that stand out, as grooves do."""
+    """Conditions on the rms slope, and on single strong waves such as grooves."""
     rms = surface.measures[2].rms
     slope = rms.value
     yield _condition(
         "small slopes",
         f"rms slope of {slope:.3g}",
         "linear elasticity neglects the square of slopes",
-        LimitCheck(slope, *_SLOPES, "1", best_case=slope / rms.low),
-        (f"slopes lower by a factor of {slope / _SLOPES[1]:.3g}",),
+        LimitCheck(slope, *_SLOPE_LIMITS, "1", best_case=slope / rms.low),
+        (f"slopes lower by a factor of {slope / _SLOPE_LIMITS[1]:.3g}",),
     )
     if not surface.scans:
         return
-    part, wavelength = max(one.band.periodic for one in surface.scans)
-    found = f"the wave of {prefixed('m', wavelength)} alone has {part:.0%} of e_el"
+    part, wavelength = max(scan.band.periodic for scan in surface.scans)
+    finding = "no wave stands out"
+    if part:
+        finding = f"the wave of {prefixed('m', wavelength)} alone has {part:.0%} of e_el"
     yield _condition(
         "random roughness",
-        found if part else "no wave stands out",
-        "k is that of random surfaces, and grooves pin a front differently",
+        finding,
+        "the law of k is for random surfaces, and grooves pin a front differently",
         LimitCheck(part, MOST_PERIODIC, _MOST_PERIODIC, "1"),
         ("another place or direction without the grooves",),
         is_share=True,
@@ -251,7 +266,7 @@ def _roughness_conditions(surface: Surface) -> Iterator[Remark]:
 
 
 def _lower_energy(scales: Scales, excess: float) -> tuple[str, ...]:
-    """Changes each of which lowers e_el over w_int by a factor."""
+    """Changes, each of which lowers e_el over w_int by a factor."""
     return (
         _modulus("below", scales.contact_modulus, 1 / excess),
         f"a roughness lower by a factor of {math.sqrt(excess):.3g}",
@@ -259,26 +274,26 @@ def _lower_energy(scales: Scales, excess: float) -> tuple[str, ...]:
     )
 
 
-def _modulus(side: Literal["above", "below"], known: float, factor: float) -> str:
-    """A contact modulus that is the known one times a factor, or beyond (Units: Pa)."""
+def _modulus(side: Literal["above", "below"], modulus: float, factor: float) -> str:
+    """A contact modulus above or below the present one times a factor (Units: Pa)."""
     return (
-        f"a contact modulus E / (1 - nu^2) {side} {prefixed('Pa', known * factor)}, not "
-        f"{prefixed('Pa', known)}"
+        f"a contact modulus E / (1 - nu^2) {side} {prefixed('Pa', modulus * factor)}, not "
+        f"{prefixed('Pa', modulus)}"
     )
 
 
 def _radius_above(radius: float) -> str:
-    """A radius of the sphere or a larger one (Units: m)."""
+    """A radius of the sphere above some value (Units: m)."""
     return f"a radius above {prefixed('m', radius)}"
 
 
 def _negative_share(energy: float) -> float:
-    """Part of the surface where a Gaussian w_loc is negative, by e_el over w_int."""
+    """Part of the surface where a Gaussian w_loc is negative, at an e_el (Units: w_int)."""
     return float(ndtr((energy - 1) / (2 * math.sqrt(energy))))
 
 
 def _energy_remarks(surface: Surface, scales: Scales) -> Iterator[Remark]:
-    """Reservation on a wide interval of e_el."""
+    """Reservation if the interval of e_el is wide or reaches w_int."""
     energy = surface.conformity_energy(scales.contact_modulus)
     shown = prefixed("J/m2", energy.value, energy.low, energy.high)
     if energy.value < scales.work_of_adhesion <= energy.high:
@@ -286,15 +301,6 @@ def _energy_remarks(surface: Surface, scales: Scales) -> Iterator[Remark]:
             f"The interval of e_el reaches w_int, where the contact does not conform: {shown}."
         )
         yield Remark("e_el", "reservation", sentence)
-    elif energy.high > _MOST_UNSURE * energy.low:
-        sentence = f"e_el is not known to a factor of {_MOST_UNSURE:g}: {shown}."
+    elif energy.high > _MOST_UNCERTAIN * energy.low:
+        sentence = f"e_el is not known to a factor of {_MOST_UNCERTAIN:g}: {shown}."
         yield Remark("e_el", "reservation", sentence)
-
-
-_ASSUMPTION = Remark(
-    "range of attraction",
-    "note",
-    f"The range of attraction is unknown and assumed to be {1e9 * ASSUMED_RANGE:g} nm, that of van "
-    "der Waals forces; --range gives another.",
-)
-"""What is said where no range of attraction is given."""

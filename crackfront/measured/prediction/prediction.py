@@ -1,4 +1,4 @@
-"""What the law w = w_int - e_el -+ k e_el predicts for a measured surface, and where it applies."""
+"""The prediction for a measured surface by the law w = w_int - e_el -+ k e_el."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
-from crackfront.analysis.estimate import Estimate
+from crackfront.analysis.estimate import UNKNOWN, Estimate
 from crackfront.analysis.law import shipped_law
 from crackfront.analysis.law_spheres import SphereFactors
 from crackfront.analysis.validity import Excess
@@ -19,10 +19,10 @@ from crackfront.measured.prediction.remarks import Remark, Verdict, remark_text
 from crackfront.measured.prediction.surface_remarks import disagreements, measure_next
 from crackfront.measured.prediction.texts import ENERGY, estimate_text, wavelengths_text
 from crackfront.measured.prediction.works import (
-    Works,
+    AdhesionByLaw,
+    adhesion_by_law,
     implied_work_of_adhesion,
     least_work_of_adhesion,
-    works,
 )
 from crackfront.measured.spectrum.stated import StatedSurface, Surface
 from crackfront.surfaces.written_units import prefixed
@@ -32,8 +32,8 @@ from crackfront.surfaces.written_units import prefixed
 class Prediction:
     """Adhesion that is predicted for a surface, in SI units.
 
-    The intervals of the works of adhesion hold those of k, of e_el, and of what the front's
-    hysteresis is divided by.
+    The intervals of the works of adhesion include the uncertainties of k, of e_el, and of the ratio
+    by which the front's hysteresis is divided.
     """
 
     surface: Surface
@@ -67,7 +67,7 @@ class Prediction:
 
     @property
     def none_is_expected(self) -> bool:
-        """Whether the contact is too small for hysteresis, by the law of k."""
+        """Whether the contact is too small for hysteresis by the law of k."""
         return self.size < shipped_law().size[0]
 
     def __repr__(self) -> str:
@@ -76,7 +76,7 @@ class Prediction:
 
 
 def prediction_page(prediction: Prediction) -> str:
-    """What an experimenter wants first: numbers, how far to trust them, what to measure next."""
+    """The most important numbers, their reservations, and the next measurement, as a page."""
     surface, e_el = prediction.surface, prediction.e_el
     hysteresis = estimate_text(ENERGY, prediction.hysteresis)
     if prediction.none_is_expected:
@@ -96,21 +96,23 @@ def prediction_page(prediction: Prediction) -> str:
     if math.isfinite(prediction.implied_work_of_adhesion.value):
         implied = estimate_text(ENERGY, prediction.implied_work_of_adhesion)
         rows.append(("w_int by pull-off", implied))
-    rows += [
-        ("e_el", f"{estimate_text(ENERGY, e_el)} = {relative:.3g} w_int"),
-        ("as recorded", f"{prefixed(ENERGY, recorded.value)}; trusted waves from {waves}")
-        if not isinstance(surface, StatedSurface)
-        else ("rms height", f"{prefixed('m', surface.measures[0].rms.value)}; waves from {waves}"),
-    ]
-    apart = [*disagreements(surface)]
-    others = [one for one in prediction.verdict.of("undecided", "reservation") if one not in apart]
+    rows.append(("e_el", f"{estimate_text(ENERGY, e_el)} = {relative:.3g} w_int"))
+    if isinstance(surface, StatedSurface):
+        rms = prefixed("m", surface.measures[0].rms.value)
+        rows.append(("rms height", f"{rms}; waves from {waves}"))
+    else:
+        energy = prefixed(ENERGY, recorded.value)
+        rows.append(("as recorded", f"{energy}; trusted waves from {waves}"))
+    conflicts = [*disagreements(surface)]
+    reservations = prediction.verdict.with_severity("undecided", "reservation")
+    further = [remark for remark in reservations if remark not in conflicts]
     return "\n".join(
         [
-            *map(remark_text, apart),
+            *map(remark_text, conflicts),
             *(f"{name:18}{text}" for name, text in rows),
             f"{prediction.verdict.heading}. {prediction.excess.sentence}",
             *map(remark_text, _repelled_remarks(prediction.w_appr)),
-            *map(remark_text, others),
+            *map(remark_text, further),
             remark_text(measure_next(surface)),
             "Quasi-static: rate, viscoelasticity, ageing and the preload do not enter.",
             "Intervals are 95% intervals; --long prints all results.",
@@ -118,16 +120,16 @@ def prediction_page(prediction: Prediction) -> str:
     )
 
 
-def _law_remarks(found: Works) -> Iterator[Remark]:
-    """Remarks on the law of k, on the division by the excess, and on a negative w_appr."""
-    factors = found.factors
+def _law_remarks(adhesion: AdhesionByLaw) -> Iterator[Remark]:
+    """Remarks on the law of k, on its correction, and on a negative w_appr."""
+    factors = adhesion.factors
     if factors.warning:
         sentence = f"The law of k was not measured there: {factors.warning}."
         yield Remark("k", "reservation", sentence)
     yield Remark(
         "k",
         "note",
-        "k is that of a straight front on springs of the length L_kappa, by the law that was "
+        "k is calculated for a straight front on springs of the length L_kappa, by a law that was "
         "fitted to simulations of such fronts; its interval includes the errors of both.",
     )
     _, largest = shipped_law().size
@@ -138,12 +140,12 @@ def _law_remarks(found: Works) -> Iterator[Remark]:
             f"Size g {factors.size:.3g} is above the largest that was measured ({largest:.3g}): k "
             "follows the finite-size exponent of the elastic line from there.",
         )
-    yield Remark("hysteresis", "note", found.excess.sentence)
-    yield from _repelled_remarks(found.w_appr)
+    yield Remark("hysteresis", "note", adhesion.excess.sentence)
+    yield from _repelled_remarks(adhesion.w_appr)
 
 
 def _repelled_remarks(w_appr: Estimate[float]) -> Iterator[Remark]:
-    """Note on what a w_appr that is not positive means, where its interval holds one."""
+    """Note on the meaning of a negative w_appr, if the interval includes it."""
     if w_appr.low <= 0:
         word = "is not" if w_appr.value <= 0 else "may not be"
         yield Remark(
@@ -154,15 +156,33 @@ def _repelled_remarks(w_appr: Estimate[float]) -> Iterator[Remark]:
         )
 
 
+def _pull_off_remarks(
+    implied: Estimate[float], pull_off: float, least_adhesion: float
+) -> Iterator[Remark]:
+    """Remark if a measured pull-off force does not determine w_int."""
+    if not math.isfinite(implied.value):
+        sentence = (
+            f"No w_int with which the theory applies gives the measured pull-off force of "
+            f"{prefixed('N', pull_off)}: check the force, the radius and the modulus."
+        )
+        yield Remark("w_int by pull-off", "reservation", sentence)
+    elif implied.low <= least_adhesion:
+        sentence = (
+            f"The interval of w_int by pull-off begins at {prefixed('J/m2', implied.low)}, "
+            "below which the theory does not apply: smaller values are not excluded."
+        )
+        yield Remark("w_int by pull-off", "note", sentence)
+
+
 def check_and_predict(
-    surface: Surface, scales: Scales, given: PredictionOptions
+    surface: Surface, scales: Scales, options: PredictionOptions
 ) -> tuple[Verdict, Prediction | None]:
-    """Whether the theory applies under a sphere, and the prediction where it does."""
-    verdict = theory_verdict(surface, scales, given.range)
+    """Whether the theory applies under a sphere, and the prediction if it does."""
+    verdict = theory_verdict(surface, scales, options.range)
     if verdict.outcome == "does not apply":
         return verdict, None
-    found = predicted(surface, scales, given.range, given.pull_off)
-    return found.verdict, found
+    prediction = predicted(surface, scales, options.range, options.pull_off)
+    return prediction.verdict, prediction
 
 
 def predicted(
@@ -171,46 +191,34 @@ def predicted(
     attraction_range: float | None = None,
     pull_off: float | None = None,
 ) -> Prediction:
-    """Prediction for a surface under a sphere, of scales in SI units.
+    """Prediction for a surface under a sphere, with scales in SI units.
 
-    The range of attraction (Units: m) is that of van der Waals forces where none is given. A
-    measured pull-off force (Units: N) gives the w_int that it implies. ValueError if no contact
-    conforms.
+    By default the range of attraction (Units: m) is the range of van der Waals forces. With a
+    measured pull-off force (Units: N) the prediction includes the w_int that the force implies.
+    ValueError if the theory cannot be evaluated because e_el is above w_int.
     """
-    found = works(surface, scales)
-    energy, factors, excess, w_retr = found.energy, found.factors, found.excess, found.w_retr
-    radius, adhesion = zero_load_radius(scales), scales.work_of_adhesion
+    adhesion = adhesion_by_law(surface, scales)
+    energy, factors, w_retr = adhesion.energy, adhesion.factors, adhesion.w_retr
+    radius, w_int = zero_load_radius(scales), scales.work_of_adhesion
     # By JKR, pull-off forces are linear in the work of adhesion.
-    at_load, at_displacement = (
-        -reduced * scales.force / adhesion
-        for reduced in (jkr.pull_off_force(), float(jkr.equilibrium_force(jkr.pull_off_radius())))
-    )
-    implied, remarks = Estimate(*[math.nan] * 4), [*_law_remarks(found)]
+    at_load = -jkr.pull_off_force() * scales.force / w_int
+    unstable_force = float(jkr.equilibrium_force(jkr.pull_off_radius()))
+    at_displacement = -unstable_force * scales.force / w_int
+    implied, remarks = UNKNOWN, [*_law_remarks(adhesion)]
     if pull_off is not None:
         implied = implied_work_of_adhesion(surface, scales, pull_off / at_load)
-        if not math.isfinite(implied.value):
-            sentence = (
-                f"No w_int with which the theory applies gives the measured pull-off force of "
-                f"{prefixed('N', pull_off)}: check the force, the radius and the modulus."
-            )
-            remarks.append(Remark("w_int by pull-off", "reservation", sentence))
-        elif implied.low <= least_work_of_adhesion(surface, scales):
-            sentence = (
-                f"The interval of w_int by pull-off begins at {prefixed('J/m2', implied.low)}, "
-                "below which the theory does not apply: smaller values are not excluded."
-            )
-            remarks.append(Remark("w_int by pull-off", "note", sentence))
+        remarks += _pull_off_remarks(implied, pull_off, least_work_of_adhesion(surface, scales))
     return Prediction(
         surface=surface,
         verdict=theory_verdict(surface, scales, attraction_range, remarks),
         factors=factors,
-        excess=excess,
+        excess=adhesion.excess,
         radius=scales.radius,
         contact_modulus=scales.contact_modulus,
-        work_of_adhesion=adhesion,
+        work_of_adhesion=w_int,
         contact_radius=radius,
         e_el=energy,
-        w_rms=2 * math.sqrt(energy.value * adhesion),
+        w_rms=2 * math.sqrt(energy.value * w_int),
         correlation_length=surface.spectrum.correlation_length,
         l_kappa=factors.spring * scales.lateral,
         larkin_length=factors.larkin_length * scales.lateral,
@@ -218,11 +226,11 @@ def predicted(
         negative_share=factors.approach.negative_share,
         k_appr=replace(factors.approach.factor, standard_error=math.nan),
         k_retr=replace(factors.retraction.factor, standard_error=math.nan),
-        front_excess=excess.ratio,
-        front_hysteresis=found.front_hysteresis,
-        w_appr=found.w_appr,
+        front_excess=adhesion.excess.ratio,
+        front_hysteresis=adhesion.front_hysteresis,
+        w_appr=adhesion.w_appr,
         w_retr=w_retr,
-        hysteresis=found.hysteresis,
+        hysteresis=adhesion.hysteresis,
         pull_off_force=w_retr.each(lambda work: at_load * work),
         pull_off_force_held=w_retr.each(lambda work: at_displacement * work),
         pull_off_force_smooth=-jkr.pull_off_force() * scales.force,

@@ -1,6 +1,6 @@
-"""Remarks on a surface and its prediction: what each concerns, how severe it is, what would help.
+"""Remarks on a surface and its prediction: subject, severity, sentence and remedies.
 
-Conditions of the theory, reservations and notes are all remarks. Every output shows them by
+Conditions of the theory, reservations and notes are all remarks. Outputs print them with
 :func:`remark_text` and :func:`remark_lines`.
 """
 
@@ -14,7 +14,7 @@ from typing import Literal
 from crackfront.core.words import counted
 
 Severity = Literal["fails", "undecided", "reservation", "note", "holds"]
-"""Whether the theory ends, may end or is in doubt there; a note on the input; or all is well."""
+"""Severity: the theory ends, may end or is in doubt; a note on the input; or a condition met."""
 
 Outcome = Literal["applies", "applies with reservations", "cannot be decided", "does not apply"]
 
@@ -28,30 +28,30 @@ _HEADINGS: dict[Severity, str] = {
 """Headings of the groups of remarks, the most severe first."""
 
 _BORDER = 1.1
-"""Factor to which a limit is known: a value that is beyond it by less is undecided."""
+"""Uncertainty of a limit as a factor; values beyond the limit by less are undecided."""
 
 
 @dataclass(frozen=True, slots=True)
 class LimitCheck:
-    """A number and the limits that a condition of the theory sets to it, in SI units."""
+    """A number and its limits by a condition of the theory, in SI units."""
 
     value: float
     doubtful: float
     limit: float
-    """The condition holds up to the one value and is in doubt up to the other; if `rising`, it
-    holds down to the one and is in doubt down to the other."""
+    """The condition is met up to `doubtful` and in doubt up to `limit`; if `rising`, it is met down
+    to `doubtful` and in doubt down to `limit`."""
     units: str
     rising: bool = False
-    """Whether the condition needs values above the limit, not below."""
+    """Whether values must be above the limit, not below."""
     best_case: float = 1.0
-    """Value over the end of its interval that meets the condition best."""
+    """Ratio of the value to the end of its interval that is closer to meeting the condition."""
 
     @property
     def severity(self) -> Severity:
-        """Whether the condition holds.
+        """Whether the condition is met.
 
-        Undecided where the value is beyond the limit, but its interval holds values that are not,
-        or the limit is too near to tell.
+        It is undecided if the value is beyond the limit, but its interval is not, or the value is
+        very close to the limit.
         """
         margin = self._margin(self.limit)
         if margin <= 1:
@@ -60,11 +60,11 @@ class LimitCheck:
 
     @property
     def margin(self) -> float:
-        """Factor from the value to where the condition is in doubt; above 1 where it holds."""
+        """Factor from the value to `doubtful`; above 1 if the condition is met."""
         return self._margin(self.doubtful)
 
     def _margin(self, end: float) -> float:
-        """Factor from the value to an end of what is allowed."""
+        """Factor from the value to a limit; above 1 on the allowed side."""
         if self.rising:
             return self.value / end
         return end / self.value if self.value > 0 else math.inf
@@ -72,33 +72,34 @@ class LimitCheck:
 
 @dataclass(frozen=True, slots=True)
 class Remark:
-    """One thing that a reader must know of a surface or a prediction."""
+    """A statement on a surface or a prediction for the reader."""
 
     concerns: str
-    """What it is about: a condition as 'small slopes', the file of a scan, or a quantity."""
+    """Subject: a condition such as 'small slopes', the file of a scan, or a quantity."""
     severity: Severity
     sentence: str
-    """What was found, complete in itself."""
+    """The finding, as a complete sentence."""
     remedies: tuple[str, ...] = ()
-    """Changes each of which alone would do."""
+    """Changes, each of which alone would meet the condition."""
     comparison: LimitCheck | None = None
     """The numbers behind a condition."""
 
 
 @dataclass(frozen=True, slots=True)
 class Verdict:
-    """Whether the theory applies to a sphere on a surface, and all remarks on both."""
+    """Whether the theory applies to a sphere on a surface, with all remarks."""
 
     remarks: tuple[Remark, ...]
 
-    def of(self, *severities: Severity) -> tuple[Remark, ...]:
-        """Remarks of some severities, the most severe first."""
-        return tuple(by_severity(one for one in self.remarks if one.severity in severities))
+    def with_severity(self, *severities: Severity) -> tuple[Remark, ...]:
+        """Remarks with some severities, the most severe first."""
+        chosen = [remark for remark in self.remarks if remark.severity in severities]
+        return tuple(by_severity(chosen))
 
     @property
     def outcome(self) -> Outcome:
-        """What follows from all remarks."""
-        severities = {one.severity for one in self.remarks}
+        """Whether the theory applies, by the most severe remark."""
+        severities = {remark.severity for remark in self.remarks}
         if "fails" in severities:
             return "does not apply"
         if "undecided" in severities:
@@ -107,13 +108,13 @@ class Verdict:
 
     @property
     def heading(self) -> str:
-        """The outcome as the head of a text."""
-        count = len(self.of("reservation"))
+        """The outcome as the heading of a text."""
+        count = len(self.with_severity("reservation"))
         headings: dict[Outcome, str] = {
             "applies": "The theory applies",
             "applies with reservations": f"The theory applies with {counted(count, 'reservation')}",
             "cannot be decided": (
-                "WHETHER THE THEORY APPLIES CANNOT BE DECIDED; the numbers hold if it does"
+                "WHETHER THE THEORY APPLIES CANNOT BE DECIDED; the numbers are valid if it does"
             ),
             "does not apply": "THE THEORY DOES NOT APPLY",
         }
@@ -121,12 +122,12 @@ class Verdict:
 
 
 def by_severity(remarks: Iterable[Remark]) -> list[Remark]:
-    """Remarks with the most severe first, otherwise in their order."""
-    return sorted(remarks, key=lambda one: list(_HEADINGS).index(one.severity))
+    """Remarks sorted by severity, the most severe first."""
+    return sorted(remarks, key=lambda remark: list(_HEADINGS).index(remark.severity))
 
 
 def remark_text(remark: Remark) -> str:
-    """What a remark says, with its remedies."""
+    """Sentence of a remark, with its remedies."""
     if not remark.remedies:
         return remark.sentence
     return f"{remark.sentence} It would hold with {', or '.join(remark.remedies)}."
@@ -136,7 +137,7 @@ def remark_lines(remarks: Iterable[Remark]) -> Iterator[str]:
     """Lines of remarks, under a heading for each severity."""
     ordered = by_severity(remarks)
     for severity, heading in _HEADINGS.items():
-        group = [one for one in ordered if one.severity == severity]
+        group = [remark for remark in ordered if remark.severity == severity]
         if group:
             yield heading
-            yield from (f"  {remark_text(one)}" for one in group)
+            yield from (f"  {remark_text(remark)}" for remark in group)

@@ -1,12 +1,12 @@
-"""The real run behind a prediction: synthesised surfaces with the fitted spectrum.
+"""Simulations for comparison with a prediction, on random surfaces with the fitted spectrum.
 
-Spheres are run, or where these have too many sites the straight fronts that they are locally.
+They are spheres, or straight fronts if spheres have too many sites.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import astuple, dataclass, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -28,34 +28,51 @@ from crackfront.simulate.run_simulation import run_simulation
 from crackfront.simulate.simulation import Simulation, simulation_of
 from crackfront.simulate.sphere.steady_branches import SteadySchedule
 
-_ERROR = 0.03
-"""Standard error of k that the numerics may leave."""
+_FACTOR_ERROR = 0.03
+"""Standard error of k by the numerics."""
 
-_START, _DEEPEST, _TRAVEL, _STEADY_ERROR = 1.0, 1.5, 1.5, 0.1
-"""Steady parts of both branches, as in config/default.yaml, from which the table of k is."""
+# Loads of the steady parts, as in config/default.yaml.
 
-_WAY = 15.0
-"""Correlation lengths that the contact grows by at least, for a few independent states."""
+_START = 1.0
+"""Penetration at which the approach starts. (Units: reduced vertical length)"""
 
-_MOST_SITES, _MOST_LINE_SITES, _MOST_MEMORY = 1_000_000, 2_000_000, 8e9
-"""Sites of a sphere and of a straight front, and bytes of either, up to which they are run."""
+_DEEPEST = 1.5
+"""Largest penetration; more for large features. (Units: reduced vertical length)"""
+
+_TRAVEL = 1.5
+"""Travel of the front before its states are steady. (Units: correlation length)"""
+
+_STEADY_ERROR = 0.1
+"""Standard error of k over the states of a simulation at which its parts are long enough."""
+
+_LEAST_GROWTH = 15.0
+"""Least growth of the contact, for several independent states. (Units: correlation length)"""
+
+_MOST_SITES = 1_000_000
+"""Largest number of sites of a sphere."""
+
+_MOST_LINE_SITES = 2_000_000
+"""Largest number of sites of a straight front."""
+
+_MOST_MEMORY = 8e9
+"""Largest memory of a simulation. (Units: byte)"""
 
 _LINE = LineLoad(spring_unit="larkin_length", length=10, period=25, transient=6, step=0.5)
-"""Straight fronts, as in config/line.yaml, from which the law of k is."""
+"""Load of straight fronts, as in config/line.yaml, to which the law of k was fitted."""
 
 
 @dataclass(frozen=True, slots=True)
 class SimulationPlan:
-    """What is simulated for a prediction."""
+    """Simulations for a prediction."""
 
     simulations: tuple[Simulation, ...]
     remark: str = ""
-    """What is run in place of spheres, and why; empty where spheres are."""
+    """Why straight fronts replace spheres; empty for spheres."""
 
     @property
     def expected_seconds(self) -> float:
-        """Processor time that the simulations are expected to take."""
-        return sum(expected_cost(item).seconds for item in self.simulations)
+        """Expected processor time (Units: s)."""
+        return sum(expected_cost(simulation).seconds for simulation in self.simulations)
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,27 +86,27 @@ class Adhesions:
 
 @dataclass(frozen=True, slots=True)
 class Simulated:
-    """What simulations found, means over surfaces with 95% intervals."""
+    """Results of simulations: means over surfaces with 95% intervals."""
 
     realisations: int
     """Surfaces with a value."""
     w_appr: Estimate[float]
     w_retr: Estimate[float]
     hysteresis: Estimate[float]
-    """Works of adhesion; without an interval (NaN) where there is one surface. (Units: J / m^2)"""
+    """Works of adhesion; intervals are NaN for a single surface. (Units: J / m^2)"""
     k: Estimate[float]
     numerical_error: float
-    """Standard error of k that the numerics leave."""
+    """Standard error of k by the numerics."""
     failed: tuple[str, ...]
-    """Why surfaces have no value."""
+    """Reasons why simulations failed."""
     remark: str
-    """As of :class:`SimulationPlan`."""
+    """As in :class:`SimulationPlan`."""
 
     def corrected(self, prediction: Prediction) -> Adhesions:
-        """Works of adhesion, divided as the prediction divides its own.
+        """Works of adhesion with the hysteresis divided by the excess, as in the prediction.
 
-        What lies on either side of w_int - e_el is divided; without an interval of the ratio,
-        which stands in the prediction.
+        The differences from w_int - e_el are divided. The uncertainty of the excess is not
+        included.
         """
         middle = prediction.work_of_adhesion - prediction.e_el.value
         ratio = prediction.excess.ratio.value
@@ -103,7 +120,7 @@ class Simulated:
 def prediction_plan(
     surface: Surface, scales: Scales, realisations: int, seed: int
 ) -> SimulationPlan:
-    """Simulations of surfaces with the fitted spectrum and its amplitude, and noise of a seed."""
+    """Simulations of random surfaces with the fitted spectrum; ValueError if they are too large."""
     spectrum = surface_spectrum(surface, scales)
     energy = spectrum.elastic_energy
     first, remark = _affordable(spectrum, energy, zero_load_radius(scales) / scales.lateral, seed)
@@ -117,10 +134,10 @@ def prediction_plan(
 def _affordable(
     spectrum: TabulatedSpectrum, energy: float, contact_radius: float, seed: int
 ) -> tuple[Simulation, str]:
-    """A sphere, or where it is too large a straight front on its springs, and why."""
-    numerics = Numerics(_ERROR)
-    # Spheres go deeper where the features are large against the contact.
-    largest = jkr.equilibrium_radius(_START) + _WAY * spectrum.correlation_length
+    """A sphere, or a straight front on its springs if the sphere is too large, and a remark."""
+    numerics = Numerics(_FACTOR_ERROR)
+    # Large features need deeper penetration.
+    largest = jkr.equilibrium_radius(_START) + _LEAST_GROWTH * spectrum.correlation_length
     deepest = max(_DEEPEST, float(jkr.equilibrium_penetration(largest)))
     schedule: Schedule = SteadySchedule(_START, deepest, _TRAVEL, _STEADY_ERROR)
     sphere = simulation_of("roughness", spectrum, energy, schedule, numerics, seed=seed)
@@ -142,7 +159,7 @@ def _affordable(
 
 
 def _fits(simulation: Simulation, most_sites: int) -> bool:
-    """Whether a simulation has few enough sites, and a tile that is not too large."""
+    """Whether a simulation is small enough."""
     sites = simulation.resolution.n_angle
     return sites <= most_sites and expected_cost(simulation).memory <= _MOST_MEMORY
 
@@ -154,7 +171,10 @@ def _extent(simulation: Simulation) -> str:
 
 
 def simulated(plan: SimulationPlan, scales: Scales) -> Simulated:
-    """Run the simulations of one surface, one after the other, and average what they find."""
+    """Means over the simulations of a plan, which are run one after the other.
+
+    ValueError if all of them fail.
+    """
     rows, failed = [], []
     for simulation in plan.simulations:
         result = run_simulation(simulation)
@@ -162,22 +182,22 @@ def simulated(plan: SimulationPlan, scales: Scales) -> Simulated:
         if steady.sentence:
             failed.append(f"{simulation.label}: {steady.sentence}")
             continue
-        lost = steady.w_retr - steady.w_appr
-        rows.append((steady.w_appr, steady.w_retr, lost, lost / (2 * e_el)))
+        hysteresis = steady.w_retr - steady.w_appr
+        rows.append((steady.w_appr, steady.w_retr, hysteresis, hysteresis / (2 * e_el)))
     if not rows:
-        raise ValueError(f"no simulation has a value; {failed[0]}")
-    means = mean_estimate(np.transpose(rows))[0]
-    *works, factor = (Estimate(*map(float, one)) for one in np.transpose(astuple(means)))
-    appr, retr, hysteresis = (
-        work.each(lambda number: number * scales.work_of_adhesion) for work in works
-    )
+        raise ValueError(f"all simulations failed; {failed[0]}")
+    means, _ = mean_estimate(np.transpose(rows))
+
+    def in_si(index: int) -> Estimate[float]:
+        return means.each(lambda values: float(values[index] * scales.work_of_adhesion))
+
     first = plan.simulations[0]
     return Simulated(
         realisations=len(rows),
-        w_appr=appr,
-        w_retr=retr,
-        hysteresis=hysteresis,
-        k=factor,
+        w_appr=in_si(0),
+        w_retr=in_si(1),
+        hysteresis=in_si(2),
+        k=means.each(lambda values: float(values[3])),
         numerical_error=math.hypot(*numerical_error(first)) / (2 * first.elastic_energy),
         failed=tuple(failed),
         remark=plan.remark,

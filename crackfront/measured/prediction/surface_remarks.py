@@ -1,4 +1,4 @@
-"""Remarks on a measured surface: its scans, its spectrum, and what another scan would change."""
+"""Remarks on a measured surface: its scans, its spectrum, and the effect of another scan."""
 
 from __future__ import annotations
 
@@ -16,53 +16,62 @@ from crackfront.measured.spectrum.stated import StatedSurface, Surface
 from crackfront.surfaces.written_units import prefixed
 
 _MOST_ANISOTROPY = 1.25
-"""Largest ratio of the rms slope in a direction to that across it without a reservation."""
+"""Ratio of rms slopes in perpendicular directions above which there is a reservation."""
 
 _MOST_STRIPES = 0.5
-"""Largest part of e_el that may be left out as that of shifted rows without a reservation."""
+"""Part of e_el in waves that are left out as shifted rows, above which there is a reservation."""
 
 _MOST_UNMEASURED = 0.1
-"""Largest part of e_el that shorter waves may add without a reservation."""
+"""Additional e_el of shorter waves, relative to e_el, above which there is a reservation."""
 
 _LEAST_MEASURED = 0.5
-"""Least part of e_el that must be measured, without a reservation."""
+"""Measured part of e_el below which there is a reservation."""
 
 _MOST_UNSETTLED = 0.009
-"""Largest standard error of the ends of intervals over their width, without a reservation.
+"""Standard error of the ends of intervals over their width, above which there is a reservation.
 
-Of five other seeds the furthest then differs by 2 to 3% of the width."""
+Intervals with other seeds then differ by 2 to 3% of the width."""
 
-_UNSURE, _NARROWER = 1.5, 1.1
-"""Factor within which e_el is known that needs no other scan, and that by which one must narrow."""
+_UNCERTAIN = 1.5
+"""Uncertainty factor of e_el above which another scan is recommended."""
 
-_WAVES_OF_SIDE, _PIXELS_OF_WAVE, _OVERLAP = 2.0, 4.0, 2.0
-"""Longest waves in a side and pixels in the shortest wave that are trusted, and the ratio of waves
-over which another scan should overlap."""
+_NARROWER = 1.1
+"""Least improvement of this factor by a scan that is recommended."""
+
+_WAVES_OF_SIDE = 2.0
+"""Side of a scan over its longest trusted wavelength."""
+
+_PIXELS_OF_WAVE = 4.0
+"""Shortest trusted wavelength of a scan over its pixel."""
+
+_OVERLAP = 2.0
+"""Ratio of wavelengths over which another scan should overlap."""
 
 _LEFT_OUT = 0.1
-"""Part of e_el of the waves that are missing which a new scan may leave out."""
+"""Part of the missing e_el that a recommended scan may leave out."""
 
 _LEAST_UNEVEN = 0.02
-"""Least relative standard error of e_el at which a note says that a surface is not Gaussian."""
+"""Relative standard error of e_el by unevenness above which there is a note."""
 
-_EDGE, _MATTERS = 0.05, 0.1
-"""Distance of a Hurst exponent from 0 or 1, and continued part of e_el, that are a reservation."""
+_HURST_EDGE = 0.05
+"""Distance of a Hurst exponent from 0 or 1 below which there is a reservation."""
 
+_NOTABLE_SHARE = 0.1
+"""Part of e_el above which continued or missing waves matter."""
 
 _NOT_CHECKED = (
     "Without heights it cannot be checked whether the roughness is random (no wave that stands "
     "out), isotropic and Gaussian, nor what instrument and noise did to the spectrum."
 )
-"""What only scans show."""
 
 _EXACT = (
-    "The spectrum is taken as exact: intervals hold only the errors of the law of k and of the "
+    "The spectrum is taken as exact: intervals only include the errors of the law of k and of the "
     "ratio to boundary elements."
 )
 
 
 def surface_remarks(surface: Surface) -> list[Remark]:
-    """All remarks on a surface that need no sphere."""
+    """All remarks on a surface that do not depend on a sphere."""
     return [
         *channel_remarks(surface),
         *spectrum_remarks(surface),
@@ -72,90 +81,89 @@ def surface_remarks(surface: Surface) -> list[Remark]:
 
 
 def scan_remarks(scans: Iterable[Scan], contact_radius: float | None = None) -> Iterator[Remark]:
-    """Remarks on what was done to scans, and on those smaller than a contact (Units: m)."""
-    for one in scans:
-        path = str(one.measurement.path)
-        for sentence in one.measurement.outliers:
+    """Remarks on the treatment of scans, and on scans smaller than a contact (Units: m)."""
+    for scan in scans:
+        path = str(scan.measurement.path)
+        for sentence in scan.measurement.outliers:
             yield Remark(path, "reservation", f"{path}: {sentence}.")
-        for sentence in one.measurement.unusable:
+        for sentence in scan.measurement.unusable:
             yield Remark(path, "reservation", f"Left out of the container: {sentence}.")
-        for sentence in _treatments(one):
+        for sentence in _treatments(scan):
             yield Remark(path, "note", sentence)
-        if contact_radius is not None and min(one.measurement.size) < 2 * contact_radius:
+        if contact_radius is not None and min(scan.measurement.size) < 2 * contact_radius:
             yield Remark(
                 path,
                 "note",
-                f"{path} is smaller than the contact ({1e6 * min(one.measurement.size):.3g} um "
-                f"against {2e6 * contact_radius:.3g} um across): it stands for the whole surface "
-                "by its spectrum.",
+                f"{path} is smaller than the contact ({1e6 * min(scan.measurement.size):.3g} um "
+                f"against {2e6 * contact_radius:.3g} um across): its spectrum represents the "
+                "whole surface.",
             )
 
 
-def _treatments(one: Scan) -> Iterator[str]:
-    """Sentences on what was filled, assumed or left out of a scan."""
-    item = one.measurement
-    if item.missing > 0:
+def _treatments(scan: Scan) -> Iterator[str]:
+    """Sentences on corrections, assumptions and left-out waves of a scan."""
+    measurement, path = scan.measurement, scan.measurement.path
+    if measurement.missing > 0:
         yield (
-            f"{item.path}: {item.missing:.2%} of the points were missing and interpolated, "
-            f"{one.missing_weight:.1%} by the weight of the window; the density is corrected for "
+            f"{path}: {measurement.missing:.2%} of the points were missing and interpolated, "
+            f"{scan.missing_weight:.1%} by the weight of the window; the density is corrected for "
             "the interpolation, by its effect on random surfaces of the same density."
         )
-    if item.is_line:
+    if measurement.is_line:
         yield (
-            f"{item.path} is a line scan: its density is that of an isotropic surface with "
-            "this projection."
+            f"{path} is a line scan: its density is converted to the density of an "
+            "isotropic surface with this projection."
         )
-    elif max(item.pixels) > 1.001 * min(item.pixels):
+    elif max(measurement.pixels) > 1.001 * min(measurement.pixels):
         yield (
-            f"{item.path}: the pixels are oblong; the density covers the waves that both sides "
-            "resolve."
+            f"{path}: the pixels are oblong; the density covers the waves that both sides resolve."
         )
-    if item.tip_is_assumed:
+    if measurement.tip_is_assumed:
         yield (
-            f"{item.path}: the file does not state the radius of the tip, which is assumed to be "
-            f"{1e9 * item.tip_radius:g} nm; --tip-radius gives another."
+            f"{path}: the file does not state the radius of the tip, which is assumed to be "
+            f"{1e9 * measurement.tip_radius:g} nm; --tip-radius gives another."
         )
-    if most := item.log_hidden_energy:
+    if most := measurement.log_hidden_energy:
         yield (
-            f"{item.path}: valleys are deep, and the tip may not reach into narrow ones; e_el may "
+            f"{path}: valleys are deep, and the tip may not reach into narrow ones; e_el may "
             f"be {np.exp(most):.1g} times as large, which its interval includes."
         )
-    if one.unevenness > _LEAST_UNEVEN:
+    if scan.unevenness > _LEAST_UNEVEN:
         yield (
-            f"{item.path}: parts of the scan differ more than those of a Gaussian surface, so that "
-            f"e_el is known to {one.unevenness:.1%} at best."
+            f"{path}: parts of the scan differ more than for a Gaussian surface, so that "
+            f"e_el is known to {scan.unevenness:.1%} at best."
         )
-    for axis in one.band.stripes:
+    for axis in scan.band.stripes:
         yield (
-            f"{item.path}: the density of waves along {'xy'[axis]} alone differs from that of "
-            "all others, as if rows were shifted or levelled one by one; these waves are left out."
+            f"{path}: the density of waves along {'xy'[axis]} alone differs from all "
+            "others, as if rows were shifted or levelled one by one; these waves are left out."
         )
 
 
 def measure_next(surface: Surface) -> Remark:
-    """Note on which scan would narrow the interval of e_el, and by how much."""
+    """Note on the scan that would narrow the interval of e_el most."""
     if isinstance(surface, StatedSurface):
         sentence = "Measure next: a scan, which gives e_el an interval and shows missing waves."
         return Remark("next scan", "note", sentence)
     joint = surface.joint
-    known, (longer, shorter) = joint.draws.factor, joint.draws.factors_with
+    factor, missing = joint.draws.factor, joint.shares.missing_short
+    with_longer, with_shorter = joint.draws.factors_with
     advice = []
-    if known > _NARROWER * longer:
-        gain = f"would narrow it to {longer:.2g}"
-        advice.append((known / longer, f"{_larger_scan(joint)} {gain}"))
-    if known > _NARROWER * shorter or joint.shares.missing_short > _MATTERS:
-        narrows = known > _NARROWER * shorter
-        gain = f"would narrow it to {shorter:.2g}" if narrows else "would hardly narrow it"
-        if joint.shares.missing_short > _MATTERS:
-            joined = ", and" if narrows else ", but"
-            gain += f"{joined} may add {part_of_energy(joint.shares.missing_short)}"
-        factor = max(known / shorter, 1 + joint.shares.missing_short)
-        advice.append((factor, f"{_finer_scan(surface)} {gain}"))
-    text = f"e_el is known within a factor of {known:.3g}"
+    if factor > _NARROWER * with_longer:
+        effect = f"would narrow it to {with_longer:.2g}"
+        advice.append((factor / with_longer, f"{_larger_scan(joint)} {effect}"))
+    narrows = factor > _NARROWER * with_shorter
+    if narrows or missing > _NOTABLE_SHARE:
+        effect = f"would narrow it to {with_shorter:.2g}" if narrows else "would hardly narrow it"
+        if missing > _NOTABLE_SHARE:
+            effect += f"{', and' if narrows else ', but'} may add {part_of_energy(missing)}"
+        gain = max(factor / with_shorter, 1 + missing)
+        advice.append((gain, f"{_finer_scan(surface)} {effect}"))
+    text = f"e_el is known within a factor of {factor:.3g}"
     if advice:
-        ways = "; ".join(way for _, way in sorted(advice, reverse=True))
-        sentence = f"Measure next: {text}. {ways[0].upper()}{ways[1:]}."
-    elif known < _UNSURE:
+        scans = "; ".join(scan for _, scan in sorted(advice, reverse=True))
+        sentence = f"Measure next: {text}. {scans[0].upper()}{scans[1:]}."
+    elif factor < _UNCERTAIN:
         sentence = f"{text}; a finer or larger scan would hardly narrow it."
     else:
         sentence = f"Measure next: {text}. More scans of the same waves would narrow it."
@@ -163,7 +171,7 @@ def measure_next(surface: Surface) -> Remark:
 
 
 def _larger_scan(joint: JointSpectrum) -> str:
-    """A scan that holds nine tenths of e_el of the waves longer than all that are measured."""
+    """A scan with nine tenths of e_el in the waves longer than the measured ones."""
     beyond = joint.spectrum.longer_than(joint.longest)
     side = _WAVES_OF_SIDE * beyond.dominant_wavelengths(0.5)[1]
     pixel = joint.longest / _OVERLAP / _PIXELS_OF_WAVE
@@ -171,41 +179,41 @@ def _larger_scan(joint: JointSpectrum) -> str:
 
 
 def _finer_scan(surface: MeasuredSurface) -> str:
-    """A scan that holds nine tenths of e_el of the waves shorter than all that are measured."""
+    """A scan with nine tenths of e_el in the waves shorter than the measured ones."""
     joint = surface.joint
     total = joint.extended.mean_square(0.5)
     below = joint.extended.mean_square_between(0.5, joint.extended.short_cutoff, joint.shortest)
-    # Of waves down to the shortest of the scan a share is left out: a tenth to either side.
+    # dominant_wavelengths leaves out equal parts at both ends.
     shortest = joint.extended.dominant_wavelengths(0.5, 1 - 2 * _LEFT_OUT * below / total)[0]
     side = _WAVES_OF_SIDE * _OVERLAP * joint.shortest
     text = f"a scan with pixels of at most {_rounded(shortest / _PIXELS_OF_WAVE)}"
-    if any(one.measurement.tip_radius for one in surface.scans):
-        # The tip is no blunter than the surface: 3/8 of the mean square of the Laplacian is that of
-        # the curvature of profiles of an isotropic surface.
+    if any(scan.measurement.tip_radius for scan in surface.scans):
+        # The tip should be sharper than the surface. The mean square curvature of profiles of an
+        # isotropic surface is 3/8 of the mean square of its Laplacian.
         curvature = math.sqrt(3 / 8 * joint.extended.longer_than(shortest).mean_square(2.0))
         text += f", a tip radius of at most {_rounded(1 / curvature)}"
     return f"{text} and a side of at least {_rounded(side)}"
 
 
 def _rounded(length: float) -> str:
-    """A length of two digits (Units: m)."""
+    """A length with two digits and its unit (Units: m)."""
     return prefixed("m", float(f"{length:.2g}"))
 
 
 def channel_remarks(surface: Surface) -> Iterator[Remark]:
-    """Reservations on scans whose channel may hold no heights."""
-    for item in (one.measurement for one in surface.scans):
-        if is_doubtful(item.channel):
+    """Reservations on scans whose channel may not contain heights."""
+    for measurement in (scan.measurement for scan in surface.scans):
+        if is_doubtful(measurement.channel):
             yield Remark(
-                str(item.path),
+                str(measurement.path),
                 "reservation",
-                f"{item.path}: channel {item.channel} has a unit of length, but the name of a "
-                "quantity other than heights; --list-channels lists all channels.",
+                f"{measurement.path}: channel {measurement.channel} has a unit of length, but "
+                "the name of a quantity other than heights; --list-channels lists all channels.",
             )
 
 
 def spectrum_remarks(surface: Surface) -> Iterator[Remark]:
-    """Reservations on the spectrum of a surface, scans that disagree first.
+    """Reservations on the spectrum of a surface, beginning with scans that disagree.
 
     Without scans they say what cannot be checked.
     """
@@ -215,23 +223,23 @@ def spectrum_remarks(surface: Surface) -> Iterator[Remark]:
         yield Remark("spectrum", "note", _EXACT)
         return
     yield from disagreements(surface)
-    for one in surface.scans:
-        ratio, angle = one.band.anisotropy
+    for scan in surface.scans:
+        ratio, angle = scan.band.anisotropy
         if ratio > _MOST_ANISOTROPY:
-            path = str(one.measurement.path)
+            path = str(scan.measurement.path)
             yield Remark(
                 path,
                 "reservation",
-                f"{path}: the rms slope at {angle:.0f} degrees from x is {ratio:.2g} times that "
-                "across it; the theory is for isotropic surfaces.",
+                f"{path}: the rms slope at {angle:.0f} degrees from x is {ratio:.2g} times the "
+                "slope perpendicular to it; the theory is for isotropic surfaces.",
             )
-        if one.band.stripes_share > _MOST_STRIPES:
-            path = str(one.measurement.path)
-            axes = " and ".join("xy"[axis] for axis in one.band.stripes)
+        if scan.band.stripes_share > _MOST_STRIPES:
+            path = str(scan.measurement.path)
+            axes = " and ".join("xy"[axis] for axis in scan.band.stripes)
             yield Remark(
                 path,
                 "reservation",
-                f"{path}: {one.band.stripes_share:.0%} of e_el would be in waves along {axes} "
+                f"{path}: {scan.band.stripes_share:.0%} of e_el would be in waves along {axes} "
                 "alone, which are left out as rows that the instrument has shifted; if they are "
                 "grooves of the surface, e_el is far too low and the theory does not apply.",
             )
@@ -240,18 +248,18 @@ def spectrum_remarks(surface: Surface) -> Iterator[Remark]:
 
 
 def is_lower_bound(surface: Surface) -> bool:
-    """Whether e_el is a least one, as waves shorter than all that are known would add to it."""
+    """Whether e_el is a lower bound, because shorter waves would add to it."""
     return surface.shares.missing_short > _MOST_UNMEASURED
 
 
 def disagreements(surface: Surface) -> Iterator[Remark]:
-    """Reservations on scans whose density departs from that of the others."""
+    """Reservations on scans whose density differs from the other scans."""
     if isinstance(surface, StatedSurface):
         return
     density = surface.joint.density
-    for index, one in enumerate(surface.scans):
+    for index, scan in enumerate(surface.scans):
         if density.disagrees(index):
-            path, level = str(one.measurement.path), density.levels[index]
+            path, level = str(scan.measurement.path), density.levels[index]
             yield Remark(
                 path,
                 "reservation",
@@ -262,7 +270,7 @@ def disagreements(surface: Surface) -> Iterator[Remark]:
 
 
 def _spectrum_doubts(joint: JointSpectrum) -> Iterator[str]:
-    """Sentences on what is not measured, and on intervals that are not settled."""
+    """Sentences on unmeasured parts of the spectrum, and on imprecise intervals."""
     if joint.shares.measured < _LEAST_MEASURED:
         yield (
             f"Only {joint.shares.measured:.0%} of e_el is measured, the rest comes from a model; "
@@ -275,7 +283,7 @@ def _spectrum_doubts(joint: JointSpectrum) -> Iterator[str]:
             f"spectra that were drawn count as {joint.draws.effective:.0f} of equal weight."
         )
     hurst = joint.fit.hurst.value
-    if min(hurst, 1 - hurst) < _EDGE and joint.shares.continued > _MATTERS:
+    if min(hurst, 1 - hurst) < _HURST_EDGE and joint.shares.continued > _NOTABLE_SHARE:
         yield (
             f"The Hurst exponent of the shortest waves, {hurst:.2g}, is at the edge of the fitted "
             f"range, 0 to 1: {joint.shares.continued:.0%} of e_el comes from a model that may not "
@@ -289,6 +297,6 @@ def _spectrum_doubts(joint: JointSpectrum) -> Iterator[str]:
         )
     if joint.shares.missing_short > _MOST_UNMEASURED:
         yield (
-            "Waves shorter than the points hold are left out: two more decades of the power law "
+            "Waves shorter than the points resolve are left out: two more decades of the power law "
             f"would add {part_of_energy(joint.shares.missing_short)}; add a finer scan."
         )

@@ -8,19 +8,20 @@ from crackfront.analysis.estimate import Estimate
 from crackfront.surfaces.written_units import prefixed
 
 ENERGY = "J/m2"
-"""Unit of works of adhesion and of e_el, as texts have it."""
+"""Unit of works of adhesion and of e_el in texts."""
 
 _WITH_PREFIXES = ("m", "N", "Pa", ENERGY)
 
 
-def estimate_text(unit: str, found: Estimate[float]) -> str:
-    """A number with its interval, if it has one; powers of lengths have no prefix."""
+def estimate_text(unit: str, estimate: Estimate[float]) -> str:
+    """A number with its interval and unit, and with an SI prefix where this is common."""
     unit = unit.replace("J m-2", ENERGY)
-    has_interval = math.isfinite(found.low) and found.low < found.high
+    has_interval = math.isfinite(estimate.low) and estimate.low < estimate.high
     if unit in _WITH_PREFIXES:
-        return prefixed(unit, found.value, *((found.low, found.high) if has_interval else ()))
-    interval = f" ({found.low:.3g} to {found.high:.3g})" if has_interval else ""
-    return f"{found.value:.3g}{interval} {unit}".removesuffix(" 1")
+        ends = (estimate.low, estimate.high) if has_interval else ()
+        return prefixed(unit, estimate.value, *ends)
+    interval = f" ({estimate.low:.3g} to {estimate.high:.3g})" if has_interval else ""
+    return f"{estimate.value:.3g}{interval} {unit}".removesuffix(" 1")
 
 
 def wavelengths_text(shortest: float, longest: float) -> str:

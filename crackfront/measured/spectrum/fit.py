@@ -1,4 +1,4 @@
-"""Models of one surface and its instruments that agree with all densities of its scans."""
+"""Models of a surface and its instruments, fitted to the densities of all scans."""
 
 from __future__ import annotations
 
@@ -30,37 +30,42 @@ from crackfront.measured.density.self_affine import (
 )
 from crackfront.measured.spectrum.quadrature import Quadrature, States
 
-_FAR = 2.0
-"""Logarithm of the factor by which a roll-off beyond the fitted waves is less likely by e."""
+_ROLL_OFF_DECAY = 2.0
+"""Decay length of the prior of ln(roll-off) beyond the fitted waves."""
 
-_LOSS, _NOISE = (1e-3, 8.0), 1.0
-"""Bounds of the attenuation's exponent at the last wavevector of a density, and largest distance of
-the logarithm of the noise from its first estimate."""
+_LOSS_BOUNDS = (1e-3, 8.0)
+"""Bounds of -ln(T) at the last wavevector of a density."""
+
+_NOISE_RANGE = 1.0
+"""Largest distance of the logarithm of the noise from its first estimate."""
 
 _LEAST_CURVATURE = -2.0
-"""Logarithm of data over model down to which the curvature of the deviance is taken as it is."""
+"""Lower bound of ln(measured over model) in the curvature of the deviance, which vanishes below."""
 
-_ROUGH = np.array([0.7, 0.7])
-"""Hurst exponents of longer and of shorter waves with which fits begin."""
+_FIRST_HURST = np.array([0.7, 0.7])
+"""Hurst exponents at long and short waves with which fits begin."""
+
+_INTERVAL = (0.025, 0.5, 0.975)
+"""Quantiles at the lower end, median and upper end of an interval."""
 
 
 @dataclass(frozen=True, slots=True)
 class Fit:
-    """Models that agree with densities, states of a quadrature over their parameters."""
+    """Models that agree with the densities: n weighted states over their parameters."""
 
     surface: Array
     """Parameters of P. Shape (n, 5)."""
     instruments: Array
     """Logarithm of q_c, m and logarithm of the noise of every density. Shape (n, n_density, 3)."""
     weight: Array
-    """Weight of every state; their sum is 1. Shape (n,)."""
+    """Weights of the states; their sum is 1. Shape (n,)."""
     lowest: float
-    """Lowest wavevector that is fitted. (Units: 1 / m)"""
+    """Lowest fitted wavevector. (Units: 1 / m)"""
     misfit: float
-    """Least deviance per degree of freedom; 1 where only the number of modes makes noise."""
+    """Least deviance per degree of freedom; about 1 if statistics is the only error."""
 
     def logarithms(self, wavevector: Array) -> Array:
-        """Logarithm of C of every state, (n, n_wavevector)."""
+        """Logarithm of C for every state, (n, n_wavevector)."""
         return log_density(self.surface, wavevector)
 
     def median(self, wavevector: Array) -> Array:
@@ -72,21 +77,22 @@ class Fit:
         return np.exp(quantiles(log_projection(self.surface, wavevector), self.weight, 0.5))
 
     def isotropic(self, density: Density, index: int, *, restored: bool = True) -> Array:
-        """Logarithm of C of every state where a density was measured, (n, n_wavevector).
+        """Logarithm of C from a measured density, for every state, (n, n_wavevector).
 
-        The measured value without the noise, over the transfer of its instrument unless it is not
-        to be restored; of a line by the ratio of the model to its projection.
+        The noise of instrument number `index` is subtracted. Its attenuation is corrected if
+        `restored`. C_1D is converted by the model's ratio of C to its projection.
         """
         instrument = self.instruments[:, index]
         clean = density.value - np.exp(instrument[:, 2:])
-        # Noise is a small part of what is trusted; named limits may trust more.
-        found = np.log(np.maximum(clean, (0.1 if restored else 1e-3) * density.value))
+        # Noise is a small part of trusted waves, but limits by the user may include more of it.
+        least_part = 0.1 if restored else 1e-3
+        logarithm = np.log(np.maximum(clean, least_part * density.value))
         if restored:
-            found += loss_exponent(instrument, density.wavevector)
+            logarithm += loss_exponent(instrument, density.wavevector)
         if density.is_profile:
-            found += self.logarithms(density.wavevector)
-            found -= log_projection(self.surface, density.wavevector)
-        return found
+            logarithm += self.logarithms(density.wavevector)
+            logarithm -= log_projection(self.surface, density.wavevector)
+        return logarithm
 
     @property
     def roll_off(self) -> Estimate[float]:
@@ -95,7 +101,7 @@ class Fit:
 
     @property
     def hurst(self) -> Estimate[float]:
-        """Median of the Hurst exponent of the shortest waves with its 95% interval."""
+        """Median of the Hurst exponent at the shortest waves with its 95% interval."""
         return self._estimate(self.surface[:, 2])
 
     @property
@@ -105,169 +111,172 @@ class Fit:
 
     @property
     def has_roll_off(self) -> bool:
-        """Whether the plateau is seen: the roll-off is certainly among the fitted waves."""
+        """Whether the 95% interval of the roll-off is within the fitted waves."""
         return bool(self.roll_off.high < 2 * np.pi / self.lowest)
 
     def _estimate(self, values: Array) -> Estimate[float]:
-        """Median of a number of every state with its 95% interval."""
-        low, middle, high = quantiles(values, self.weight, (0.025, 0.5, 0.975)).tolist()
+        """Median over the states with its 95% interval."""
+        low, middle, high = quantiles(values, self.weight, _INTERVAL).tolist()
         return Estimate(middle, math.nan, low, high)
 
 
 @dataclass(frozen=True, slots=True)
 class Continuation:
-    """The distribution of the models of one surface and of the instruments of its densities.
+    """The likelihood of models of one surface and the instruments of its densities.
 
-    The outer parameters of the quadrature are the logarithm of the wavevector of the roll-off, the
-    place of the bend between it and the highest wavevector, and the sharpness of the first
-    instrument that takes waves away. The inner ones are the Hurst exponents, what else varies of
-    instruments, and the logarithm of the plateau, in which the model is nearly linear: in place of
-    q_c stands the loss at the last wavevector of a density.
+    It has the interface :class:`crackfront.measured.spectrum.quadrature.Likelihood`. The outer
+    parameters are the logarithm of the roll-off's wavevector, the position of the bend between it
+    and the highest wavevector, and the sharpness of the first instrument with attenuation. The
+    inner parameters are the two Hurst exponents, the other parameters of instruments that vary,
+    and the logarithm of the plateau. The model is nearly linear in the inner parameters, because
+    the loss at the last wavevector of a density replaces q_c.
+
+    Trials have the parameters of P, then the parameters of instruments that vary.
     """
 
     models: DensityModels
     departure: float
-    """Standard deviation of the logarithm of a density from the model, with any number of modes."""
+    """Standard deviation of the logarithm of a density from the model, for any number of modes."""
     limits: Array
-    """Of the parameters of P, and of those of instruments that vary. Shape (5 + n_varied, 2)."""
+    """Limits of the parameters of P and of instruments that vary. Shape (5 + n_varied, 2)."""
     begin: Array
-    """Parameters of instruments that vary, where they were seen. Shape (n_varied,)."""
+    """First values of parameters of instruments that vary. Shape (n_varied,)."""
 
     @property
-    def _lossy(self) -> list[tuple[int, float]]:
-        """Columns of the losses in trials, and the logarithms of the wavevectors where they are."""
-        varied, items = self.models.varied, self.models.densities
+    def _losses(self) -> list[tuple[int, float]]:
+        """Columns of the losses in trials, and logarithms of the last wavevectors."""
+        varied, densities = self.models.varied, self.models.densities
         first = N_SHAPE + np.cumsum(varied.sum(axis=1)) - varied.sum(axis=1)
-        lossy = np.flatnonzero(varied[:, 0])
-        return [(int(first[one]), math.log(items[one].wavevector[-1])) for one in lossy]
+        return [
+            (int(first[index]), math.log(densities[index].wavevector[-1]))
+            for index in np.flatnonzero(varied[:, 0])
+        ]
 
     @property
     def _inner(self) -> list[int]:
         """Columns of the inner parameters in trials."""
         instruments = range(N_SHAPE, N_SHAPE + len(self.begin))
-        return [1, 2, *(one for one in instruments if one not in self._outer), 0]
+        return [1, 2, *(column for column in instruments if column not in self._outer), 0]
 
     @property
     def _outer(self) -> list[int]:
         """Columns of the outer parameters in trials."""
-        return [4, 3, *(first + 1 for first, _ in self._lossy[:1])]
+        return [4, 3, *(loss + 1 for loss, _ in self._losses[:1])]
 
     @property
     def inner(self) -> Array:
-        """Limits of the inner parameters, the last of which has none."""
+        """Limits of the inner parameters; the last one is unlimited."""
         return self.limits[self._inner]
 
     @property
     def outer(self) -> Array:
-        """Limits of the outer parameters; of the bend it is a place between two ends."""
-        found = self.limits[self._outer]
-        found[1] = 0.0, 1.0
-        return found
+        """Limits of the outer parameters; the position of the bend is relative."""
+        limits = self.limits[self._outer]
+        limits[1] = 0.0, 1.0
+        return limits
 
     def start(self, outer: Array) -> Array:
-        """First inner parameters; the plateau is the mean of those that the densities give."""
-        begin = np.array([0.0, *_ROUGH, 0.0, 0.0, *self.begin])
+        """First inner parameters; the plateau is the mean of the plateaus of all densities."""
+        begin = np.array([0.0, *_FIRST_HURST, 0.0, 0.0, *self.begin])
         inner = np.repeat(begin[None, self._inner], len(outer), axis=0)
         levels = [
-            np.average(np.log(item.value) - model, axis=1, weights=item.modes)
-            for item, model in self.models(self.trials(inner, outer))
+            np.average(np.log(density.value) - model, axis=1, weights=density.modes)
+            for density, model in self.models(self.trials(inner, outer))
         ]
         inner[:, -1] = np.mean(levels, axis=0)
         return inner
 
     def value(self, inner: Array, outer: Array) -> Array:
-        """Half of the deviance, with the priors."""
+        """Half of the deviance, including the priors."""
         trials, total = self.trials(inner, outer), self._prior(inner, outer)
-        for item, model in self.models(trials):
-            total += deviances(item, model, self.departure).sum(axis=1) / 2
+        for density, model in self.models(trials):
+            total += deviances(density, model, self.departure).sum(axis=1) / 2
         return total
 
     def expansion(self, inner: Array, outer: Array) -> tuple[Array, Array, Array]:
-        """Half of the deviance with the priors, its slopes and its curvature."""
+        """Half of the deviance, including the priors, its slopes and its curvature."""
         trials, total = self.trials(inner, outer), self._prior(inner, outer)
         size = inner.shape[1] + outer.shape[1]
         slopes, information = np.zeros((len(inner), size)), np.zeros((len(inner), size, size))
-        for index, item in enumerate(self.models.densities):
-            model, changes = self._changes(trials, index)
-            changes = self._of_coordinates(changes, outer)
-            modes, apart = weighted_residuals(item, model, self.departure)
-            total += np.sum(modes * (np.expm1(apart) - apart), axis=1)
-            slopes -= np.einsum("nw,nwp->np", modes * np.expm1(apart), changes)
-            # Exact where the model is linear; where it is far above the data it says nothing.
-            curvature = modes * np.exp(np.maximum(apart, _LEAST_CURVATURE))
-            information += np.swapaxes(changes, 1, 2) @ (curvature[..., None] * changes)
-        pull = np.zeros(size)
-        pull[:2] = -1 / BEND, 1 / BEND
-        slopes += (inner[:, 1] - inner[:, 0])[:, None] / BEND * pull
-        information += np.outer(pull, pull)
+        for index, density in enumerate(self.models.densities):
+            model, derivatives = self._derivatives(trials, index)
+            derivatives = self._by_coordinates(derivatives, outer)
+            modes, residuals = weighted_residuals(density, model, self.departure)
+            total += np.sum(modes * (np.expm1(residuals) - residuals), axis=1)
+            slopes -= np.einsum("nw,nwp->np", modes * np.expm1(residuals), derivatives)
+            # Exact for a linear model. Far above the data the curvature would be too small.
+            curvature = modes * np.exp(np.maximum(residuals, _LEAST_CURVATURE))
+            information += np.swapaxes(derivatives, 1, 2) @ (curvature[..., None] * derivatives)
+        bend_prior = np.zeros(size)
+        bend_prior[:2] = -1 / BEND, 1 / BEND
+        slopes += (inner[:, 1] - inner[:, 0])[:, None] / BEND * bend_prior
+        information += np.outer(bend_prior, bend_prior)
         return total, slopes, information
 
     def trials(self, inner: Array, outer: Array) -> Array:
-        """Parameters of P and of instruments, (n, 5 + n_varied)."""
-        found = np.empty((len(inner), len(self.limits)))
-        found[:, self._inner], found[:, self._outer] = inner, outer
-        _, least = self._bend(outer)
-        found[:, 3] = least + outer[:, 1] * (self.limits[3, 1] - least)
-        for column, last in self._lossy:
-            found[:, column] = last - np.log(found[:, column]) / found[:, column + 1]
-        return found
+        """Trials from inner and outer parameters, (n, 5 + n_varied)."""
+        trials = np.empty((len(inner), len(self.limits)))
+        trials[:, self._inner], trials[:, self._outer] = inner, outer
+        lowest_bend = self._lowest_bend(outer)
+        trials[:, 3] = lowest_bend + outer[:, 1] * (self.limits[3, 1] - lowest_bend)
+        for column, last in self._losses:
+            trials[:, column] = last - np.log(trials[:, column]) / trials[:, column + 1]
+        return trials
 
-    def _bend(self, outer: Array) -> tuple[Array, Array]:
-        """Whether the roll-off is the lower limit of the bend, and this limit."""
-        return outer[:, 0] > self.limits[3, 0], np.maximum(outer[:, 0], self.limits[3, 0])
+    def _lowest_bend(self, outer: Array) -> Array:
+        """Logarithm of the lowest wavevector of the bend: the roll-off, or the lowest fitted."""
+        return np.maximum(outer[:, 0], self.limits[3, 0])
 
     def _prior(self, inner: Array, outer: Array) -> Array:
-        """Half of the deviance from what is expected of any surface."""
+        """Half of the deviance of the priors, for the Hurst exponents and the roll-off."""
         beyond = np.maximum(self.limits[3, 0] - outer[:, 0], 0.0)
-        return ((inner[:, 1] - inner[:, 0]) / BEND) ** 2 / 2 + beyond / _FAR
+        return ((inner[:, 1] - inner[:, 0]) / BEND) ** 2 / 2 + beyond / _ROLL_OFF_DECAY
 
-    def _of_coordinates(self, changes: Array, outer: Array) -> Array:
-        """Changes with inner and outer parameters, of those with P and instruments."""
-        held, least = self._bend(outer)
-        bend = changes[..., 3].copy()
-        changes[..., 4] += bend * (held * (1 - outer[:, 1]))[:, None]
-        changes[..., 3] = bend * (self.limits[3, 1] - least)[:, None]
-        return changes[..., [*self._inner, *self._outer]]
+    def _by_coordinates(self, derivatives: Array, outer: Array) -> Array:
+        """Derivatives by inner and outer parameters, from those by the parameters of trials."""
+        moves_with_roll_off = outer[:, 0] > self.limits[3, 0]
+        by_bend = derivatives[..., 3].copy()
+        derivatives[..., 4] += by_bend * (moves_with_roll_off * (1 - outer[:, 1]))[:, None]
+        derivatives[..., 3] = by_bend * (self.limits[3, 1] - self._lowest_bend(outer))[:, None]
+        return derivatives[..., [*self._inner, *self._outer]]
 
-    def _changes(self, trials: Array, index: int) -> tuple[Array, Array]:
-        """Model of a density, and its changes with the parameters of trials."""
-        item, models = self.models.densities[index], self.models
+    def _derivatives(self, trials: Array, index: int) -> tuple[Array, Array]:
+        """Model of a density, and its derivatives by trials, with losses in place of q_c."""
+        density, models = self.models.densities[index], self.models
         instrument = models.instruments(trials)[:, index]
         surface = trials[:, :N_SHAPE]
-        if item.is_profile:
-            model, shape = log_projection_with_slopes(surface, item.wavevector)
+        if density.is_profile:
+            model, by_surface = log_projection_with_slopes(surface, density.wavevector)
         else:
-            model, shape = (
-                log_density(surface, item.wavevector),
-                log_density_slopes(surface, item.wavevector),
-            )
-        own = np.zeros((*model.shape, 3))
-        if math.isfinite(models.seen[index, 0]):
-            loss = loss_exponent(instrument, item.wavevector)
+            model = log_density(surface, density.wavevector)
+            by_surface = log_density_slopes(surface, density.wavevector)
+        by_instrument = np.zeros((*model.shape, 3))
+        if math.isfinite(models.fixed[index, 0]):
+            loss = loss_exponent(instrument, density.wavevector)
             model = model - loss
-            # With the loss at the last wavevector, and with the sharpness at that loss.
-            own[..., 0] = -loss / loss[:, -1:]
-            own[..., 1] = -loss * np.log(item.wavevector / item.wavevector[-1])
-        if math.isfinite(models.seen[index, 2]):
+            # By the loss at the last wavevector, and by the sharpness at constant loss there.
+            by_instrument[..., 0] = -loss / loss[:, -1:]
+            by_instrument[..., 1] = -loss * np.log(density.wavevector / density.wavevector[-1])
+        if math.isfinite(models.fixed[index, 2]):
             noisy = np.logaddexp(model, instrument[:, 2:])
             part = np.exp(model - noisy)[..., None]
-            shape, own = shape * part, own * part
-            own[..., 2] = 1 - part[..., 0]
+            by_surface, by_instrument = by_surface * part, by_instrument * part
+            by_instrument[..., 2] = 1 - part[..., 0]
             model = noisy
-        changes = np.zeros((*model.shape, trials.shape[1]))
-        changes[..., :N_SHAPE] = shape
+        derivatives = np.zeros((*model.shape, trials.shape[1]))
+        derivatives[..., :N_SHAPE] = by_surface
         varied = models.varied[index]
         first = N_SHAPE + int(models.varied[:index].sum())
-        changes[..., first : first + int(varied.sum())] = own[..., varied]
-        return model, changes
+        derivatives[..., first : first + int(varied.sum())] = by_instrument[..., varied]
+        return model, derivatives
 
 
 def quadrature_of(
     densities: Sequence[tuple[Density, Instrument]],
 ) -> tuple[Continuation, Quadrature]:
-    """Models of one surface and its instruments with a departure that they show, and their states.
+    """Likelihood of models of one surface and its instruments, and its quadrature.
 
-    ValueError if the densities do not determine a spectrum.
+    Each density comes with its instrument. ValueError if they do not determine a spectrum.
     """
     model = _continuation(densities, LEAST_DEPARTURE)
     quadrature = Quadrature(model)
@@ -279,14 +288,16 @@ def quadrature_of(
 
 
 def _departure(model: Continuation, inner: Array, outer: Array) -> float:
-    """Standard deviation of densities from the likeliest model beyond the noise of their modes.
+    """Standard deviation of densities from the likeliest model, in excess of their statistics.
 
-    That of DerSimonian, Laird, Control. Clin. Trials 7, 177 (1986).
+    By the method of DerSimonian, Laird, Control. Clin. Trials 7, 177 (1986).
     """
     pairs = list(model.models(model.trials(inner[None], outer[None])))
-    modes = np.concatenate([item.modes for item, _ in pairs])
-    apart = np.concatenate([np.log(item.value) - found[0] for item, found in pairs])
-    excess = float(np.sum(modes * apart**2)) - max(modes.size - inner.size - outer.size, 1)
+    modes = np.concatenate([density.modes for density, _ in pairs])
+    residuals = np.concatenate(
+        [np.log(density.value) - logarithms[0] for density, logarithms in pairs]
+    )
+    excess = float(np.sum(modes * residuals**2)) - max(modes.size - inner.size - outer.size, 1)
     freedom = float(np.sum(modes) - np.sum(modes**2) / np.sum(modes))
     return math.sqrt(max(excess / freedom, LEAST_DEPARTURE**2))
 
@@ -294,24 +305,24 @@ def _departure(model: Continuation, inner: Array, outer: Array) -> float:
 def _continuation(
     densities: Sequence[tuple[Density, Instrument]], departure: float
 ) -> Continuation:
-    """Models of one surface and of the instruments that are seen in its densities."""
-    count = sum(item.value.size for item, _ in densities)
-    if count < 5 or not all(np.all(item.value > 0) for item, _ in densities):
+    """Likelihood of models of one surface and of the instruments of its densities."""
+    count = sum(density.value.size for density, _ in densities)
+    if count < 5 or not all(np.all(density.value > 0) for density, _ in densities):
         raise ValueError(
             f"{count} values of a density do not determine a spectrum; use a larger or finer scan"
         )
-    low = math.log(min(float(item.wavevector[0]) for item, _ in densities))
-    high = math.log(max(float(item.wavevector[-1]) for item, _ in densities))
-    seen = np.array([instrument.row for _, instrument in densities])
-    varied = np.isfinite(seen)
+    low = math.log(min(float(density.wavevector[0]) for density, _ in densities))
+    high = math.log(max(float(density.wavevector[-1]) for density, _ in densities))
+    fixed = np.array([instrument.row for _, instrument in densities])
+    varied = np.isfinite(fixed)
     varied[:, 1] &= varied[:, 0]
-    begin, around = seen.copy(), np.empty((*seen.shape, 2))
-    last = np.array([float(item.wavevector[-1]) for item, _ in densities])
-    begin[:, 0] = (last * np.exp(-seen[:, 0])) ** seen[:, 1]
-    around[:, 0], around[:, 1] = _LOSS, (PUPIL, SHARPEST)
-    around[:, 2] = seen[:, 2:] + np.array([-_NOISE, _NOISE])
-    models = DensityModels([item for item, _ in densities], seen, varied)
-    limits = np.array([*shape_limits(low, high), *around[varied]])
+    begin, bounds = fixed.copy(), np.empty((*fixed.shape, 2))
+    last = np.array([float(density.wavevector[-1]) for density, _ in densities])
+    begin[:, 0] = (last * np.exp(-fixed[:, 0])) ** fixed[:, 1]
+    bounds[:, 0], bounds[:, 1] = _LOSS_BOUNDS, (PUPIL, SHARPEST)
+    bounds[:, 2] = fixed[:, 2:] + np.array([-_NOISE_RANGE, _NOISE_RANGE])
+    models = DensityModels([density for density, _ in densities], fixed, varied)
+    limits = np.array([*shape_limits(low, high), *bounds[varied]])
     return Continuation(models, departure, limits, np.clip(begin[varied], *limits[N_SHAPE:].T))
 
 
@@ -320,7 +331,7 @@ def fit_of(model: Continuation, quadrature: Quadrature, states: States) -> Fit:
     trials = model.trials(states.inner, states.outer)
     best = quadrature.likeliest
     least = 2 * float(model.value(best[0][None], best[1][None])[0])
-    count = sum(item.value.size for item in model.models.densities)
+    count = sum(density.value.size for density in model.models.densities)
     return Fit(
         surface=trials[:, :N_SHAPE],
         instruments=model.models.instruments(trials),

@@ -1,4 +1,4 @@
-"""One density of all scans of a surface with its scatter, and the spectrum that continues it."""
+"""The joint density of all scans of a surface, and the spectrum that continues it."""
 
 from __future__ import annotations
 
@@ -25,16 +25,19 @@ from crackfront.measured.spectrum.draws import (
 from crackfront.measured.spectrum.fit import Fit, quadrature_of
 
 _CONTINUED_BINS = 6
-"""Points a decade of a continuation."""
+"""Points of a continuation in a decade."""
 
-_FLAT = 32.0
-"""How far beyond the longest waves a continuation goes: all roll-offs that are looked for."""
+_LONGEST_CONTINUED = 32.0
+"""Longest wave of a continuation over the longest fitted wave: beyond all possible roll-offs."""
 
 _DECADES = 2
-"""Decades below the pixels over which the model is continued, to see what is missing."""
+"""Decades of shorter waves by which the model is continued, to estimate what is missing."""
 
-_LEVEL_SIGMA, _LEVEL = 3.0, math.log(1.25)
-"""Standard errors, and ratio of densities, from which on a scan disagrees with the others."""
+_DISAGREEMENT_SIGMA = 3.0
+"""Significance of the level of a scan that disagrees. (Units: standard errors)"""
+
+_DISAGREEMENT = math.log(1.25)
+"""Smallest logarithm of the level of a scan that disagrees."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,34 +50,34 @@ class JointDensity:
     error: Array
     """Standard error of the logarithm of the value, with the scatter of scans. Shape (n,)."""
     scatter: float
-    """Standard deviation of the levels of the scans beyond what their modes explain, relative."""
+    """Relative standard deviation of the levels of the scans in excess of their statistics."""
     levels: tuple[Estimate[float], ...]
-    """Density of every scan over that of the others where they overlap; NaN where none do."""
+    """Density of each scan over the density of all others where they overlap, or NaN."""
 
     def disagrees(self, index: int) -> bool:
-        """Whether a scan departs from the others by more than its modes explain."""
+        """Whether the level of a scan is significantly different from the others."""
         level = self.levels[index]
         if not math.isfinite(level.value):
             return False
-        apart = abs(math.log(level.value))
-        return apart > max(_LEVEL, _LEVEL_SIGMA * level.standard_error / level.value)
+        relative_error = level.standard_error / level.value
+        return abs(math.log(level.value)) > max(_DISAGREEMENT, _DISAGREEMENT_SIGMA * relative_error)
 
 
 @dataclass(frozen=True, slots=True)
 class Shares:
-    """Where e_el comes from."""
+    """Contributions to e_el, as parts of it."""
 
     measured: float
     continued: float
-    """Parts of e_el in the measured bands, and in the continuation; their sum is 1."""
+    """Contributions of the measured bands and of the continuation; their sum is 1."""
     missing_short: float
-    """What two more decades of shorter waves would add by the model, relative to e_el."""
+    """Additional e_el of two more decades of shorter waves, by the model."""
     continued_long: float
-    """Part in waves longer than all that are measured, which the model continues."""
+    """Contribution of waves longer than the longest measured one, by the model."""
 
 
 def part_of_energy(part: float) -> str:
-    """A part of e_el as a share, or as a multiple where it is more than all of it.
+    """A part of e_el in per cent, or as a multiple if it is larger than e_el.
 
     Examples
     --------
@@ -86,169 +89,181 @@ def part_of_energy(part: float) -> str:
 
 @dataclass(frozen=True, slots=True)
 class JointSpectrum:
-    """Spectrum of a surface, measured where it can be and continued beyond."""
+    """Spectrum of a surface, measured within the trusted bands and continued by the model."""
 
     spectrum: TabulatedSpectrum
-    """Measured over the bands; by the model to the shortest wave that pixels and instrument hold,
+    """Measured over the bands, continued to the shortest wave that pixels and instrument resolve
     and to the plateau. (Units: m)"""
     recorded: TabulatedSpectrum
-    """As measured, and below the band what the finest scan holds down to its pixels, without its
-    noise but as weak as its instrument made it. (Units: m)"""
+    """Measured over the bands; below, the density of the finest scan down to its pixels, with its
+    noise subtracted but not corrected for its instrument. (Units: m)"""
     extended: TabulatedSpectrum
     """The spectrum with two more decades of shorter waves, by the model. (Units: m)"""
     draws: Draws
-    """Spectra that agree as well with what was measured."""
+    """Random spectra that agree with the measurements."""
     density: JointDensity
     fit: Fit
     shares: Shares
 
     @property
     def shortest(self) -> float:
-        """Shortest wavelength that is measured (Units: m)."""
+        """Shortest measured wavelength (Units: m)."""
         return float(2 * np.pi / self.density.wavevector[-1])
 
     @property
     def longest(self) -> float:
-        """Longest wavelength that is measured (Units: m)."""
+        """Longest measured wavelength (Units: m)."""
         return float(2 * np.pi / self.density.wavevector[0])
 
 
 def joint_spectrum(
     scans: Sequence[Scan], seed: int | None = None, numbers: Sequence[int] | None = None
 ) -> JointSpectrum:
-    """Spectrum of all scans of a surface, refused where their densities do not determine one.
+    """Spectrum of all scans of a surface.
 
-    The seed is that of the draws, and the numbers are of batches of these; where none are given,
-    those of :mod:`crackfront.measured.spectrum.draws`. Intervals hardly depend on either.
+    The seed and the allowed numbers of batches are for the draws. By default they are `SEED` and
+    `BATCHES` of :mod:`crackfront.measured.spectrum.draws`; intervals hardly depend on either.
+    ValueError if the densities do not determine a spectrum.
     """
-    model, quadrature = quadrature_of([(one.fitted, one.band.instrument) for one in scans])
+    model, quadrature = quadrature_of([(scan.fitted, scan.band.instrument) for scan in scans])
     states = batches(model, quadrature, seed)
     first = next(states)
     fit = first.fit
-    trusted = [one.trusted for one in scans]
-    isotropic = [
-        replace(
-            item,
-            value=np.exp(quantiles(fit.isotropic(item, index), fit.weight, 0.5)),
-            is_profile=False,
-        )
-        for index, item in enumerate(trusted)
-    ]
+    trusted = [scan.trusted for scan in scans]
+    isotropic = []
+    for index, density in enumerate(trusted):
+        value = np.exp(quantiles(fit.isotropic(density, index), fit.weight, 0.5))
+        isotropic.append(replace(density, value=value, is_profile=False))
     scatter, levels = _levels(isotropic)
-    density = JointDensity(*_joined(isotropic, scatter), scatter, levels)
-    end = min(one.band.end for one in scans)
-    spectrum = _continued(density, fit, end)
-    rest = _below_bands(scans, fit)
-    finest = min(end, *(one.band.shortest_end for one in scans))
+    joint = JointDensity(*_joined(isotropic, scatter), scatter, levels)
+    end = min(scan.band.end for scan in scans)
+    spectrum = _continued(joint, fit, end)
+    below_bands = _below_bands(scans, fit)
+    finest = min(end, *(scan.band.shortest_end for scan in scans))
+    continuation = _gaps(joint.wavevector, fit.lowest, finest)
     sampler = SpectrumSampler(
-        scans,
-        trusted,
-        scatter,
-        model.departure,
-        density.wavevector,
-        density.value,
-        rest,
-        np.sort(np.append(density.wavevector, _gaps(density.wavevector, fit.lowest, finest))),
+        scans=scans,
+        trusted=trusted,
+        scatter=scatter,
+        departure=model.departure,
+        wavevector=joint.wavevector,
+        value=joint.value,
+        below_bands=below_bands,
+        grid=np.sort(np.append(joint.wavevector, continuation)),
     )
     extended = _extended(spectrum, fit)
     return JointSpectrum(
         spectrum=spectrum,
         extended=extended,
-        recorded=_recorded(density, rest),
+        recorded=_recorded(joint, below_bands),
         draws=drawn(sampler, itertools.chain([first], states), numbers or sampling.BATCHES),
-        density=density,
+        density=joint,
         fit=fit,
-        shares=_shares(spectrum, extended, density.wavevector),
+        shares=_shares(spectrum, extended, joint.wavevector),
     )
 
 
 def _levels(densities: Sequence[Density]) -> tuple[float, tuple[Estimate[float], ...]]:
-    """Scatter of the levels of scans, and level of each against the others."""
-    places = [bin_numbers(one.wavevector) for one in densities]
-    bins = np.unique(np.concatenate(places))
+    """Scatter of the levels of scans, and the level of each scan relative to the others."""
+    numbers = [bin_numbers(density.wavevector) for density in densities]
+    bins = np.unique(np.concatenate(numbers))
     value, modes = np.zeros((2, len(densities), bins.size))
-    for row, (one, place) in enumerate(zip(densities, places, strict=True)):
-        here = np.searchsorted(bins, place)
-        value[row, here], modes[row, here] = one.value, one.modes
-    power, found = value * modes, []
-    for row in range(len(densities)):
-        others, other_power = (np.delete(one, row, axis=0).sum(axis=0) for one in (modes, power))
-        shared = (modes[row] > 0) & (others > 0)
-        if not np.any(shared):
-            found.append((math.nan, math.nan))
-            continue
-        apart = np.log(value[row, shared] / (other_power[shared] / others[shared]))
-        weights = 1 / (1 / modes[row, shared] + 1 / others[shared])
-        found.append((float(np.average(apart, weights=weights)), float(np.sum(weights)) ** -0.5))
-    known = np.array([pair for pair in found if math.isfinite(pair[0])])
+    for row, (density, number) in enumerate(zip(densities, numbers, strict=True)):
+        columns = np.searchsorted(bins, number)
+        value[row, columns], modes[row, columns] = density.value, density.modes
+    rows = range(len(densities))
+    logarithms, errors = zip(*(_log_level(value, modes, row) for row in rows), strict=True)
+    finite = np.isfinite(logarithms)
     scatter = 0.0
-    if len(known) > 1:
-        # A level is that against the others, so that two scans tell the same difference twice.
-        excess = float(np.mean(known[:, 0] ** 2 - known[:, 1] ** 2))
+    if np.count_nonzero(finite) > 1:
+        # Levels are relative to the other scans, so that two scans show one difference twice.
+        overlapping = np.array([logarithms, errors])[:, finite]
+        excess = float(np.mean(overlapping[0] ** 2 - overlapping[1] ** 2))
         scatter = math.sqrt(max(0.0, excess) / 2)
-    return scatter, tuple(
-        replace(one.each(math.exp), standard_error=math.exp(one.value) * one.standard_error)
-        for one in (normal_estimate(*pair) for pair in found)
-    )
+    return scatter, tuple(map(_level, logarithms, errors))
+
+
+def _log_level(value: Array, modes: Array, row: int) -> tuple[float, float]:
+    """Logarithm of the level of a scan and its standard error, or NaN without overlap.
+
+    Values and modes have the shape (n_scan, n_bin), with zeros outside the bands.
+    """
+    other_modes = np.delete(modes, row, axis=0).sum(axis=0)
+    other_power = np.delete(value * modes, row, axis=0).sum(axis=0)
+    shared = (modes[row] > 0) & (other_modes > 0)
+    if not np.any(shared):
+        return math.nan, math.nan
+    ratios = np.log(value[row, shared] / (other_power[shared] / other_modes[shared]))
+    weights = 1 / (1 / modes[row, shared] + 1 / other_modes[shared])
+    return float(np.average(ratios, weights=weights)), float(np.sum(weights)) ** -0.5
+
+
+def _level(logarithm: float, error: float) -> Estimate[float]:
+    """Level from its logarithm and the standard error of that logarithm."""
+    level = normal_estimate(logarithm, error).each(math.exp)
+    return replace(level, standard_error=level.value * error)
 
 
 def _joined(densities: Sequence[Density], scatter: float) -> tuple[Array, Array, Array]:
-    """Wavevectors, densities and their relative errors, of all scans."""
-    places = np.concatenate([bin_numbers(one.wavevector) for one in densities])
-    values = np.concatenate([one.value for one in densities])
-    wavevector = np.log(np.concatenate([one.wavevector for one in densities]))
-    modes = np.concatenate([one.modes for one in densities])
+    """Wavevectors, values and relative errors of the joint density of all scans."""
+    logarithms = np.log(np.concatenate([density.wavevector for density in densities]))
+    values = np.concatenate([density.value for density in densities])
+    modes = np.concatenate([density.modes for density in densities])
+    bins = np.concatenate([bin_numbers(density.wavevector) for density in densities])
+    _, index = np.unique(bins, return_inverse=True)
     weight = 1 / (1 / modes + scatter**2)
-    _, index = np.unique(places, return_inverse=True)
     total = np.bincount(index, weight)
-    logarithm, value = (np.bincount(index, weight * part) / total for part in (wavevector, values))
-    return np.exp(logarithm), value, np.asarray(total**-0.5)
+    wavevector = np.exp(np.bincount(index, weight * logarithms) / total)
+    value = np.bincount(index, weight * values) / total
+    return wavevector, value, np.asarray(total**-0.5)
 
 
 def _below_bands(scans: Sequence[Scan], fit: Fit) -> Density:
-    """Density of the finest scan between all trusted waves and its noise, which is subtracted."""
+    """Density of the finest scan below all trusted bands, with its noise subtracted."""
 
-    def fineness(item: tuple[int, Scan]) -> tuple[float, float]:
-        return max(item[1].measurement.pixels), item[1].band.shortest.wavelength
+    def fineness(index: int) -> tuple[float, float]:
+        scan = scans[index]
+        return max(scan.measurement.pixels), scan.band.shortest.wavelength
 
-    index, one = min(enumerate(scans), key=fineness)
-    shortest = min(other.band.shortest.wavelength for other in scans) / (1 + 1e-6)
-    last = max(NYQUIST * max(one.measurement.pixels), one.band.noise_limit)
-    rest = one.density.within(last, shortest)
-    if not rest.value.size:
-        return replace(rest, is_profile=False)
-    logarithms = fit.isotropic(rest, index, restored=False)
-    return replace(rest, value=np.exp(np.median(logarithms, axis=0)), is_profile=False)
+    index = min(range(len(scans)), key=fineness)
+    finest = scans[index]
+    longest = min(scan.band.shortest.wavelength for scan in scans) / (1 + 1e-6)
+    shortest = max(NYQUIST * max(finest.measurement.pixels), finest.band.noise_limit)
+    density = finest.density.within(shortest, longest)
+    if not density.value.size:
+        return replace(density, is_profile=False)
+    logarithms = fit.isotropic(density, index, restored=False)
+    return replace(density, value=np.exp(np.median(logarithms, axis=0)), is_profile=False)
 
 
-def _recorded(density: JointDensity, rest: Density) -> TabulatedSpectrum:
-    """Table of measured values and of what lies below their waves."""
-    shorter = rest.wavevector > density.wavevector[-1]
-    waves = 2 * np.pi / np.append(density.wavevector, rest.wavevector[shorter])
-    values = np.append(density.value, rest.value[shorter])
+def _recorded(density: JointDensity, below_bands: Density) -> TabulatedSpectrum:
+    """Table of the joint density, and of the density at shorter waves."""
+    shorter = below_bands.wavevector > density.wavevector[-1]
+    waves = 2 * np.pi / np.append(density.wavevector, below_bands.wavevector[shorter])
+    values = np.append(density.value, below_bands.value[shorter])
     return TabulatedSpectrum(tuple(waves.tolist()), tuple(values.tolist()))
 
 
 def _continued(density: JointDensity, fit: Fit, end: float) -> TabulatedSpectrum:
-    """Table of what is measured, continued over gaps, to longer waves, and to an end."""
-    extra = _gaps(density.wavevector, fit.lowest, end)
-    every = np.concatenate([density.wavevector, extra])
-    table = np.concatenate([density.value, fit.median(extra)])
-    order = np.argsort(every)
-    return TabulatedSpectrum(
-        tuple((2 * np.pi / every[order]).tolist()), tuple(table[order].tolist())
-    )
+    """Table of the joint density, continued over gaps, to longer waves, and to an end."""
+    continuation = _gaps(density.wavevector, fit.lowest, end)
+    wavevector = np.concatenate([density.wavevector, continuation])
+    value = np.concatenate([density.value, fit.median(continuation)])
+    order = np.argsort(wavevector)
+    wavelengths = 2 * np.pi / wavevector[order]
+    return TabulatedSpectrum(tuple(wavelengths.tolist()), tuple(value[order].tolist()))
 
 
 def _gaps(wavevector: Array, lowest: float, end: float) -> Array:
-    """Wavevectors in the gaps between others, below them, and to an end (Units: 1 / m)."""
+    """Wavevectors of a continuation: in gaps, at longer waves, and to an end (Units: 1 / m)."""
+    first = lowest / _LONGEST_CONTINUED
     last = max(2 * math.pi / end, float(wavevector[-1]) * (1 + 1e-6))
-    found = [np.array([lowest / _FLAT])]
-    for one, other in pairwise([lowest / _FLAT, *wavevector.tolist(), last]):
-        number = math.ceil(math.log10(other / one) * _CONTINUED_BINS)
+    parts = [np.array([first])]
+    for below, above in pairwise([first, *wavevector.tolist(), last]):
+        number = math.ceil(math.log10(above / below) * _CONTINUED_BINS)
         if number > 1:
-            found.append(one * (other / one) ** (np.arange(1, number) / number))
-    return np.concatenate([*found, [last]])
+            parts.append(below * (above / below) ** (np.arange(1, number) / number))
+    return np.concatenate([*parts, [last]])
 
 
 def _extended(spectrum: TabulatedSpectrum, fit: Fit) -> TabulatedSpectrum:
@@ -261,13 +276,13 @@ def _extended(spectrum: TabulatedSpectrum, fit: Fit) -> TabulatedSpectrum:
 
 
 def _shares(spectrum: TabulatedSpectrum, extended: TabulatedSpectrum, wavevector: Array) -> Shares:
-    """Where e_el comes from."""
+    """Contributions to e_el, for measured wavevectors."""
     total = spectrum.mean_square(0.5)
-    # Neighbours further apart than this have a continuation between them.
-    apart = np.diff(np.log10(wavevector)) > 1 / _CONTINUED_BINS
-    groups = np.split(2 * np.pi / wavevector, np.flatnonzero(apart) + 1)
+    # The continuation fills wider gaps than this.
+    gaps = np.diff(np.log10(wavevector)) > 1 / _CONTINUED_BINS
+    groups = np.split(2 * np.pi / wavevector, np.flatnonzero(gaps) + 1)
     parts = [spectrum.mean_square_between(0.5, group[-1], group[0]) for group in groups]
-    # Round-off may not leave less than nothing to the continuation.
+    # Because of round-off the sum may be above the total.
     measured = min(sum(parts) / total, 1.0)
     beyond = extended.mean_square_between(0.5, extended.short_cutoff, spectrum.short_cutoff)
     longest = max(2 * np.pi / float(wavevector[0]), spectrum.short_cutoff)

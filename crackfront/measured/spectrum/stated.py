@@ -1,4 +1,4 @@
-"""Surfaces of which no heights are given, but a spectral density or the numbers of one."""
+"""Surfaces from a spectral density, or from the numbers of a self-affine one, without heights."""
 
 from __future__ import annotations
 
@@ -27,31 +27,43 @@ from crackfront.measured.spectrum.measured_surface import (
 from crackfront.surfaces.written_units import prefixed
 
 _NOTABLE_SHARE = 0.1
-"""Share of e_el in waves missing from the table above which a reservation states it."""
+"""Smallest part of e_el in missing waves that a reservation states."""
 
-_STEPS, _DIRECTIONS, _FURTHEST = 3, 200, 8.0
-"""Steps to the isotropic density, quadrature of a projection, and its end in arccosh(k / q)."""
+_UNPROJECTION_STEPS = 3
+"""Steps to the isotropic density; more would amplify noise."""
 
-_DECADES, _LONGER = 100.0, 4.0
-"""How far a table is continued to see what it lacks: to shorter and to longer waves."""
+_PROJECTION_NODES = 200
+"""Nodes of the quadrature of a projection."""
 
-_SLOPE_OVER = 4.0
-"""Factor in wavelength over which the power law at an end of a table is taken."""
+_PROJECTION_END = 8.0
+"""End of this quadrature in arccosh(k / q)."""
 
-_RISING = -1.0
-"""Power of the wavevector from which on a density has no plateau at its longest waves."""
+_SHORTER_WAVES = 100.0
+"""Ratio by which a table is continued to shorter waves, to estimate what is missing."""
+
+_LONGER_WAVES = 4.0
+"""Ratio by which a table is continued to longer waves, to estimate what is missing."""
+
+_SLOPE_RANGE = 4.0
+"""Ratio of the wavelengths from which the power law at an end of a table is determined."""
+
+_STEEPEST_PLATEAU = -1.0
+"""Power of the wavevector below which a density still rises at its longest waves."""
 
 ATOMS = 1e-9
-"""Shortest wavelength where none is named (Units: m)."""
+"""Shortest wavelength by default: the size of atoms. (Units: m)"""
 
-_SHOWN_OVER_CUTOFF = 100.0
-"""Waves up to this many short cutoffs have their share of e_el stated if no cutoff is named."""
+_SHOWN_WAVES = 100.0
+"""Wavelength over the default short cutoff up to which a reservation states the part of e_el."""
 
 _MOST_ROLL_OFF = 100.0
 """Longest roll-off over the correlation length, or over the short cutoff if this is longer."""
 
-_LAST_WAVE, _POINTS = 300.0, 20_001
-"""Wavevector times distance where the integral of an autocorrelation ends, and its points."""
+_LAST_WAVE = 300.0
+"""End of the integral of an autocorrelation, in wavevector times distance."""
+
+_POINTS = 20_001
+"""Points of this integral."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,17 +71,17 @@ class StatedSurface(RoughSurface):
     """A surface by its spectrum alone, which is taken as exact."""
 
     origin: str
-    """What the spectrum comes from, in words."""
+    """Source of the spectrum, in words."""
     spectrum: TabulatedSpectrum
     """Isotropic density. (Units: m)"""
     shares: Shares
-    """Where e_el comes from."""
+    """Contributions to e_el."""
     doubts: tuple[str, ...]
-    """Sentences on what is assumed or missing."""
+    """Sentences on assumptions and missing waves."""
 
     @property
     def scans(self) -> tuple[()]:
-        """There are none."""
+        """No scans."""
         return ()
 
     @property
@@ -90,13 +102,13 @@ class StatedSurface(RoughSurface):
 
 
 Surface = MeasuredSurface | StatedSurface
-"""What predictions are made for."""
+"""Surfaces that predictions accept."""
 
 
 def density_surface(psd: Psd) -> StatedSurface:
-    """Surface of a density that another program has made of its heights.
+    """Surface from a spectral density that another program exported.
 
-    That of profiles becomes the isotropic density whose projection it is.
+    A density of profiles is converted to the isotropic density.
     """
     value = _unprojected(psd.wavevector, psd.value) if psd.is_profile else psd.value
     wavelengths = 2 * np.pi / psd.wavevector
@@ -110,21 +122,38 @@ def density_surface(psd: Psd) -> StatedSurface:
     )
 
 
-def self_affine_surface_of(given: SelfAffineOptions) -> StatedSurface:
-    """Surface of numbers of a self-affine spectrum, as of :class:`SelfAffineSpectrum`.
+def self_affine_surface_of(options: SelfAffineOptions) -> StatedSurface:
+    """Surface with a :class:`SelfAffineSpectrum`.
 
-    ValueError, of one sentence, where a number is missing or they contradict each other.
+    ValueError if a number is missing, or the numbers contradict each other.
     """
-    rms, hurst = given.rms, given.hurst
-    needs = "a surface of numbers needs rms and hurst, and one of correlation length and roll-off"
-    if given.correlation_length is not None and given.roll_off is not None:
-        raise ValueError(f"{needs}; both of these are named")
-    is_bounded = given.correlation_length is not None or given.roll_off is not None
+    rms, hurst = options.rms, options.hurst
+    needs = "a self-affine surface needs rms, hurst, and either a correlation length or a roll-off"
+    is_bounded = options.correlation_length is not None or options.roll_off is not None
+    if options.correlation_length is not None and options.roll_off is not None:
+        raise ValueError(f"{needs}; both lengths are named")
     if rms is None or hurst is None or not is_bounded:
-        missing = ["rms"] * (rms is None) + ["hurst"] * (hurst is None)
-        missing += ["correlation length"] * (not is_bounded)
+        required = {"rms": rms, "hurst": hurst, "correlation length": is_bounded or None}
+        missing = [name for name, value in required.items() if value is None]
         raise ValueError(f"{needs}; name {' and '.join(missing)}")
-    cutoff, doubts = given.short_cutoff, []
+    shape = _self_affine_shape(options, rms, hurst)
+    cutoff, roll_off = shape.short_cutoff, shape.roll_off
+    waves = (roll_off, cutoff) if roll_off > cutoff else (2 * cutoff, cutoff)
+    densities = shape.density(2 * np.pi / np.array(waves)).tolist()
+    lengths = f"roll-off {prefixed('m', roll_off)}"
+    if options.correlation_length is not None:
+        lengths += f", of a correlation length of {prefixed('m', options.correlation_length)}"
+    return _stated(
+        f"rms height {prefixed('m', rms)}, {lengths}, H {hurst:g}",
+        TabulatedSpectrum(waves, tuple(densities)),
+        Shares(1.0, 0.0, 0.0, 0.0),
+        [_default_cutoff_doubt(shape)] if options.short_cutoff is None else [],
+    )
+
+
+def _self_affine_shape(options: SelfAffineOptions, rms: float, hurst: float) -> SelfAffineSpectrum:
+    """Spectrum with its rms height; ValueError if the lengths contradict each other (Units: m)."""
+    cutoff, length = options.short_cutoff, options.correlation_length
     if cutoff is None:
         if hurst <= 0.5:
             raise ValueError(
@@ -132,8 +161,7 @@ def self_affine_surface_of(given: SelfAffineOptions) -> StatedSurface:
                 "0.5; name their wavelength as short cutoff, as in 10nm"
             )
         cutoff = ATOMS
-    length = given.correlation_length
-    roll_off = given.roll_off if length is None else _roll_off(length, hurst, cutoff)
+    roll_off = options.roll_off if length is None else _roll_off(length, hurst, cutoff)
     assert roll_off is not None
     if roll_off < cutoff:
         raise ValueError(
@@ -141,97 +169,91 @@ def self_affine_surface_of(given: SelfAffineOptions) -> StatedSurface:
             f"{prefixed('m', cutoff)}; name a shorter short cutoff"
         )
     shape = SelfAffineSpectrum(cutoff, roll_off, hurst)
-    shape = shape.amplified(rms**2 / shape.mean_square(0.0))
-    if given.short_cutoff is None:
-        end = min(_SHOWN_OVER_CUTOFF * cutoff, roll_off)
-        part = shape.mean_square_between(0.5, cutoff, end) / shape.mean_square(0.5)
-        doubts.append(
-            f"No short cutoff is named: the power law is continued to {prefixed('m', cutoff)}, "
-            f"and waves shorter than {prefixed('m', end)} have {part:.0%} of e_el."
-        )
-    waves = (roll_off, cutoff) if roll_off > cutoff else (2 * cutoff, cutoff)
-    densities = shape.density(2 * np.pi / np.array(waves)).tolist()
-    by_length = "" if length is None else f", of a correlation length of {prefixed('m', length)}"
-    return _stated(
-        f"rms height {prefixed('m', rms)}, roll-off {prefixed('m', roll_off)}{by_length}, H "
-        f"{hurst:g}",
-        TabulatedSpectrum(waves, tuple(densities)),
-        Shares(1.0, 0.0, 0.0, 0.0),
-        doubts,
+    return shape.amplified(rms**2 / shape.mean_square(0.0))
+
+
+def _default_cutoff_doubt(shape: SelfAffineSpectrum) -> str:
+    """Sentence on the part of e_el in the shortest waves, whose cutoff is the default."""
+    cutoff = shape.short_cutoff
+    end = min(_SHOWN_WAVES * cutoff, shape.roll_off)
+    part = shape.mean_square_between(0.5, cutoff, end) / shape.mean_square(0.5)
+    return (
+        f"No short cutoff is named: the power law is continued to {prefixed('m', cutoff)}, "
+        f"and waves shorter than {prefixed('m', end)} have {part:.0%} of e_el."
     )
 
 
 def _projection(wavevector: Array, density: Callable[[Array], Array]) -> Array:
     """Integral of an isotropic density along lines, over k = q cosh(t)."""
-    node, weight = np.polynomial.legendre.leggauss(_DIRECTIONS)
-    way = _FURTHEST * (1 + node) / 2
-    k = wavevector[:, None] * np.cosh(way)
-    return np.asarray((density(k) * k) @ (weight * _FURTHEST / 2) / np.pi)
+    node, weight = np.polynomial.legendre.leggauss(_PROJECTION_NODES)
+    angle = _PROJECTION_END * (1 + node) / 2
+    k = wavevector[:, None] * np.cosh(angle)
+    return np.asarray((density(k) * k) @ (weight * _PROJECTION_END / 2) / np.pi)
 
 
 def _unprojected(wavevector: Array, profile: Array) -> Array:
-    """Isotropic density of which a density of profiles is the projection.
+    """Isotropic density from a density of profiles.
 
-    By the ratio of a density to its projection, in few steps, as more would amplify its noise: e_el
-    is right to 2%. Behind its last value the density goes on as a power law.
+    A few steps correct the density by the ratio of the profile to its projection, so that e_el is
+    right to 2%. The density continues after its last value as a power law.
     """
-    places = np.log(wavevector)
-    falling = np.flatnonzero(np.gradient(np.log(profile), places) < _RISING)
+    positions = np.log(wavevector)
+    falling = np.flatnonzero(np.gradient(np.log(profile), positions) < _STEEPEST_PLATEAU)
     knee = wavevector[falling[0]] if falling.size else wavevector[-1]
-    found = np.pi * profile / np.hypot(wavevector, knee)
-    for _ in range(_STEPS):
-        logarithms = np.log(found)
-        slope = min(_end_slope(places, logarithms, last=True), -1.5)
+    isotropic = np.pi * profile / np.hypot(wavevector, knee)
+    for _ in range(_UNPROJECTION_STEPS):
+        logarithms = np.log(isotropic)
+        slope = min(_end_slope(positions, logarithms, last=True), -1.5)
 
         def density(k: Array, logarithms: Array = logarithms, slope: float = slope) -> Array:
-            beyond = np.maximum(np.log(k) - places[-1], 0.0)
-            return np.exp(np.interp(np.log(k), places, logarithms) + slope * beyond)
+            beyond = np.maximum(np.log(k) - positions[-1], 0.0)
+            return np.exp(np.interp(np.log(k), positions, logarithms) + slope * beyond)
 
-        found = found * profile / _projection(wavevector, density)
-    return found
+        isotropic = isotropic * profile / _projection(wavevector, density)
+    return isotropic
 
 
-def _end_slope(places: Array, logarithms: Array, *, last: bool) -> float:
-    """Power law of a density over its shortest or its longest waves."""
-    far = math.log(_SLOPE_OVER)
-    near = places > places[-1] - far if last else places < places[0] + far
-    if np.count_nonzero(near) < 2:
-        near = np.arange(places.size) >= places.size - 2 if last else np.arange(places.size) < 2
-    return float(np.polyfit(places[near], logarithms[near], 1)[0])
+def _end_slope(positions: Array, logarithms: Array, *, last: bool) -> float:
+    """Power of the wavevector in a density over its shortest (`last`) or longest waves."""
+    reach = math.log(_SLOPE_RANGE)
+    near = positions > positions[-1] - reach if last else positions < positions[0] + reach
+    count = max(2, int(np.count_nonzero(near)))
+    end = slice(-count, None) if last else slice(count)
+    return float(np.polyfit(positions[end], logarithms[end], 1)[0])
 
 
 def _logarithms(spectrum: TabulatedSpectrum) -> tuple[Array, Array]:
-    """Logarithms of wavevectors and densities."""
+    """Logarithms of wavevectors and of densities."""
     return np.log(2 * np.pi / np.array(spectrum.wavelengths)), np.log(spectrum.densities)
 
 
 def _shorter(spectrum: TabulatedSpectrum) -> float:
-    """Mean square of the half-derivative of shorter waves, by the power law at the end."""
+    """Mean square of the half-derivative in missing shorter waves, by a power law."""
     last = spectrum.short_cutoff
     slope = _end_slope(*_logarithms(spectrum), last=True)
     end = spectrum.densities[-1]
-    tail = TabulatedSpectrum((last, last / _DECADES), (end, end * _DECADES**slope))
-    return tail.mean_square_between(0.5, last / _DECADES, last * (1 - 1e-12))
+    tail = TabulatedSpectrum((last, last / _SHORTER_WAVES), (end, end * _SHORTER_WAVES**slope))
+    return tail.mean_square_between(0.5, last / _SHORTER_WAVES, last * (1 - 1e-12))
 
 
 def _missing_waves(
     spectrum: TabulatedSpectrum, total: float, missing: float, long: float
 ) -> Iterator[str]:
-    """Sentences on waves that a table lacks and that matter."""
+    """Sentences on missing waves that contribute to e_el."""
     first = spectrum.wavelengths[0]
     short, longest = (prefixed("m", end) for end in (spectrum.short_cutoff, first))
     slope = _end_slope(*_logarithms(spectrum), last=False)
-    if slope < _RISING:
+    if slope < _STEEPEST_PLATEAU:
         longer = TabulatedSpectrum(
-            (_LONGER * first, first),
-            (spectrum.densities[0] * _LONGER**-slope, spectrum.densities[0]),
+            (_LONGER_WAVES * first, first),
+            (spectrum.densities[0] * _LONGER_WAVES**-slope, spectrum.densities[0]),
         )
         more = longer.mean_square(0.5) / total - long
         if more > _NOTABLE_SHARE:
             yield (
                 f"The density rises up to its longest wave, {longest}, and is taken as flat above; "
-                f"with a roll-off at {_LONGER:g} times that there would be {part_of_energy(more)} "
-                "more; add longer waves."
+                f"with a roll-off at {_LONGER_WAVES:g} times this wavelength there would be "
+                f"{part_of_energy(more)} more; add longer waves."
             )
     if missing > _NOTABLE_SHARE:
         yield (
@@ -241,7 +263,7 @@ def _missing_waves(
 
 
 def _roll_off(length: float, hurst: float, cutoff: float) -> float:
-    """Roll-off wavelength of a spectrum of a correlation length, all in metres."""
+    """Roll-off wavelength of a spectrum with a correlation length, all in metres."""
 
     def excess(logarithm: float) -> float:
         roll_off = max(cutoff, math.exp(logarithm))  # shorter by round-off alone
@@ -251,8 +273,8 @@ def _roll_off(length: float, hurst: float, cutoff: float) -> float:
     ends = math.log(max(cutoff, length / 2)), math.log(longest)
     if excess(ends[0]) > 0:
         raise ValueError(
-            f"waves longer than a cutoff of {prefixed('m', cutoff)} have no correlation length of "
-            f"{prefixed('m', length)}; name a shorter short cutoff"
+            f"waves longer than a cutoff of {prefixed('m', cutoff)} cannot have a correlation "
+            f"length of {prefixed('m', length)}; name a shorter short cutoff"
         )
     if excess(ends[1]) < 0:
         raise ValueError(
@@ -265,20 +287,20 @@ def _roll_off(length: float, hurst: float, cutoff: float) -> float:
 
 
 def _autocorrelation(distance: float, roll_off: float, hurst: float, cutoff: float) -> float:
-    """Autocorrelation of the heights of a self-affine surface over their mean square."""
+    """Normalised autocorrelation of the heights of a self-affine surface."""
     knee, end = 2 * math.pi * distance / roll_off, 2 * math.pi * distance / cutoff
-    found = knee * float(j1(knee))
+    integral = knee * float(j1(knee))
     if (last := min(end, knee + _LAST_WAVE)) > knee:
         x = np.linspace(knee, last, _POINTS)
-        found += float(np.trapezoid(knee * (x / knee) ** (-1 - 2 * hurst) * j0(x), x))
+        integral += float(np.trapezoid(knee * (x / knee) ** (-1 - 2 * hurst) * j0(x), x))
     shape = SelfAffineSpectrum(cutoff, roll_off, hurst)
-    return found / (2 * math.pi * distance**2 * shape.mean_square(0.0))
+    return integral / (2 * math.pi * distance**2 * shape.mean_square(0.0))
 
 
 def _stated(
     origin: str, spectrum: TabulatedSpectrum, shares: Shares, doubts: list[str]
 ) -> StatedSurface:
-    """Surface of a spectrum, whose measures have no interval."""
+    """Surface with an exact spectrum, whose measures have intervals of zero width."""
 
     def exact(number: float) -> Estimate[float]:
         return Estimate(number, 0.0, number, number)

@@ -142,7 +142,7 @@ def test_limits_that_are_named_stand_in_place_of_those_that_are_found(found):
 def test_a_shortest_wave_that_no_points_hold_is_refused(found):
     [one] = found("self-affine, H = 0.8").surface.scans
     assert analysed_scan(one.measurement, shortest=2 * PIXEL).band.shortest.cause == "named"
-    with pytest.raises(ValueError, match=r"--shortest is .* hold waves from .*; name that or more"):
+    with pytest.raises(ValueError, match=r"--shortest is .*; name that or more"):
         analysed_scan(one.measurement, shortest=1.9 * PIXEL)
 
 
@@ -184,7 +184,7 @@ def test_surfaces_that_are_not_gaussian_are_told_and_known_less_well(found):
     assert deep.unevenness > 0.03
     assert [*scan_remarks([film])] == []
     for one, sentence in (
-        (deep, "differ more than those of a Gaussian"),
+        (deep, "differ more than for a Gaussian"),
         (scanned, "into narrow ones; e_el may be 2 times as large"),
     ):
         assert any(sentence in remark.sentence for remark in scan_remarks([one]))

@@ -12,7 +12,7 @@ from crackfront.measured.density.densities import periodogram, unevenness, weigh
 from crackfront.measured.density.gaps import restored_periodogram, surrogate_pairs
 from crackfront.measured.prediction.surface_remarks import scan_remarks
 from crackfront.measured.scan.reading import read_measurements
-from crackfront.measured.spectrum.draws import GIVEN_BACK
+from crackfront.measured.spectrum.draws import RESTORATION_ERROR
 from crackfront.measured.spectrum.joining import joint_spectrum
 from tests.measured.made import periodic_measurement, write_al3d
 
@@ -88,7 +88,7 @@ def test_the_density_of_a_map_with_gaps_is_that_of_the_whole_map(gaps_of, rng, t
         given_back.append(np.log(energy(restored, whole) / known))
     error = np.std(given_back, ddof=1) / np.sqrt(len(given_back))
     # By as much as intervals allow for.
-    allowed = GIVEN_BACK * weight_of_gaps(found)
+    allowed = RESTORATION_ERROR * weight_of_gaps(found)
     assert abs(np.mean(given_back)) < allowed + 4 * error
     if gaps_of is not corner:  # Where the window has no weight nothing is lost.
         assert abs(np.mean(given_back)) < 0.5 * abs(np.mean(filled))

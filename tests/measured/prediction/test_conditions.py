@@ -49,7 +49,7 @@ def test_the_range_of_attraction_is_held_against_sphere_and_roughness(surface):
         zone = found["attraction short against the roughness"].comparison.value
         assert zone == pytest.approx(np.pi / 4 * modulus * reach**2 / w)
     for reach, is_assumed in ((None, True), (1e-9, False)):
-        notes = theory_verdict(surface, SCENE, reach).of("note")
+        notes = theory_verdict(surface, SCENE, reach).with_severity("note")
         assert any("assumed to be 0.5 nm" in one.sentence for one in notes) == is_assumed
 
 
@@ -67,7 +67,7 @@ def test_the_range_of_attraction_is_held_against_sphere_and_roughness(surface):
 def test_what_would_meet_a_failing_condition_meets_it(surface, scales, reach, failing):
     found = theory_verdict(surface, scales, reach)
     assert found.outcome == "does not apply"
-    [remark] = [one for one in found.of("fails") if one.concerns == failing]
+    [remark] = [one for one in found.with_severity("fails") if one.concerns == failing]
     changes = {"modulus": "contact_modulus", "a radius": "radius", "w_int": "work_of_adhesion"}
     units = {"modulus": "Pa", "a radius": "m", "w_int": "J/m^2"}
     tried = 0
@@ -85,15 +85,15 @@ def test_what_would_meet_a_failing_condition_meets_it(surface, scales, reach, fa
 
 def test_all_failing_conditions_and_all_reservations_are_named(surface):
     found = theory_verdict(surface, replace(SCENE, contact_modulus=1e3), 1e-3)
-    failing = found.of("fails")
+    failing = found.with_severity("fails")
     assert len(failing) > 1
     assert all(one.remedies for one in failing)
-    assert [one.concerns for one in found.of("reservation")].count("small slopes") == 1
+    assert [one.concerns for one in found.with_severity("reservation")].count("small slopes") == 1
 
 
 def test_a_surface_in_no_doubt_has_no_reservation(tmp_path):
     smooth = measured_surface(read_measurements([write_smooth(tmp_path / "smooth.al3d")]))
     found = theory_verdict(smooth, SCENE)
-    assert len(found.of("holds")) == 8
-    assert found.of("fails", "undecided", "reservation") == ()
+    assert len(found.with_severity("holds")) == 8
+    assert found.with_severity("fails", "undecided", "reservation") == ()
     assert found.outcome == "applies"

@@ -17,17 +17,17 @@ from crackfront.measured.page.texts import report_text
 from crackfront.measured.prediction.prediction import predicted
 from crackfront.measured.prediction.surface_remarks import spectrum_remarks
 from crackfront.measured.prediction.works import (
+    adhesion_by_law,
     least_work_of_adhesion,
     reduced_spectrum,
     surface_spectrum,
-    works,
 )
 from tests.measured.made import DETAIL, OVERVIEW, SCENE, shipped_surface
 
 
 def sentences(found, *severities):
     """Sentences of the remarks on a prediction."""
-    return [one.sentence for one in found.verdict.of(*severities)]
+    return [one.sentence for one in found.verdict.with_severity(*severities)]
 
 
 def test_the_law_holds_between_the_predicted_numbers(prediction):
@@ -53,7 +53,7 @@ def test_intervals_hold_those_of_k_and_of_e_el(prediction):
     more = np.hypot(np.log(k.high / k.value), np.log(excess.value / excess.low))
     by_factor = e_el * k.value / excess.value * np.expm1(more)
     [by_energy] = (
-        prediction.w_appr.value - works(other, SCENE).w_appr.value
+        prediction.w_appr.value - adhesion_by_law(other, SCENE).w_appr.value
         for other in (amplified(prediction.surface, prediction.e_el.high / e_el),)
     )
     below = prediction.w_appr.value - prediction.w_appr.low
@@ -75,7 +75,7 @@ def test_intervals_hold_the_works_at_every_e_el_within_its_own(scans):
     """The factor k falls with e_el, so that w_retr is largest within the interval of one scan."""
     found = predicted(shipped_surface(*scans), SCENE)
     for e_el in np.geomspace(found.e_el.low, found.e_el.high, 7):
-        other = works(amplified(found.surface, e_el / found.e_el.value), SCENE)
+        other = adhesion_by_law(amplified(found.surface, e_el / found.e_el.value), SCENE)
         for name in ("w_appr", "w_retr", "hysteresis", "front_hysteresis"):
             wide = getattr(found, name)
             assert wide.low <= getattr(other, name).value <= wide.high
@@ -194,7 +194,7 @@ def test_scans_smaller_than_the_contact_are_told(surface, prediction):
     notes = sentences(prediction, "note")
     for path in (DETAIL, OVERVIEW):
         assert any(str(path) in note and "smaller than the contact" in note for note in notes)
-    assert any("k is that of a straight front on springs" in note for note in notes)
+    assert any("a straight front on springs" in note for note in notes)
 
 
 def test_a_contact_too_small_for_hysteresis_is_told(surface):

@@ -146,7 +146,7 @@ def test_what_is_a_little_stiffer_has_no_other_kind_of_answer(files):
         if known is not None:
             assert numbers == pytest.approx(known, rel=0.08)
         known = numbers
-        undecided = verdict.of("undecided")
+        undecided = verdict.with_severity("undecided")
         assert bool(undecided) == (verdict.outcome == "cannot be decided")
     order = list(dict.fromkeys(outcomes))
     assert order == ["applies with reservations", "cannot be decided", "does not apply"]

@@ -91,11 +91,11 @@ def test_an_unnamed_cutoff_is_assumed_or_asked_for():
 @pytest.mark.parametrize(
     ("numbers", "sentence"),
     [
-        ({"rms": "60nm", "hurst": 0.8}, "needs rms and hurst, and one of"),
-        ({"rms": "60nm", "roll_off": "1um"}, "needs rms and hurst, and one of"),
+        ({"rms": "60nm", "hurst": 0.8}, "needs rms, hurst, and either"),
+        ({"rms": "60nm", "roll_off": "1um"}, "needs rms, hurst, and either"),
         (
             {"rms": "60nm", "roll_off": "1um", "correlation_length": "1um", "hurst": 0.8},
-            "one of correlation length and roll-off",
+            "both lengths are named",
         ),
         (
             {"rms": "60nm", "roll_off": "1um", "short_cutoff": "2um", "hurst": 0.8},
@@ -104,7 +104,7 @@ def test_an_unnamed_cutoff_is_assumed_or_asked_for():
         *(
             (
                 {"rms": "60nm", "correlation_length": "1um", "short_cutoff": cutoff, "hurst": 0.8},
-                "no correlation length of 1 um; name a shorter",
+                "correlation length of 1 um; name a shorter",
             )
             for cutoff in ("10um", "20um")
         ),
@@ -123,7 +123,8 @@ def test_numbers_that_are_no_surface_are_refused(numbers, sentence):
 def test_what_needs_heights_is_said_and_not_checked():
     rough = cf.self_affine_surface(rms="20nm", roll_off="2um", hurst=0.8, short_cutoff="20nm")
     found = cf.predict(rough, SCENE)
-    [said] = [one.sentence for one in found.verdict.of("reservation") if "heights" in one.sentence]
+    reservations = [one.sentence for one in found.verdict.with_severity("reservation")]
+    [said] = [sentence for sentence in reservations if "heights" in sentence]
     assert "isotropic" in said
     assert not [one for one in found.verdict.remarks if one.concerns == "random roughness"]
     page = repr(found)

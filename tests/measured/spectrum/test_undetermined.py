@@ -68,7 +68,7 @@ def test_scans_that_disagree_beyond_all_measure_are_refused(rng):
     heights = waves_up_to(24, rng)
     sentence = refusal(measurement(1e3 * heights, "rough"), measurement(heights, "smooth"))
     assert "rough and smooth" in sentence
-    assert "they disagree where they overlap" in sentence
+    assert "disagree where they overlap" in sentence
 
 
 def shown(heights):
