@@ -8,7 +8,8 @@ from pathlib import Path
 import click
 
 from crackfront.cli import Commands
-from crackfront.cli.common import announce_compilation, examples
+from crackfront.cli.answers import announce_compilation
+from crackfront.cli.parameters import examples
 from crackfront.simulate.run_simulation import compile_solver
 from crackfront.simulate.sphere.full_cycle import FullCycle
 from crackfront.simulate.storage import write_text

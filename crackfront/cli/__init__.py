@@ -8,12 +8,13 @@ from typing import Any
 
 import click
 
+from crackfront.cli.answers import StoppedError, announce_compilation
 from crackfront.cli.checksum_commands import checksums, verify
-from crackfront.cli.common import StoppedError, announce_compilation, examples
 from crackfront.cli.cycle_command import cycle
 from crackfront.cli.law_command import law
 from crackfront.cli.loop_command import loop
 from crackfront.cli.output import output_that_may_close
+from crackfront.cli.parameters import examples
 from crackfront.cli.result_commands import (
     aggregate,
     archive,

@@ -7,12 +7,8 @@ from pathlib import Path
 
 import click
 
-from crackfront.cli.common import (
-    FILE,
-    as_json,
-    echo_answer,
-    examples,
-)
+from crackfront.cli.answers import echo_answer
+from crackfront.cli.parameters import FILE, as_json, examples
 from crackfront.core.words import counted
 
 

@@ -11,20 +11,9 @@ from typing import TYPE_CHECKING
 
 import click
 
-from crackfront.cli.common import (
-    FILE,
-    Number,
-    StoppedError,
-    announce_compilation,
-    announce_cost,
-    as_json,
-    echo_answer,
-    examples,
-    refuse_foreign_netcdf,
-    refuse_overwriting,
-    refuse_unwritable,
-    whole,
-)
+from crackfront.cli.answers import StoppedError, announce_compilation, announce_cost, echo_answer
+from crackfront.cli.output_files import refuse_foreign_netcdf, refuse_overwriting, refuse_unwritable
+from crackfront.cli.parameters import FILE, Number, as_json, examples, whole
 from crackfront.core.arguments import regular_file
 from crackfront.core.bounds import (
     DENSITY,

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from crackfront.cli.common import as_json, echo_answer, examples
+from crackfront.cli.answers import echo_answer
+from crackfront.cli.parameters import as_json, examples
 from crackfront.core.bounds import LENGTH, refuse_outside
 
 if TYPE_CHECKING:

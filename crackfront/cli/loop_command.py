@@ -8,17 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from crackfront.cli.common import (
-    FILE,
-    Number,
-    as_json,
-    echo_json,
-    examples,
-    options_of,
-    refuse_overwriting,
-    refuse_unwritable,
-    refuse_without,
-)
+from crackfront.cli.answers import echo_json
+from crackfront.cli.output_files import refuse_overwriting, refuse_unwritable
+from crackfront.cli.parameters import FILE, Number, as_json, examples, options_of, refuse_without
 from crackfront.core.bounds import Range
 from crackfront.measured.options import (
     ReadingOptions,

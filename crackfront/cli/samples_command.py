@@ -10,15 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from crackfront.cli.common import (
-    FILE,
-    examples,
-    options_of,
-    refuse_foreign_table,
-    refuse_overwriting,
-    refuse_together,
-    refuse_unwritable,
-)
+from crackfront.cli.output_files import refuse_foreign_table, refuse_overwriting, refuse_unwritable
+from crackfront.cli.parameters import FILE, examples, options_of, refuse_together
 from crackfront.measured.options import PredictionOptions, ReadingOptions, SphereOptions
 
 if TYPE_CHECKING:

@@ -8,19 +8,19 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from crackfront.cli.common import (
-    FILE,
-    announce_compilation,
-    as_json,
-    echo_answer,
-    echo_json,
-    examples,
-    options_of,
+from crackfront.cli.answers import announce_compilation, echo_answer, echo_json
+from crackfront.cli.output_files import (
     refuse_foreign_netcdf,
     refuse_foreign_table,
     refuse_overwriting,
-    refuse_together,
     refuse_unwritable,
+)
+from crackfront.cli.parameters import (
+    FILE,
+    as_json,
+    examples,
+    options_of,
+    refuse_together,
     refuse_without,
     whole,
 )

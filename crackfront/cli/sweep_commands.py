@@ -12,17 +12,8 @@ from typing import TYPE_CHECKING
 
 import click
 
-from crackfront.cli.common import (
-    FILE,
-    Number,
-    announce_compilation,
-    announce_cost,
-    as_json,
-    echo_answer,
-    examples,
-    table,
-    whole,
-)
+from crackfront.cli.answers import announce_compilation, announce_cost, echo_answer, table, warn
+from crackfront.cli.parameters import FILE, Number, as_json, examples, whole
 from crackfront.core.bounds import COUNT, Range
 from crackfront.core.resources import refuse_beyond_memory
 from crackfront.core.words import counted, in_bytes
@@ -320,11 +311,6 @@ def status(folder: Path, as_json: bool) -> None:
     sentences = sum(inventories.values(), Inventory()).sentences()
     content = {"spectra": progress, "running": running, "older": sentences}
     echo_answer(content, [*_status_lines(progress, running), *sentences], as_json=as_json)
-
-
-def warn(sentence: str) -> None:
-    """Print a warning."""
-    click.echo(f"Warning: {sentence}", err=True)
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,14 +7,9 @@ from pathlib import Path
 
 import click
 
-from crackfront.cli.common import (
-    FILE,
-    announce_compilation,
-    announce_cost,
-    examples,
-    refuse_unwritable,
-    whole,
-)
+from crackfront.cli.answers import announce_compilation, announce_cost
+from crackfront.cli.output_files import refuse_unwritable
+from crackfront.cli.parameters import FILE, examples, whole
 from crackfront.core.arguments import nearest_name
 from crackfront.core.bounds import Range
 from crackfront.measured.scan.reading import read_measurements

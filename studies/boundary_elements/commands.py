@@ -6,13 +6,9 @@ from pathlib import Path
 
 import click
 
-from crackfront.cli.common import (
-    FILE,
-    StoppedError,
-    announce_compilation,
-    examples,
-    refuse_unwritable,
-)
+from crackfront.cli.answers import StoppedError, announce_compilation
+from crackfront.cli.output_files import refuse_unwritable
+from crackfront.cli.parameters import FILE, examples
 from crackfront.sweep.watching import with_progress
 from studies.pages import keep_option, tell
 

@@ -11,7 +11,8 @@ from typing import cast
 import click
 import xarray as xr
 
-from crackfront.cli.common import FILE, examples, refuse_unwritable
+from crackfront.cli.output_files import refuse_unwritable
+from crackfront.cli.parameters import FILE, examples
 from crackfront.plots.style import save_picture
 from crackfront.simulate.sphere.steady_branches import SteadySchedule
 from crackfront.simulate.storage import read_dataset, write_text

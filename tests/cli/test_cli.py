@@ -21,7 +21,7 @@ from click.testing import CliRunner
 
 import crackfront as cf
 from crackfront.cli import Commands, main
-from crackfront.cli.common import StoppedError
+from crackfront.cli.answers import StoppedError
 from crackfront.core import jkr
 from crackfront.core.outcome import DefectError, Status
 from crackfront.core.solver.relax import named_solver
@@ -142,7 +142,7 @@ def test_a_sweep_runs_from_its_plan_to_its_figures_and_tells_what_a_missing_loop
     again = run("simulate", TEST, *output)
     assert "8 of 8 simulations are stored" in again.output
     assert "[1/" not in again.output
-    monkeypatch.setattr("crackfront.cli.common._MOMENT", 0.0)
+    monkeypatch.setattr("crackfront.cli.answers._MOMENT", 0.0)
     for command in ("aggregate", "fit", "figures"):
         result = run(command, TEST, *output)
         assert result.exit_code == 0, result.output

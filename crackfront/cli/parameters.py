@@ -1,0 +1,103 @@
+"""Arguments and options of commands: their types, and which options go together."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import click
+from click.core import ParameterSource
+
+from crackfront.core.bounds import Range
+from crackfront.measured.options import PER_SCAN, REPEATED, Options
+
+Command = Callable[..., None]
+
+
+class _File(click.Path):
+    """Name of a file or folder; an empty name, as of a variable that is not set, is an error."""
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """The path of a name."""
+        if value == "":
+            self.fail("the name is empty; name a file or folder", param, ctx)
+        return super().convert(value, param, ctx)
+
+
+FILE = _File(path_type=Path)
+"""Type of a parameter that names a file or folder."""
+
+
+class Number(click.FloatRange):
+    """A number within bounds; NaN, which no comparison excludes, is an error."""
+
+    def __init__(self, bounds: Range) -> None:
+        super().__init__(*bounds)
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """The number of a text."""
+        try:
+            float(value)
+        except ValueError:
+            self.fail(f"{value!r} is no number", param, ctx)
+        number = super().convert(value, param, ctx)
+        if math.isnan(number):
+            self.fail("nan is no number", param, ctx)
+        return number
+
+
+def whole(bounds: Range) -> click.IntRange:
+    """Type of a parameter that is a whole number within bounds."""
+    return click.IntRange(int(bounds.least), int(bounds.most))
+
+
+as_json = click.option(
+    "--json", "as_json", is_flag=True, help="Print one JSON value instead, for machines."
+)
+"""Option of a command whose answer machines may want."""
+
+
+def examples(*lines: str) -> str:
+    """End of the help of a command: command lines that show its use."""
+    return "\b\nExamples:\n" + "\n".join(f"  {line}" for line in lines)
+
+
+def options_of(record: type[Options], *, required: bool = False) -> Callable[[Command], Command]:
+    """Give a command an option for every field of a record."""
+
+    def decorated(command: Command) -> Command:
+        for name, field in reversed(record.model_fields.items()):
+            marks = [mark for mark in (PER_SCAN, REPEATED) if mark in field.metadata]
+            command = click.option(
+                f"--{name.replace('_', '-')}",
+                required=required,
+                multiple=bool(marks),
+                default=field.default or None,
+                help=" ".join([*str(field.description).split(), *marks]),
+            )(command)
+        return command
+
+    return decorated
+
+
+def refuse_without(context: click.Context, needed: str, *names: str) -> None:
+    """Raise ValueError if an option is given without another one that it needs."""
+    if not context.params[needed]:
+        for name in names:
+            if context.get_parameter_source(name) is not ParameterSource.DEFAULT:
+                raise ValueError(f"{_option(name)} has an effect only with {_option(needed)}")
+
+
+def refuse_together(context: click.Context, other: str, *names: str) -> None:
+    """Raise ValueError if an option is given with another one that leaves it without effect."""
+    if context.params[other]:
+        for name in names:
+            if context.get_parameter_source(name) is not ParameterSource.DEFAULT:
+                raise ValueError(f"{_option(name)} has no effect with {_option(other)}; drop one")
+
+
+def _option(name: str) -> str:
+    """Name of the option of a parameter."""
+    return f"--{name.removeprefix('as_').removeprefix('is_').replace('_', '-')}"
