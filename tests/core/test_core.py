@@ -98,5 +98,5 @@ def test_the_core_runs_without_any_other_library_and_its_import_changes_nothing(
 def test_the_face_names_what_it_has_and_refuses_the_rest():
     assert set(core.__all__) <= set(dir(core))
     assert 10 <= len(core.__all__) <= 15
-    with pytest.raises(AttributeError, match="has no attribute 'contact_fields'"):
+    with pytest.raises(AttributeError, match="contact_fields"):
         core.contact_fields  # noqa: B018

@@ -1,0 +1,14 @@
+from .adhesion import chemical_adhesion as chemical_adhesion
+from .adhesion import rough_adhesion as rough_adhesion
+from .cycle.follow import Load as Load
+from .cycle.follow import follow as follow
+from .cycle.load_schedule import LoadSchedule as LoadSchedule
+from .cycle.load_schedule import protocol as protocol
+from .cycle.record import Recorder as Recorder
+from .cycle.run import run_cycle as run_cycle
+from .cycle.touch import first_touch as first_touch
+from .geometry.line import line_field as line_field
+from .geometry.sphere import contact_field as contact_field
+from .solver.relax import SOLVERS as SOLVERS
+from .spectrum import SelfAffineSpectrum as SelfAffineSpectrum
+from .synthesis import gaussian_field as gaussian_field
