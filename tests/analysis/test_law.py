@@ -205,7 +205,7 @@ def test_what_has_no_k_is_refused(call, sentence):
 
 
 def test_a_contact_is_refused_up_to_the_radius_at_which_it_is_lost_in_retraction():
-    with pytest.raises(ValueError, match=r"at or below that of pull-off \(0\.56") as caught:
+    with pytest.raises(ValueError, match=r"at or below pull-off \(0\.56") as caught:
         sphere_factors("roughness", FLAT, 0.05, 0.5)
     lost = float(str(caught.value).split("(")[1].split(")")[0])
     k = sphere_factors("roughness", FLAT, 0.05, lost + 5e-4).retraction.factor.value

@@ -102,7 +102,7 @@ def test_what_was_not_measured_is_told():
         (SPHERE | {"--elastic-energy": "1"}, "is 1 w_int; the factors k need one between 0 and 1"),
         (
             SPHERE | {"--contact-radius": "0.4"},
-            "contact radius 0.4 is at or below that of pull-off",
+            "contact radius 0.4 is at or below pull-off",
         ),
         (SPHERE | {"--contact-radius": "-1"}, "contact radius is -1; it must be positive"),
     ],
