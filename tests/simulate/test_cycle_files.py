@@ -76,7 +76,7 @@ def test_a_record_without_fronts_and_energies_goes_on_too(tmp_path):
 
 def test_a_checkpoint_of_another_load_is_refused():
     _, found = checkpoints(CYCLE)
-    with pytest.raises(ValueError, match="it is that of another load"):
+    with pytest.raises(ValueError, match="it belongs to other loads"):
         run_simulation(replace(CYCLE, schedule=FullCycle(0.5, 0.25)), resume=found[5])
 
 
