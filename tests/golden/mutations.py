@@ -77,7 +77,7 @@ MUTATIONS = [
     ),
     Mutation(
         "core/synthesis.py",
-        "2 * np.pi / (n_x * pixel) * np.arange(1, kept + 1)",
+        "2 * np.pi / (n_x * pixel) * np.arange(1, n_mode + 1)",
         "2 * np.pi / (n_x * pixel) * np.arange(kept)",
         "index of the rows' modes",
     ),
