@@ -78,7 +78,7 @@ MUTATIONS = [
     Mutation(
         "core/synthesis.py",
         "2 * np.pi / (n_x * pixel) * np.arange(1, n_mode + 1)",
-        "2 * np.pi / (n_x * pixel) * np.arange(kept)",
+        "2 * np.pi / (n_x * pixel) * np.arange(n_mode)",
         "index of the rows' modes",
     ),
     Mutation("core/geometry/sphere.py", "/ (2 * np.pi)", "/ (2.000002 * np.pi)", "a G_JKR by 1e-6"),
