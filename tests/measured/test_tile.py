@@ -38,7 +38,7 @@ def measured_adhesion(measurement, scales):
 def test_a_line_scan_is_no_field(rng, tmp_path):
     path = write_line(tmp_path / "line.xyz", 1e6 * map_heights(rng)[0], 20 / 128)
     [measurement] = read_measurements([path], ReadingOptions(unit="um"))
-    with pytest.raises(ValueError, match="is a line scan, which is no field"):
+    with pytest.raises(ValueError, match="is a line scan, not a map"):
         measured_adhesion(measurement, SCENE)
 
 
