@@ -104,7 +104,7 @@ def test_what_was_not_measured_is_told():
             SPHERE | {"--contact-radius": "0.4"},
             "contact radius 0.4 is at or below pull-off",
         ),
-        (SPHERE | {"--contact-radius": "-1"}, "contact radius is -1; it must be positive"),
+        (SPHERE | {"--contact-radius": "-1"}, "contact radius is -1; it must lie"),
     ],
 )
 def test_what_cannot_be_answered_is_refused_with_a_sentence(options, sentence):
