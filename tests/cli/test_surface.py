@@ -368,7 +368,7 @@ def test_a_surface_may_be_given_by_a_density_or_by_numbers(tmp_path):
         ((*NUMBERS, "--unit", "um"), "--unit is of scans; leave it out"),
         ((*NUMBERS, "--csv", "out.csv"), "--csv writes a row for each scan"),
         ((*NUMBERS, "--panel", "d"), "panel is d, which shows scans"),
-        (("--rms", "20nm"), "needs rms and hurst, and one of"),
+        (("--rms", "20nm"), "needs rms, hurst, and either"),
         (("--psd", "psd.csv", "--psd-kind", "3d"), "--psd-kind is '3d'; it must be '1d'"),
     ],
 )
