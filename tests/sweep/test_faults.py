@@ -124,7 +124,7 @@ def test_ten_kills_at_random_moments_lose_nothing_that_was_stored(
     for _ in range(10):
         with subprocess.Popen(told, stdout=subprocess.DEVNULL, process_group=0) as process:
             try:
-                process.wait(rng.uniform(1, 8))
+                process.wait(rng.uniform(1, 3))
             except subprocess.TimeoutExpired:
                 process.kill()
         assert_whole(folder)
@@ -255,7 +255,7 @@ def test_a_disk_that_is_full_when_all_has_run_costs_no_simulation(configuration,
     folder, filler = small_disk / "out", small_disk / "filler"
     sweep, store = load_sweep(configuration), Store(folder)
     runs = [(one, [*sweep.simulations(one.item)]) for one in sweep.shards()]
-    for _ in run_and_store(store, runs, provenance(), 0.1):
+    for _ in run_and_store(store, runs, provenance(), 0.3):
         pass
     subprocess.run(["dd", "if=/dev/zero", f"of={filler}"], capture_output=True, check=False)
     result = run_command("simulate", configuration, "--output", folder)
