@@ -279,7 +279,7 @@ def test_simulations_without_a_value_are_counted_and_too_many_fail(tmp_path):
         assert ("failed_fraction of the configuration allows 0.1" in result.stderr) == bool(code)
         table = xr.load_dataset(tmp_path / "hysteresis.nc")
         assert set(table["status_sentence"].values.flat) == {Status.STEP_LIMIT.value}
-        assert "has a value" in refused("fit", limited, "--output", tmp_path)
+        assert "8 simulations" in refused("fit", limited, "--output", tmp_path)
 
 
 def test_missing_input_of_the_later_steps_is_refused(tmp_path):
