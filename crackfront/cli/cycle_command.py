@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import click
 
 from crackfront.cli.answers import StoppedError, announce_compilation, announce_cost, echo_answer
-from crackfront.cli.output_files import refuse_foreign_netcdf, refuse_overwriting, refuse_unwritable
+from crackfront.cli.output_files import check_overwriting, check_replaced_netcdf, check_writable
 from crackfront.cli.parameters import FILE, Number, as_json, examples, whole
 from crackfront.core.arguments import regular_file
 from crackfront.core.bounds import (
@@ -171,7 +171,7 @@ def cycle(
     from crackfront.surfaces.straight_front import straight_front
     from crackfront.surfaces.surface_array import read_field
 
-    _refuse_outputs(field_file, output, figure)
+    _check_outputs(field_file, output, figure)
     solution = named_solver(solver, DEFAULT_TOLERANCE)
     surface = read_field(field_file)
     pressed = surface if spring is None else straight_front(surface, spring)
@@ -202,17 +202,17 @@ def cycle(
         raise click.ClickException(f"at {end} {recorder.status.value}")
 
 
-def _refuse_outputs(field_file: Path, output: Path, figure: Path | None) -> None:
+def _check_outputs(field_file: Path, output: Path, figure: Path | None) -> None:
     """Raise if an output cannot be written, or would overwrite a file of something else."""
     from crackfront.simulate.cycle_files import checkpoint_path
-    from crackfront.simulate.storage import refuse_no_file
+    from crackfront.simulate.storage import check_regular_file
 
-    refuse_no_file(output)
+    check_regular_file(output)
     written = {"--output": output, "--figure": figure, "the checkpoint": checkpoint_path(output)}
-    refuse_overwriting([field_file], written)
-    refuse_foreign_netcdf("--output", output)
+    check_overwriting([field_file], written)
+    check_replaced_netcdf("--output", output)
     for path in (output, figure or output):
-        refuse_unwritable(path.parent)
+        check_writable(path.parent)
 
 
 def _recorded(

@@ -10,7 +10,7 @@ import click
 
 from crackfront.cli.answers import echo_answer
 from crackfront.cli.parameters import as_json, examples
-from crackfront.core.bounds import LENGTH, refuse_outside
+from crackfront.core.bounds import LENGTH, check_within
 
 if TYPE_CHECKING:
     from crackfront.analysis.estimate import Estimate
@@ -162,5 +162,5 @@ def _shape(text: str) -> SelfAffineSpectrum:
             "0.005,0.1,0.3, or the cutoff of a flat spectrum"
         ) from error
     for length in (short_cutoff, roll_off):
-        refuse_outside("--spectrum: a wavelength", length, LENGTH)
+        check_within("--spectrum: a wavelength", length, LENGTH)
     return SelfAffineSpectrum(short_cutoff, roll_off, hurst)

@@ -9,8 +9,15 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from crackfront.cli.answers import echo_json
-from crackfront.cli.output_files import refuse_overwriting, refuse_unwritable
-from crackfront.cli.parameters import FILE, Number, as_json, examples, options_of, refuse_without
+from crackfront.cli.output_files import check_overwriting, check_writable
+from crackfront.cli.parameters import (
+    FILE,
+    Number,
+    as_json,
+    check_needed_option,
+    examples,
+    options_of,
+)
 from crackfront.core.bounds import Range
 from crackfront.measured.options import (
     ReadingOptions,
@@ -136,10 +143,10 @@ def loop(
         raise ValueError("a prediction for --scans needs w_int; give --work-of-adhesion")
     reading = _reading(scans, options)
     rig = {name: options[name] for name in options if name not in ReadingOptions.model_fields}
-    refuse_without(context, "modulus", "poisson")
-    refuse_overwriting([path, *scans], {"--figure": figure})
+    check_needed_option(context, "modulus", "poisson")
+    check_overwriting([path, *scans], {"--figure": figure})
     if figure is not None:
-        refuse_unwritable(figure.parent)
+        check_writable(figure.parent)
     contact_modulus = None if modulus is None else modulus / (1 - poisson**2)
     if is_netcdf(path):
         if names := [name for name, value in rig.items() if value]:

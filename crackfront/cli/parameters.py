@@ -82,7 +82,7 @@ def options_of(record: type[Options], *, required: bool = False) -> Callable[[Co
     return decorated
 
 
-def refuse_without(context: click.Context, needed: str, *names: str) -> None:
+def check_needed_option(context: click.Context, needed: str, *names: str) -> None:
     """Raise ValueError if an option is given without another one that it needs."""
     if not context.params[needed]:
         for name in names:
@@ -90,7 +90,7 @@ def refuse_without(context: click.Context, needed: str, *names: str) -> None:
                 raise ValueError(f"{_option(name)} has an effect only with {_option(needed)}")
 
 
-def refuse_together(context: click.Context, other: str, *names: str) -> None:
+def check_together(context: click.Context, other: str, *names: str) -> None:
     """Raise ValueError if an option is given with another one that leaves it without effect."""
     if context.params[other]:
         for name in names:

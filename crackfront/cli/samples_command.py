@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from crackfront.cli.output_files import refuse_foreign_table, refuse_overwriting, refuse_unwritable
-from crackfront.cli.parameters import FILE, examples, options_of, refuse_together
+from crackfront.cli.output_files import check_overwriting, check_replaced_table, check_writable
+from crackfront.cli.parameters import FILE, check_together, examples, options_of
 from crackfront.measured.options import PredictionOptions, ReadingOptions, SphereOptions
 
 if TYPE_CHECKING:
@@ -75,15 +75,15 @@ def samples(
     """
     from crackfront.measured.samples.sample import read_samples
 
-    refuse_together(context, "no_figure", "figure", "quantity")
-    refuse_overwriting([path], {"--csv": table, "--figure": figure})
-    refuse_foreign_table("--csv", table, "sample")
+    check_together(context, "no_figure", "figure", "quantity")
+    check_overwriting([path], {"--csv": table, "--figure": figure})
+    check_replaced_table("--csv", table, "sample")
     stem = Path("results/samples", path.stem)
     table = table or stem.with_name(f"{stem.name}.csv")
     common = {name: value for name, value in options.items() if value not in (None, ())}
     series = read_samples(path, common)
     if not no_figure:
-        refuse_unwritable((figure or stem).parent)
+        check_writable((figure or stem).parent)
     found = write_samples(table, series, "sample")
     refused = [one.sample.name for one in found if one.outcome == "refused"]
     if refused:
@@ -101,12 +101,12 @@ def samples(
 def write_samples(path: Path, samples: Sequence[Sample], first: str) -> list[SampleResult]:
     """Write a table with a row for each sample, as soon as it is known; - is standard output."""
     from crackfront.measured.samples.sample_results import predicted_samples
-    from crackfront.simulate.storage import refuse_no_file, write_text
+    from crackfront.simulate.storage import check_regular_file, write_text
 
     is_printed, found = str(path) == "-", []
     if not is_printed:
-        refuse_no_file(path)
-        refuse_unwritable(path.parent)
+        check_regular_file(path)
+        check_writable(path.parent)
     text = ""
     for one in predicted_samples(samples):
         click.echo(_line(one), err=is_printed)

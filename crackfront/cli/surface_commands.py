@@ -10,18 +10,18 @@ import click
 
 from crackfront.cli.answers import announce_compilation, echo_answer, echo_json
 from crackfront.cli.output_files import (
-    refuse_foreign_netcdf,
-    refuse_foreign_table,
-    refuse_overwriting,
-    refuse_unwritable,
+    check_overwriting,
+    check_replaced_netcdf,
+    check_replaced_table,
+    check_writable,
 )
 from crackfront.cli.parameters import (
     FILE,
     as_json,
+    check_needed_option,
+    check_together,
     examples,
     options_of,
-    refuse_together,
-    refuse_without,
     whole,
 )
 from crackfront.cli.samples_command import exit_code, write_samples
@@ -158,12 +158,12 @@ def predict(
     scales = _scales(options)
     given = checked_options(PredictionOptions, options, "--")
     name = _origin(scans, psd, options)
-    refuse_without(context, "simulate", "realisations", "seed")
-    refuse_together(context, "no_figure", "figure", "panel")
-    refuse_together(context, "as_json", "is_long")
+    check_needed_option(context, "simulate", "realisations", "seed")
+    check_together(context, "no_figure", "figure", "panel")
+    check_together(context, "as_json", "is_long")
     inputs = scans if psd is None else (psd,)
-    refuse_overwriting(inputs, {"--csv": table, "--figure": figure})
-    refuse_foreign_table("--csv", table, "scan")
+    check_overwriting(inputs, {"--csv": table, "--figure": figure})
+    check_replaced_table("--csv", table, "scan")
     if table is not None:
         if not scans:
             raise ValueError("--csv writes a row for each scan; name scans")
@@ -176,7 +176,7 @@ def predict(
         context.exit(max(exit_code(one.outcome, strict) for one in found))
     stem = Path("results/predict", name) if figure is None else figure
     if not no_figure:
-        refuse_unwritable(stem.parent)
+        check_writable(stem.parent)
     surface: Surface = _surface(scans, options) if scans else _stated_surface(psd, options)
     (verdict, prediction), outcome = check_and_predict(surface, scales, given), None
     say: Say = (lambda _: None) if as_json else click.echo
@@ -266,15 +266,15 @@ def surface(scans: tuple[Path, ...], as_json: bool, field: Path | None, **option
 
     is_pressed = any(options[name] is not None for name in SphereOptions.model_fields)
     scales = _scales(options) if is_pressed or field is not None else None
-    refuse_overwriting(scans, {"--field": field})
-    refuse_foreign_netcdf("--field", field)
+    check_overwriting(scans, {"--field": field})
+    check_replaced_netcdf("--field", field)
     if field is not None:
-        from crackfront.simulate.storage import refuse_no_file
+        from crackfront.simulate.storage import check_regular_file
 
         if len(scans) > 1:
             raise ValueError(f"--field takes one scan, not {len(scans)}; name the one to press on")
-        refuse_no_file(field)
-        refuse_unwritable(field.parent)
+        check_regular_file(field)
+        check_writable(field.parent)
     found = _surface(scans, options)
     content = machine_readable(found, scales)
     echo_answer(content, [report_text(found, scales)], as_json=as_json)

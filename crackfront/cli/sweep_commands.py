@@ -15,7 +15,7 @@ import click
 from crackfront.cli.answers import announce_compilation, announce_cost, echo_answer, table, warn
 from crackfront.cli.parameters import FILE, Number, as_json, examples, whole
 from crackfront.core.bounds import COUNT, Range
-from crackfront.core.resources import refuse_beyond_memory
+from crackfront.core.resources import check_memory
 from crackfront.core.words import counted, in_bytes
 
 # The rest is imported where it is used, so that --help does not wait for it.
@@ -234,7 +234,7 @@ def _simulate(
         if inventory.missing:
             costs = _costs(inventory.missing)
             busy = min(workers.n_here, inventory.n_missing)
-            refuse_beyond_memory(
+            check_memory(
                 f"{counted(busy, 'rank')} of {in_bytes(costs['bytes_a_rank'])}",
                 costs["bytes_a_rank"] * busy,
                 "use fewer ranks, coarser numerics or a smaller tile",
@@ -298,11 +298,11 @@ def status(folder: Path, as_json: bool) -> None:
     """
     from crackfront.sweep.inventory import Inventory
     from crackfront.sweep.parameters import load_sweep
-    from crackfront.sweep.results_folder import refuse_older_layout
+    from crackfront.sweep.results_folder import check_layout
     from crackfront.sweep.store import Store
 
     store = Store(folder, warn)
-    refuse_older_layout(folder)
+    check_layout(folder)
     if not store.configuration.is_file():
         raise ValueError(f"{folder} holds no sweep that was begun; name results/<its name>")
     sweep = load_sweep(store.configuration)

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 FieldKind = Literal["roughness", "chemical"]
 
 
-def refuse_unknown_kind(kind: str) -> None:
+def check_kind(kind: str) -> None:
     """Raise if there is no such kind of fields."""
     if kind not in get_args(FieldKind):
         raise ValueError(f"kind is {kind!r}; choose one of {', '.join(get_args(FieldKind))}")

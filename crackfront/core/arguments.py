@@ -19,14 +19,14 @@ _KINDS = {"d": "a folder", "p": "a pipe", "s": "a socket", "c": "a device", "b":
 """What a path names that is no file, by the first letter of its mode."""
 
 
-def refuse_other_type(
+def check_type(
     name: str, value: object, kind: type[Any] | tuple[type[Any], ...], wanted: str
 ) -> None:
     """Raise TypeError if an argument is none of a type, with what is wanted instead.
 
     Examples
     --------
-    >>> refuse_other_type("surface", "scan.ibw", list, "a list of heights")
+    >>> check_type("surface", "scan.ibw", list, "a list of heights")
     Traceback (most recent call last):
     TypeError: surface is 'scan.ibw'; give a list of heights
     """
@@ -34,10 +34,10 @@ def refuse_other_type(
         raise TypeError(f"{name} is {_shown(value)}; give {wanted}")
 
 
-def refuse_no_numbers(**values: object) -> None:
+def check_numbers(**values: object) -> None:
     """Raise TypeError if one of some arguments is no number."""
     for name, value in values.items():
-        refuse_other_type(name, value, Real, "a number")
+        check_type(name, value, Real, "a number")
 
 
 def nearest_name(name: str, known: Iterable[str], otherwise: str = "choose one of") -> str:

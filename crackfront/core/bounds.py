@@ -55,12 +55,12 @@ TOLERANCE = Range(1e-16, 1.0)
 """Force that may be left, relative to w_int per front length."""
 
 
-def refuse_outside(what: str, value: float, bounds: Range, unit: str = "") -> None:
+def check_within(what: str, value: float, bounds: Range, unit: str = "") -> None:
     """Raise a ValueError that names a number if it is not within its bounds.
 
     Examples
     --------
-    >>> refuse_outside("spring", 1e300, LENGTH)
+    >>> check_within("spring", 1e300, LENGTH)
     Traceback (most recent call last):
     ValueError: spring is 1e+300; it must lie between 1e-09 and 1e+09
     """

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from crackfront.core.resources import TooLargeError, refuse_beyond_memory
+from crackfront.core.resources import TooLargeError, check_memory
 from crackfront.simulate.checksums import (
     DAMAGED_SUFFIX,
     DIGITS_IN_NAME,
@@ -49,15 +49,15 @@ _LOCKING = "HDF5_USE_FILE_LOCKING"
 """Environment variable by which HDF5 opens files without a lock, as the command sets it."""
 
 
-def refuse_failing_system(path: Path, error: Exception) -> None:
+def check_system(path: Path, error: Exception) -> None:
     """Raise an OSError if a file, which HDF5 refused, cannot be read or locked by the system."""
     with path.open("rb", buffering=0) as file:
-        _refuse_without_locks(path, file.fileno(), error)
+        _check_locks(path, file.fileno(), error)
         while file.read(2**24):
             pass
 
 
-def _refuse_without_locks(path: Path, number: int, error: Exception) -> None:
+def _check_locks(path: Path, number: int, error: Exception) -> None:
     """Raise if HDF5 could not lock an open file, with the path in the message."""
     if os.environ.get(_LOCKING, "").upper() in ("FALSE", "0"):
         return
@@ -152,7 +152,7 @@ def replace_atomically(
     just before it is renamed. OSError if the place is none for a file, or the disk is
     full; what was there before stays.
     """
-    refuse_no_file(path)
+    check_regular_file(path)
     path.parent.mkdir(parents=True, exist_ok=True)
     # A name of its own: after a killed controller two writers of one file do happen.
     part = path.with_name(f".{path.stem}-{secrets.token_hex(8)}.part")
@@ -165,13 +165,13 @@ def replace_atomically(
         part.replace(path)
     except Exception as error:
         # What netCDF says of a full disk or of locks names anything but these.
-        _refuse_failing_folder(path, error)
+        _check_folder(path, error)
         raise
     finally:
         part.unlink(missing_ok=True)
 
 
-def refuse_no_file(path: Path) -> None:
+def check_regular_file(path: Path) -> None:
     """Raise an OSError if something stands at a path that is no ordinary file."""
     if path.is_dir():
         raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(path))
@@ -179,7 +179,7 @@ def refuse_no_file(path: Path) -> None:
         raise OSError(errno.EINVAL, "it is a device or pipe, which is not replaced", str(path))
 
 
-def _refuse_failing_folder(path: Path, error: Exception) -> None:
+def _check_folder(path: Path, error: Exception) -> None:
     """Raise if not a mebibyte can be written in the folder of a path, or no file locked there."""
     try:
         with tempfile.TemporaryFile(dir=path.parent) as probe:
@@ -187,7 +187,7 @@ def _refuse_failing_folder(path: Path, error: Exception) -> None:
             probe.flush()
             os.fsync(probe.fileno())
             if not _is_of_system(error):
-                _refuse_without_locks(path, probe.fileno(), error)
+                _check_locks(path, probe.fileno(), error)
     except FileSystemError:
         raise
     except OSError as full:
@@ -217,16 +217,14 @@ def read_dataset(
         with xr.open_dataset(path, engine="netcdf4", decode_times=False) as dataset:
             others = [] if names is None else [name for name in dataset if name not in names]
             chosen = dataset.drop_vars(others)
-            refuse_beyond_memory(
-                f"the variables of {path}", copies * chosen.nbytes, "use smaller ones"
-            )
+            check_memory(f"the variables of {path}", copies * chosen.nbytes, "use smaller ones")
             return chosen.load()
     except (TooLargeError, MemoryError):
         raise
     except Exception as error:  # a damaged file may be wrong in any way
         if _is_of_system(error):
             raise
-        refuse_failing_system(path, error)
+        check_system(path, error)
         raise UnreadableFileError(
             f"{path} is no complete netCDF file; write it again, or name another"
         ) from error

@@ -6,17 +6,17 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from crackfront.core.adhesion import FieldKind, refuse_unknown_kind
-from crackfront.core.arguments import refuse_no_numbers, refuse_other_type
+from crackfront.core.adhesion import FieldKind, check_kind
+from crackfront.core.arguments import check_numbers, check_type
 from crackfront.core.arrays import Array
-from crackfront.core.bounds import NUMBER, Range, refuse_outside
+from crackfront.core.bounds import NUMBER, Range, check_within
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.core.variables import LATERAL, VERTICAL
 from crackfront.simulate.labels import stated_unit
-from crackfront.surfaces.scales import Scales, in_si, refuse_no_scales
+from crackfront.surfaces.scales import Scales, check_scales, in_si
 from crackfront.surfaces.surface_adhesion import (
-    refuse_complex,
-    refuse_strange_mean,
+    check_mean,
+    check_real,
     surface_adhesion,
 )
 from crackfront.surfaces.surface_array import UNEQUAL, spacing, surface_array
@@ -86,26 +86,26 @@ def surface(
     >>> ripples = surface(20 * wave, side="100um", units="nm", sphere=pdms)
     >>> patches = surface(1 + 0.2 * wave, side=4.0, kind="chemical", units="w_int")
     """
-    refuse_unknown_kind(kind)
-    refuse_other_type("units", units, (str, type(None)), "the name of a unit")
+    check_kind(kind)
+    check_type("units", units, (str, type(None)), "the name of a unit")
     if isinstance(values, xr.DataArray):
         values, units = _stated(values, units)
     samples = _samples(values)
     length = _reduced_side(side, sphere)
     if isinstance(values, xr.DataArray):
-        _refuse_other_side(values, side, sphere)
+        _check_side(values, side, sphere)
     unit = units or ("reduced" if sphere is None else _SI[kind])
     array = surface_array(kind, _unit(kind, unit, sphere) * samples, length / len(samples))
     if kind == "chemical":
         stated = "" if unit in _REDUCED[kind] else f"{float(np.mean(samples)):.4g} {unit}"
-        refuse_strange_mean(array.values, unit, stated)
+        check_mean(array.values, unit, stated)
     surface_adhesion(array)
     return array
 
 
 def _samples(values: ArrayLike) -> Array:
     """Values of a tile, NaN where they are masked."""
-    refuse_complex(values)
+    check_real(values)
     try:
         samples: Array = np.ma.array(values, dtype=float).filled(np.nan)
     except (TypeError, ValueError) as error:
@@ -118,12 +118,12 @@ def _samples(values: ArrayLike) -> Array:
 def _reduced_side(side: float | str, sphere: Scales | None) -> float:
     """Side of a tile in reduced lateral lengths."""
     if sphere is None:
-        refuse_no_numbers(side=side)
-        refuse_outside("side", float(side), NUMBER)
+        check_numbers(side=side)
+        check_within("side", float(side), NUMBER)
         return float(side)
-    refuse_no_scales(sphere)
+    check_scales(sphere)
     metres = in_si("side", side, "m")
-    refuse_outside("side", metres, _SIDES, "m")
+    check_within("side", metres, _SIDES, "m")
     return metres / sphere.lateral
 
 
@@ -160,7 +160,7 @@ def _stated(values: xr.DataArray, units: str | None) -> tuple[xr.DataArray, str 
     return values, stated
 
 
-def _refuse_other_side(values: xr.DataArray, side: float | str, sphere: Scales | None) -> None:
+def _check_side(values: xr.DataArray, side: float | str, sphere: Scales | None) -> None:
     """Raise ValueError if coordinates of an array span another side, or pixels are not square."""
     wanted = float(side) if sphere is None else in_si("side", side, "m")
     for name in ("x", "y"):

@@ -6,7 +6,7 @@ import xarray as xr
 
 from crackfront.analysis.table import SweepAxes, SweepRow
 from crackfront.core.adhesion import FieldKind
-from crackfront.core.arguments import refuse_other_type
+from crackfront.core.arguments import check_type
 from crackfront.core.cycle.record import CycleRecord
 from crackfront.core.geometry.sphere import ContactState, sphere
 from crackfront.core.spectrum import Spectrum
@@ -70,7 +70,7 @@ def reduced_unit(name: str) -> str:
     )
 
 
-def refuse_other_units(data: xr.DataArray | xr.Dataset) -> None:
+def check_units(data: xr.DataArray | xr.Dataset) -> None:
     """Raise ValueError if a variable is unknown or not in reduced units; places need no units."""
     dataset = as_dataset(data)
     if attributes_sphere(data.attrs, CONVERTED_FOR) is not None:
@@ -99,7 +99,7 @@ def as_dataset(
     """
     if isinstance(data, xr.Dataset):
         return data
-    refuse_other_type(name, data, xr.DataArray, wanted)
+    check_type(name, data, xr.DataArray, wanted)
     if data.name is None:
         raise ValueError(
             "the array has no name; give it one that says what its values are, as in "

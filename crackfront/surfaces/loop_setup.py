@@ -23,19 +23,19 @@ from itertools import pairwise
 from numbers import Integral
 
 from crackfront.analysis.steady_adhesion import SteadyAdhesion
-from crackfront.core.arguments import refuse_no_numbers, refuse_other_type
+from crackfront.core.arguments import check_numbers, check_type
 from crackfront.core.arrays import Array
 from crackfront.core.bounds import (
     DENSITY,
     NUMBER,
     SITES,
     Range,
-    refuse_outside,
+    check_within,
 )
 from crackfront.core.cycle.follow import Load
 from crackfront.core.cycle.record import CycleRecord
 from crackfront.core.field.fields import TileField
-from crackfront.surfaces.random_surface import refuse_no_fraction
+from crackfront.surfaces.random_surface import check_fraction
 from crackfront.surfaces.tile_measures import TileMeasures
 
 
@@ -91,7 +91,7 @@ class LoopNumerics:
 
     def __post_init__(self) -> None:
         if self.error is not None:
-            refuse_no_fraction("error", self.error)
+            check_fraction("error", self.error)
         for name, value in (("sites", self.sites), ("samples", self.samples)):
             if value is not None and self.error is not None:
                 raise ValueError(
@@ -99,11 +99,11 @@ class LoopNumerics:
                     "or the error"
                 )
         if self.sites is not None:
-            refuse_other_type("sites", self.sites, Integral, "a whole number")
-            refuse_outside("sites", self.sites, SITES)
+            check_type("sites", self.sites, Integral, "a whole number")
+            check_within("sites", self.sites, SITES)
         if self.samples is not None:
-            refuse_no_numbers(samples=self.samples)
-            refuse_outside("samples", self.samples, DENSITY)
+            check_numbers(samples=self.samples)
+            check_within("samples", self.samples, DENSITY)
 
     @property
     def by_pixels(self) -> bool:
@@ -162,7 +162,7 @@ _SAMPLES = 2.0
 """Samples per correlation length of w_loc below which they miss its waves."""
 
 
-def refuse_few_samples(
+def check_samples(
     numerics: LoopNumerics, pixel: float, measures: TileMeasures, least: float = 0.0
 ) -> None:
     """Raise if the given samples a pixel miss waves of a tile, or are below the least.
@@ -188,7 +188,7 @@ def load_values(loads: Iterable[float | str]) -> tuple[float, ...]:
             found.append(float(given))
         except (TypeError, ValueError):
             raise ValueError(f"a load is {given!r}; write numbers alone") from None
-        refuse_outside("a load", found[-1], Range(-NUMBER.most, NUMBER.most))
+        check_within("a load", found[-1], Range(-NUMBER.most, NUMBER.most))
     if not found:
         raise ValueError("there are no loads; give one or more")
     return tuple(found)

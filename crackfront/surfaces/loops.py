@@ -13,14 +13,14 @@ from xarray import DataArray, Dataset
 from crackfront.analysis.estimate import with_error
 from crackfront.analysis.steady_adhesion import SteadyAdhesion, SteadyMeasures
 from crackfront.analysis.table import SweepAxes, SweepRow
-from crackfront.core.arguments import refuse_no_numbers, refuse_other_type
+from crackfront.core.arguments import check_numbers, check_type
 from crackfront.core.cycle.follow import Load, front_at
 from crackfront.core.cycle.load_schedule import LoadSchedule
 from crackfront.core.cycle.record import CycleRecord, Recorder
 from crackfront.core.cycle.touch import first_touch
 from crackfront.core.geometry.sphere import ContactState
 from crackfront.core.outcome import Direction
-from crackfront.core.resources import refuse_beyond_memory
+from crackfront.core.resources import check_memory
 from crackfront.core.solver import DEFAULT_TOLERANCE
 from crackfront.core.solver.relax import Newton, named_solver
 from crackfront.core.variables import variables
@@ -128,11 +128,11 @@ def run_loop(
     ('step', 'y')
     """
     numbers = {"max_penetration": max_penetration, "step": step}
-    refuse_no_numbers(**{name: one for name, one in numbers.items() if one is not None})
+    check_numbers(**{name: one for name, one in numbers.items() if one is not None})
     for name, value in (("fronts", fronts), ("energy", energy)):
-        refuse_other_type(name, value, bool, "True or False")
+        check_type(name, value, bool, "True or False")
     if not callable(progress):
-        refuse_other_type("progress", progress, type(None), "a function of a state")
+        check_type("progress", progress, type(None), "a function of a state")
     visited = None if loads is None else load_values(loads)
     if visited is None and max_penetration is None and not isinstance(surface, LoopContact):
         max_penetration = 1.0
@@ -142,7 +142,7 @@ def run_loop(
     contact = loop_contact(surface, max_penetration)
     setup = contact.setup(visited, step, LoopNumerics(error, sites, samples))
     if fronts:
-        refuse_beyond_memory(
+        check_memory(
             f"{setup.expected} fronts of {setup.front.size} sites",
             8.0 * setup.expected * setup.front.size,
             "set fronts=False, or take larger steps or a smaller max_penetration",
@@ -272,7 +272,7 @@ def find_instabilities(
         )
     if direction not in get_args(Direction):
         raise ValueError(f"direction is {direction!r}; give 1 for approach or -1 for retraction")
-    refuse_no_numbers(max_penetration=max_penetration, step=step, travel=travel)
+    check_numbers(max_penetration=max_penetration, step=step, travel=travel)
     schedule = LoadSchedule(max_penetration, step)
     if not 0 < travel < math.inf:
         raise ValueError(f"travel is {travel:g}; it must be positive and finite")
@@ -281,13 +281,13 @@ def find_instabilities(
     reach = travel * contact.measures.correlation_length
     if precision is None:
         precision = min(2e-5, step / 10, max(reach**2, _round_off(contact)))
-    refuse_no_numbers(precision=precision)
+    check_numbers(precision=precision)
     if not 0 < precision <= step / 10:
         raise ValueError(
             f"precision is {precision:g}; it must be positive, and at most a tenth of the step, "
             f"{step / 10:g}"
         )
-    _refuse_unresolved_motion(contact, travel, precision, direction)
+    _check_resolved_motion(contact, travel, precision, direction)
     field, solver = contact.field, Newton(min(contact.tolerance, precision / 10))
     start = 0.0 if direction > 0 else max_penetration
     touched = front_at(field, first_touch(field), Load(start, 1), solver)
@@ -316,7 +316,7 @@ _PULL_OFF = 1.5
 curvature of the penetration in the radius. (Units: reduced lengths)"""
 
 
-def _refuse_unresolved_motion(
+def _check_resolved_motion(
     contact: LoopSetup, travel: float, precision: float, direction: Direction
 ) -> None:
     """Raise if round-off hides steps of a precision, or if smooth motion counts as a jump."""

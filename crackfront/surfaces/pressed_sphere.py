@@ -24,7 +24,7 @@ from crackfront.surfaces.loop_setup import (
     LoopContact,
     LoopNumerics,
     LoopSetup,
-    refuse_few_samples,
+    check_samples,
     remark_on_mean,
     remark_on_sites,
     state_count,
@@ -96,7 +96,7 @@ class PressedSphere(LoopContact):
             n_sample=4 * samples * radius / adhesion.pixel,
         )
         measures, simulation = tile_measures(adhesion), None
-        refuse_few_samples(numerics, adhesion.pixel, measures)
+        check_samples(numerics, adhesion.pixel, measures)
         spectrum = stated_spectrum(self.surface)
         if spectrum is None and numerics.error is not None:
             raise ValueError(

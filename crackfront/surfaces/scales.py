@@ -9,7 +9,7 @@ from numbers import Real
 from typing import Any
 
 from crackfront.core import units
-from crackfront.core.arguments import refuse_other_type
+from crackfront.core.arguments import check_type
 from crackfront.surfaces.written_units import si_value
 
 CONVERTED_FOR = "sphere_"
@@ -62,14 +62,14 @@ def in_si(name: str, value: float | str, unit: str) -> float:
     """Value in SI of an argument that is a number or a text with a unit."""
     if isinstance(value, str):
         return si_value(value, unit, what=name)
-    refuse_other_type(name, value, Real, f"a number of {unit}, or a text with a unit")
+    check_type(name, value, Real, f"a number of {unit}, or a text with a unit")
     return float(value)
 
 
-def refuse_no_scales(sphere: object) -> None:
+def check_scales(sphere: object) -> None:
     """Raise TypeError if an argument is not a sphere."""
     wanted = "crackfront.Scales(radius, work_of_adhesion, contact_modulus)"
-    refuse_other_type("sphere", sphere, units.Scales, wanted)
+    check_type("sphere", sphere, units.Scales, wanted)
 
 
 def sphere_attributes(sphere: units.Scales) -> dict[str, float]:

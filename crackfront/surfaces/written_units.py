@@ -8,7 +8,7 @@ import re
 import unicodedata
 from typing import Any
 
-from crackfront.core.bounds import SI, refuse_outside
+from crackfront.core.bounds import SI, check_within
 
 _QUANTITY = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(\S.*?)?\s*")
 """A number and what stands behind it."""
@@ -80,7 +80,7 @@ def si_value(text: str, unit: str, *, what: str) -> float:
         raise ValueError(
             f"{what} is {text!r}, {value:g} Pa, too soft to be solid; was {meant!r} meant?"
         )
-    refuse_outside(what, value, SI[unit], unit)
+    check_within(what, value, SI[unit], unit)
     return value
 
 

@@ -122,7 +122,7 @@ def ranks() -> Iterator[Ranks | None]:
     if not is_launched():
         yield ALONE
         return
-    _refuse_small_shared_memory()
+    _check_shared_memory()
     from mpi4py import MPI
     from mpi4py.futures import MPICommExecutor
 
@@ -148,7 +148,7 @@ def ranks() -> Iterator[Ranks | None]:
         yield None if pool is None else Ranks(pool, max(1, n_here - 1))
 
 
-def _refuse_small_shared_memory() -> None:
+def _check_shared_memory() -> None:
     """Raise ValueError if MPI has too little memory for messages, as in small containers."""
     with contextlib.suppress(OSError):
         size = shutil.disk_usage(_SHARED_MEMORY).total

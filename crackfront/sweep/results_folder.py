@@ -26,7 +26,7 @@ SOURCE = "configuration.path"
 """File of a results folder that states the path of its configuration, relative to the folder."""
 
 
-def refuse_older_layout(results: Path) -> None:
+def check_layout(results: Path) -> None:
     """Raise ConfigurationError if results are of a version that kept curves in tar files."""
     if any((results / "curves").glob("*.tar")):
         raise ConfigurationError(
@@ -35,7 +35,7 @@ def refuse_older_layout(results: Path) -> None:
         )
 
 
-def refuse_other_configuration(path: Path, results: Path) -> None:
+def check_configuration(path: Path, results: Path) -> None:
     """Raise ConfigurationError if results are those of another configuration that is still there.
 
     Two configurations of one name in two folders would share one folder of results.

@@ -27,7 +27,7 @@ from crackfront.core.bounds import (
 )
 
 
-def refusal(message: str) -> PydanticCustomError:
+def section_error(message: str) -> PydanticCustomError:
     """A refusal that keeps its own sentence."""
     return PydanticCustomError("section", "{message}", {"message": message})
 

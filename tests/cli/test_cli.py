@@ -622,7 +622,7 @@ def test_a_full_disk_is_told_as_that_whatever_netcdf_says(smooth_tile, tmp_path,
 
     monkeypatch.setattr(xr.Dataset, "to_netcdf", write)
     module = sys.modules["crackfront.cli.cycle_command"]
-    monkeypatch.setattr(module, "refuse_unwritable", lambda folder: None)
+    monkeypatch.setattr(module, "check_writable", lambda folder: None)
     monkeypatch.setattr("crackfront.simulate.storage.tempfile.TemporaryFile", full)
     options = ("--field", smooth_tile, "--max-penetration", "0.1", "--step", "0.1")
     sentence = refused("cycle", *options, "--output", tmp_path / "cycle.nc")

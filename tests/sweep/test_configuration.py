@@ -671,7 +671,7 @@ def test_shards_of_a_measured_spectrum_change_with_the_file(tmp_path):
     [
         (
             with_surface(scales=""),
-            "spectrum 'film' is that of a surface in metres; give the section scales",
+            "spectrum 'film' describes a surface in metres; give the section scales",
         ),
         (
             with_surface(
@@ -680,7 +680,7 @@ def test_shards_of_a_measured_spectrum_change_with_the_file(tmp_path):
                     "{elastic_energy": "{work_of_adhesion_rms",
                 }
             ),
-            "spectrum 'film' is that of heights; field must be roughness",
+            "spectrum 'film' is the spectrum of heights; field must be roughness",
         ),
         (
             with_surface(MEASURED.rstrip() + "\n    hurst: 0.8\n"),

@@ -24,8 +24,8 @@ from crackfront.core.field.fields import (
     Interpolation,
     RayField,
     TileField,
-    refuse_unknown_interpolation,
-    refuse_unusable,
+    check_field_values,
+    check_interpolation,
     tile_field,
 )
 from crackfront.core.geometry import base
@@ -194,7 +194,7 @@ def polar_field(
         If shapes disagree, radii do not increase or are negative, fewer than two samples, or two
         or three angles are given, a value is not finite, or the interpolation is unknown.
     """
-    refuse_unknown_interpolation(interpolation)
+    check_interpolation(interpolation)
     radii = np.asarray(radii, dtype=float)
     values = np.asarray(work_of_adhesion, dtype=float)
     if radii.ndim != 1 or values.ndim not in (1, 2) or values.shape[0] != radii.size:
@@ -204,7 +204,7 @@ def polar_field(
         )
     if not np.all(np.isfinite(radii)) or np.any(np.diff(radii) <= 0) or np.any(radii < 0):
         raise ValueError("radii must be finite, not negative and strictly increasing; sort them")
-    refuse_unusable(values, names=("radius", "angle")[: values.ndim])
+    check_field_values(values, names=("radius", "angle")[: values.ndim])
     rays = np.atleast_2d(values.T)
     if radii[0] == 0:
         radii, rays = radii[1:], rays[:, 1:]

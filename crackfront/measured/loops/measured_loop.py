@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from xarray import DataArray, Dataset
 
-from crackfront.core.arguments import refuse_no_numbers, refuse_other_type
+from crackfront.core.arguments import check_numbers, check_type
 from crackfront.core.arrays import Array
 from crackfront.measured.loops.analysis import analyse_loop
 from crackfront.measured.loops.recording import UNITS, Recording, read_recording
@@ -92,12 +92,12 @@ def measured_loop(
             window=window,
         )
         return simulated_loop(loop)
-    refuse_other_type(
+    check_type(
         "loop", loop, (str, PathLike, Mapping), "the path of a table, or arrays by their names"
     )
     if radius is None:
         raise ValueError("a measured loop does not state its sphere; give its radius in metres")
-    refuse_no_numbers(modulus_error=modulus_error, radius_error=radius_error)
+    check_numbers(modulus_error=modulus_error, radius_error=radius_error)
     rig = Rig(
         radius=in_si("radius", radius, "m"),
         contact_modulus=_optional("contact_modulus", contact_modulus, "Pa"),
@@ -131,7 +131,7 @@ def _optional(name: str, value: float | str | None, unit: str) -> float | None:
 
 def _window(window: tuple[float | str, float | str]) -> tuple[float, float]:
     """Contact radii of a window (Units: m)."""
-    refuse_other_type("window", window, (tuple, list), "a pair of contact radii")
+    check_type("window", window, (tuple, list), "a pair of contact radii")
     if len(window) != 2:
         raise ValueError(f"window has {len(window)} values; give two contact radii")
     first, last = (in_si("a contact radius of window", end, "m") for end in window)

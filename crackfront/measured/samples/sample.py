@@ -167,7 +167,7 @@ def scans_as_samples(
 
 def _sample(folder: Path, row: Mapping[str, Any], common: Mapping[str, Any]) -> Sample:
     """Sample of a row; relative paths begin in the folder of the table."""
-    _refuse_unknown_columns(row)
+    _check_columns(row)
     if "mask" in row:
         row = {**row, "mask": _masks(folder, row["mask"])}
     options = {**common, **row}
@@ -175,13 +175,13 @@ def _sample(folder: Path, row: Mapping[str, Any], common: Mapping[str, Any]) -> 
     if stated.sample is None:
         raise ValueError("there is no name; write it in the column 'sample'")
     numbers = checked_options(SelfAffineOptions, row)
-    _refuse_several_surfaces(stated, row)
+    _check_single_surface(stated, row)
     if named_options(SelfAffineOptions, row):
         self_affine_surface_of(numbers)
     if not stated.scans:
-        _refuse_without_effect(ReadingOptions, "scans", row, common)
+        _check_effect(ReadingOptions, "scans", row, common)
     if stated.psd is None:
-        _refuse_without_effect(PsdOptions, "psd", row, common)
+        _check_effect(PsdOptions, "psd", row, common)
     scans = tuple(file for name in stated.scans for file in _files(folder, name))
     return Sample(
         name=stated.sample,
@@ -197,7 +197,7 @@ def _sample(folder: Path, row: Mapping[str, Any], common: Mapping[str, Any]) -> 
     )
 
 
-def _refuse_unknown_columns(row: Mapping[str, Any]) -> None:
+def _check_columns(row: Mapping[str, Any]) -> None:
     """Raise at a column that is not an option."""
     names = [name for record in _RECORDS for name in record.model_fields]
     for name in row:
@@ -206,7 +206,7 @@ def _refuse_unknown_columns(row: Mapping[str, Any]) -> None:
             raise ValueError(f"there is no column {name!r}; {hint}")
 
 
-def _refuse_several_surfaces(stated: SampleOptions, row: Mapping[str, Any]) -> None:
+def _check_single_surface(stated: SampleOptions, row: Mapping[str, Any]) -> None:
     """Raise unless a row has exactly one of scans, density and numbers."""
     ways = {
         "scans": bool(stated.scans),
@@ -218,7 +218,7 @@ def _refuse_several_surfaces(stated: SampleOptions, row: Mapping[str, Any]) -> N
         raise ValueError(f"the surface is given by {named}; name its scans, or its psd, or its rms")
 
 
-def _refuse_without_effect(
+def _check_effect(
     record: type[Options], way: str, row: Mapping[str, Any], common: Mapping[str, Any]
 ) -> None:
     """Raise at an option of scans, or of a density, of a sample that is given in another way."""

@@ -10,7 +10,7 @@ from typing import Any
 from ruamel.yaml import YAML
 from ruamel.yaml.error import MarkedYAMLError
 
-from crackfront.measured.scan.scan_files import refuse_unreadable
+from crackfront.measured.scan.scan_files import check_readable
 from crackfront.measured.tables.cells import decimal_sign, is_number
 from crackfront.measured.tables.headed_table import table_of_texts
 from crackfront.measured.tables.headings import Heading, heading
@@ -49,7 +49,7 @@ def sample_rows(path: Path) -> list[tuple[int, dict[str, Any]]]:
     OSError
         If the file cannot be opened.
     """
-    refuse_unreadable(path)
+    check_readable(path)
     return list(_yaml_rows(path) if path.suffix.lower() in _YAML else _table_rows(path))
 
 
@@ -67,7 +67,7 @@ def _table_rows(path: Path) -> Iterator[tuple[int, dict[str, Any]]]:
     ]
     has_decimal_commas = table.separator != ","
     if has_decimal_commas:
-        _refuse_other_numbers(table, rows)
+        _check_decimal_signs(table, rows)
     units = dict(columns)
     for line, row in zip(table.lines, rows, strict=True):
         for name, cell in row.items():
@@ -77,7 +77,7 @@ def _table_rows(path: Path) -> Iterator[tuple[int, dict[str, Any]]]:
         yield line, row
 
 
-def _refuse_other_numbers(table: Table, rows: Sequence[dict[str, str]]) -> None:
+def _check_decimal_signs(table: Table, rows: Sequence[dict[str, str]]) -> None:
     """Raise if numbers have two decimal signs, or commas that may all separate thousands."""
     numbers = list(_numbers(table, rows))
     decimal_sign(table.path, ((line, [cell]) for line, _, cell in numbers))

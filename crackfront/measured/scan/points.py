@@ -127,7 +127,7 @@ def _texts(numbers: Array) -> Cells:
     return np.array(list(map(repr, np.asarray(numbers, dtype=float).tolist())), dtype=object)
 
 
-def refuse_positions(table: Table) -> None:
+def check_no_positions(table: Table) -> None:
     """Raise where the first column, or the first row, of a matrix has positions for heights."""
     cells = table.cells.to_numpy()
     if min(cells.shape) < 2 or len(cells) < _FEWEST_POSITIONS:

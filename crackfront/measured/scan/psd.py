@@ -17,7 +17,7 @@ import numpy as np
 from crackfront.core.arrays import Array
 from crackfront.measured.options import PsdOptions
 from crackfront.measured.scan.psd_convention import stated_convention
-from crackfront.measured.scan.scan_files import checksum, refuse_unreadable
+from crackfront.measured.scan.scan_files import check_readable, checksum
 from crackfront.measured.tables.number_tables import number_tables
 from crackfront.measured.tables.table import Table
 
@@ -75,7 +75,7 @@ def read_psd_file(path: Path, options: PsdOptions) -> Psd:
     OSError
         If the file cannot be opened.
     """
-    refuse_unreadable(path)
+    check_readable(path)
     text = number_tables(path)
     if text is None:
         raise ValueError(f"{path} has no rows of numbers; export the density as text, as CSV")

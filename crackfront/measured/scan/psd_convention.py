@@ -95,7 +95,7 @@ def stated_convention(series: Table, options: PsdOptions) -> Convention:
             f"{path}: the density has the unit {written!r}, per radian, and the first column "
             f"is a {abscissa}; name both units, as in --psd-units 1/um,um^3"
         )
-    _refuse_other_norm(path, kind, abscissa, options)
+    _check_norm(path, kind, abscissa, options)
     factor, norm = _norm(words, kind, abscissa, options, is_per_radian=is_per_radian)
     assumptions: tuple[str, ...] = ()
     if kind == "1d":
@@ -217,9 +217,7 @@ def _kind(path: Path, words: str, unit: str, options: PsdOptions) -> tuple[PsdKi
     return kind, unit_value(unit, f"m^{power}")
 
 
-def _refuse_other_norm(
-    path: Path, kind: PsdKind, abscissa: PsdAbscissa, options: PsdOptions
-) -> None:
+def _check_norm(path: Path, kind: PsdKind, abscissa: PsdAbscissa, options: PsdOptions) -> None:
     """Raise where the named norm contradicts the kind of the density or its first column."""
     norm = options.psd_norm
     if norm is not None and kind == "q2d":

@@ -34,7 +34,7 @@ _FEWEST_ROWS = 8
 """Rows from which both are judged."""
 
 
-def refuse_spectrum(path: Path, text: NumberTables) -> None:
+def check_no_spectrum(path: Path, text: NumberTables) -> None:
     """Raise if a text of two columns is a spectral density and not a line of heights."""
     n_row = sum(len(table.cells) for table in text.tables)
     if n_row > _MOST_ROWS or not 2 <= text.n_column <= _MOST_COLUMNS:

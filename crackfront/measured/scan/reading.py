@@ -36,7 +36,7 @@ from crackfront.measured.scan.library import (
     surface_library,
 )
 from crackfront.measured.scan.outliers import outliers
-from crackfront.measured.scan.scan_files import checksum, refuse_unreadable
+from crackfront.measured.scan.scan_files import check_readable, checksum
 from crackfront.measured.scan.sides import are_possible_heights, shown_sides
 from crackfront.surfaces.written_units import prefixed
 
@@ -164,7 +164,7 @@ def read_measurements(
 
 def _measurements(path: Path, options: ReadingOptions) -> Iterator[Measurement]:
     """Measurement of one file, or those of a surface in a container that can be used."""
-    refuse_unreadable(path)
+    check_readable(path)
     surfaces = contained_surfaces(path)
     if not surfaces:
         if options.surface is not None:

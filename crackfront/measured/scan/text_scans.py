@@ -13,11 +13,11 @@ from crackfront.measured.scan.points import (
     HeadKind,
     Points,
     are_points,
+    check_no_positions,
     point_columns,
     read_points,
-    refuse_positions,
 )
-from crackfront.measured.scan.psd_recognition import refuse_spectrum
+from crackfront.measured.scan.psd_recognition import check_no_spectrum
 from crackfront.measured.scan.sides import length_unit
 from crackfront.measured.tables.headings import Heading
 from crackfront.measured.tables.number_tables import NumberTables
@@ -47,14 +47,14 @@ def text_reader(path: Path, text: NumberTables) -> Any:
     kind = next((name for begin, name in _HEADS.items() if first_line.startswith(begin)), None)
     headings: tuple[Heading, ...] = ()
     if kind in (None, "comments"):
-        refuse_spectrum(path, text)
+        check_no_spectrum(path, text)
         if places := point_columns(path, table.headings):
             table = table.with_columns(places)
         headings = table.headings
     if kind == "dektak" or are_points(table):
         stated = _stated_head(path, text, kind)
         if stated is not None:
-            text.refuse_several()
+            text.check_single_table()
             unit, factor, info = stated
             if unit is None:
                 unit, factor = _stated_units(path, headings)
@@ -62,7 +62,7 @@ def text_reader(path: Path, text: NumberTables) -> Any:
             grid = Grid("default", Points(points.heights * (factor or 1.0), points.size))
             return GridsReader("xyz", [grid], unit, info)
     for each in text.tables:
-        refuse_positions(each)
+        check_no_positions(each)
     with errors_as_sentences(path, "text"):
         return library_part("IO").AscReader(io.StringIO(text.plain_text))
 

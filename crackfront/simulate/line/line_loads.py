@@ -29,7 +29,7 @@ from crackfront.core.field.fields import TileField, first_place, last_place
 from crackfront.core.geometry.base import Geometry
 from crackfront.core.geometry.line import Line, line_field
 from crackfront.core.outcome import Direction, Status
-from crackfront.core.resources import refuse_beyond_memory
+from crackfront.core.resources import check_memory
 from crackfront.core.solver.relax import Solver
 from crackfront.core.spectrum import Spectrum
 from crackfront.core.units import WORK_OF_ADHESION
@@ -255,7 +255,7 @@ class LineLoad(SurfaceLoads):
             uncorrelated=self.uncorrelated,
         )
 
-    def refuse_unresolved(self, simulation: Simulation) -> None:
+    def check_resolved(self, simulation: Simulation) -> None:
         """Raise ValueError if a Larkin length has few sites, or a period few states."""
         sizes, schedule = simulation.resolution, simulation.schedule
         name, energy = simulation.spectrum_name, simulation.elastic_energy
@@ -282,5 +282,5 @@ def front_rms(force_correlation_length: float, size: float) -> float:
 def _points(least: float) -> int:
     """Points of a side, an even product of small primes; refused where no machine holds them."""
     remedy = "lower length, period, springs or pixels_per_cutoff"
-    refuse_beyond_memory(f"sides of {least:.2g} points", 32.0 * least, remedy, anywhere=True)
+    check_memory(f"sides of {least:.2g} points", 32.0 * least, remedy, anywhere=True)
     return 2 * int(next_fast_len(math.ceil(least / 2 * (1 - 1e-12)), real=True))

@@ -19,7 +19,7 @@ from crackfront.core.adhesion import FieldKind
 from crackfront.core.arrays import Array
 from crackfront.core.cycle.follow import Load
 from crackfront.core.cycle.record import CycleRecord, Recorder, columns
-from crackfront.core.cycle.touch import first_touch, refuse_outgrown
+from crackfront.core.cycle.touch import check_field_size, first_touch
 from crackfront.core.field.fields import Field, first_place, last_place
 from crackfront.core.field.rays import front_adhesion
 from crackfront.core.geometry.sphere import ContactState
@@ -95,7 +95,7 @@ class SteadySchedule(SphereSchedule):
         both branches were measured. The energy that the first step of a branch dissipates has no
         meaning and is NaN. ValueError if a smooth sphere would outgrow the field.
         """
-        refuse_outgrown(problem.field, self.max_penetration)
+        check_field_size(problem.field, self.max_penetration)
         loads = self._loads(problem, recorder)
         recorder.run(problem.field, first_touch(problem.field), loads, solver)
         return recorder.record(Status.STEADY if recorder.status is Status.CONVERGED else None)
