@@ -93,10 +93,10 @@ def special(kind, path):
 @pytest.mark.parametrize("kind", ["a pipe", "a folder", "a device"])
 def test_what_is_no_file_is_named_at_once(tmp_path, kind):
     path = special(kind, tmp_path / "x.yaml")
-    with pytest.raises(ValueError, match=f"x.yaml is {kind}, no file; name a file"):
+    with pytest.raises(ValueError, match=f"x.yaml is {kind}, not a file; name a file"):
         regular_file(path)
-    assert f"is {kind}, no file" in refused("plan", path)
-    assert "x.yaml is no file; check the name" in refused(
+    assert f"is {kind}, not a file" in refused("plan", path)
+    assert "x.yaml is not a file; check the name" in refused(
         *("cycle", "--field", path, "--max-penetration", 1, "--output", tmp_path / "out.nc")
     )
 
@@ -132,7 +132,7 @@ def tile(tmp_path):
     ("options", "sentence"),
     [
         ({"--error": "inf"}, "'--error': inf is not in the range"),
-        ({"--error": "nan"}, "'--error': nan is no number"),
+        ({"--error": "nan"}, "'--error': nan is not a number"),
         ({"--step": 1e-300}, "load steps with 44.8 sites"),
         ({"--step": 1e-15}, "load steps with 44.8 sites and 57.1 samples a ray would need"),
         ({"--max-penetration": 1e15}, "of memory; here are"),
@@ -173,7 +173,7 @@ def test_many_sites_are_announced_with_their_price(tile, tmp_path, monkeypatch):
 @pytest.mark.parametrize("text", ["1e300MPa", "1e-300Pa", "1e16Pa"])
 def test_a_modulus_that_nothing_has_is_refused(text):
     with pytest.raises(ValueError, match=r"modulus is .* Pa; it must lie between 1e-06 and 1e"):
-        si_value(text, "Pa", what="modulus")
+        si_value(text, "Pa", name="modulus")
 
 
 def test_a_surface_that_no_machine_holds_is_refused_before_it_is_made():

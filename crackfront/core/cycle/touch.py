@@ -1,4 +1,4 @@
-"""The front at first contact, and refusals of fields that cannot hold it."""
+"""The front at first contact, and checks that the field is large enough."""
 
 from __future__ import annotations
 

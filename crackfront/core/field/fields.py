@@ -162,7 +162,7 @@ def _mode_coefficients(values: Array) -> Array:
 
 
 def check_interpolation(interpolation: str) -> None:
-    """Raise if there is no such interpolation."""
+    """Raise ValueError if an interpolation is unknown."""
     if interpolation not in get_args(Interpolation):
         kinds = ", ".join(get_args(Interpolation))
         raise ValueError(f"interpolation is {interpolation!r}; choose one of {kinds}")
