@@ -100,15 +100,15 @@ def run_cost(
 def affordable_seconds(*, n_angle: float, n_point: float, n_state: float, n_sample: float) -> float:
     """Rough processor time of a cycle on a given field, in seconds.
 
-    The numbers are those of the sites of the front, the points of the field, the load steps, and
-    the samples that each site passes. TooLargeError if time or memory are more than there is.
+    The arguments count the sites of the front, the points of the field, the load steps, and the
+    samples that each site passes. TooLargeError if time or memory are more than there is.
     """
     cost = run_cost(n_site=n_angle, n_point=n_point, n_state=n_state)
     seconds = cost.seconds + _SAMPLE_SECONDS * n_angle * n_sample
     cycle = f"a cycle of {n_state:.3g} load steps with {n_angle:.3g} sites and"
-    what, remedy = f"{cycle} {n_sample:.3g} samples a ray", "take fewer of them"
-    check_memory(what, cost.memory, remedy)
-    check_time(what, seconds, remedy)
+    task, remedy = f"{cycle} {n_sample:.3g} samples a ray", "take fewer of them"
+    check_memory(task, cost.memory, remedy)
+    check_time(task, seconds, remedy)
     return seconds
 
 

@@ -1,4 +1,4 @@
-"""Files: written whole or not at all, with origin and checksums; read as written, or refused."""
+"""Files: written whole or not at all, with origin and checksums, which reading checks."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ _LOCKING = "HDF5_USE_FILE_LOCKING"
 
 
 def check_system(path: Path, error: Exception) -> None:
-    """Raise an OSError if a file, which HDF5 refused, cannot be read or locked by the system."""
+    """Raise an OSError if the system cannot read or lock a file that HDF5 did not open."""
     with path.open("rb", buffering=0) as file:
         _check_locks(path, file.fileno(), error)
         while file.read(2**24):
@@ -84,7 +84,7 @@ def write_dataset(path: Path, dataset: xr.Dataset, origin: Provenance) -> None:
 
 
 def write_derived(path: Path, dataset: xr.Dataset, origin: Provenance) -> None:
-    """Write a dataset as :func:`write_dataset`, and its checksum into `<path>.sha256` beside it.
+    """Write a dataset as :func:`write_dataset`, and its checksum into `<path>.sha256`.
 
     HDF5 does not check the metadata of a file: a flipped bit there may change what is read, and
     from some damage it never returns. The checksum comes first, so that a new file never appears
@@ -98,7 +98,7 @@ def write_derived(path: Path, dataset: xr.Dataset, origin: Provenance) -> None:
 
 
 def write_named_by_digest(folder: Path, name: str, dataset: xr.Dataset, origin: Provenance) -> Path:
-    """Write a dataset into `<name>-<digest>.nc`, the digest that of its content; return the path.
+    """Write a dataset into `<name>-<digest>.nc`, named by its content; return the path.
 
     So the file and its checksum are renamed into place at once.
     """
@@ -146,7 +146,7 @@ def write_text(path: Path, text: str) -> None:
 def replace_atomically(
     path: Path, write: Callable[[Path], Any], before_renaming: Callable[[Path], Any] | None = None
 ) -> None:
-    """Let a function write a file beside the final one, and rename it once it is on disk.
+    """Let a function write a temporary file, and rename it to the final path once it is on disk.
 
     The folder of the final file is created. Another function may be called with the written file
     just before it is renamed. OSError if the place is none for a file, or the disk is
@@ -172,7 +172,7 @@ def replace_atomically(
 
 
 def check_regular_file(path: Path) -> None:
-    """Raise an OSError if something stands at a path that is no ordinary file."""
+    """Raise an OSError if a path exists and is not an ordinary file."""
     if path.is_dir():
         raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(path))
     if path.exists() and not path.is_file():
@@ -196,7 +196,7 @@ def _check_folder(path: Path, error: Exception) -> None:
 
 
 def _is_of_system(error: Exception) -> bool:
-    """Whether an error has a number of the system; those of netCDF are negative."""
+    """Whether an error has a number of the system; numbers of netCDF are negative."""
     return isinstance(error, OSError) and (error.errno or 0) > 0
 
 
@@ -205,18 +205,18 @@ def read_dataset(
 ) -> xr.Dataset:
     """Dataset of a netCDF file, in memory.
 
-    Variables to read beside the coordinates are those of the names that are there; by default all.
-    `copies` is the memory that is needed at once, relative to that of the variables. TooLargeError
-    if they need more than there is, whatever the file holds of them; UnreadableFileError if there
-    is no such file, it is damaged, or it is no complete netCDF file.
+    `names` are the variables to read in addition to the coordinates, as far as the file has them;
+    by default all. `copies` is the memory needed at once, relative to the size of the variables.
+    TooLargeError if they need more than there is, even if the file stores them compressed;
+    UnreadableFileError if the file is missing, damaged or not a complete netCDF file.
     """
     if not path.is_file():
-        what = "is no file" if path.exists() else "does not exist"
-        raise UnreadableFileError(f"{path} {what}; check the name")
+        problem = "is not a file" if path.exists() else "does not exist"
+        raise UnreadableFileError(f"{path} {problem}; check the name")
     try:
         with xr.open_dataset(path, engine="netcdf4", decode_times=False) as dataset:
-            others = [] if names is None else [name for name in dataset if name not in names]
-            chosen = dataset.drop_vars(others)
+            unused = [] if names is None else [name for name in dataset if name not in names]
+            chosen = dataset.drop_vars(unused)
             check_memory(f"the variables of {path}", copies * chosen.nbytes, "use smaller ones")
             return chosen.load()
     except (TooLargeError, MemoryError):
@@ -226,14 +226,14 @@ def read_dataset(
             raise
         check_system(path, error)
         raise UnreadableFileError(
-            f"{path} is no complete netCDF file; write it again, or name another"
+            f"{path} is not a complete netCDF file; write it again, or name another"
         ) from error
 
 
 def set_aside_if_damaged(path: Path) -> str:
     """Rename a file that does not agree with its stated checksum; a sentence, or nothing if whole.
 
-    The checksum is in the name of the file, or in `<path>.sha256` beside it.
+    The checksum is in the name of the file, or in `<path>.sha256`.
     """
     if is_whole(path):
         return ""
@@ -262,5 +262,5 @@ def read_derived(path: Path, names: Collection[str] | None = None) -> xr.Dataset
 
 
 def read_attributes(path: Path) -> dict[str, Any]:
-    """What a file says of itself; refused as by :func:`read_dataset`."""
+    """What a file says of itself; errors are as in :func:`read_dataset`."""
     return {str(name): value for name, value in read_dataset(path, ()).attrs.items()}
