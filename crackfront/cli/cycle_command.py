@@ -45,22 +45,24 @@ _MOST_BYTES = 1e8
 """Largest size of a file of loads. (Units: byte)"""
 
 
-def _loads(_: click.Context, __: click.Parameter, given: str | None) -> tuple[float, ...] | None:
-    """Loads of a text with commas, or of a file, in which what stands behind # is none."""
+def _loads(_: click.Context, __: click.Parameter, text: str | None) -> tuple[float, ...] | None:
+    """Loads of a text with commas, or of a file, in which # begins a comment."""
     from crackfront.surfaces.loop_setup import load_values
 
-    if given is None:
+    if text is None:
         return None
-    if re.fullmatch(r"[-+.\de]+", given) or ("," in given and not Path(given).exists()):
-        return load_values([one.strip() for one in given.split(",")])
+    if re.fullmatch(r"[-+.\de]+", text) or ("," in text and not Path(text).exists()):
+        return load_values([part.strip() for part in text.split(",")])
     try:
-        text = regular_file(Path(given), _MOST_BYTES).read_text(encoding="utf-8")
+        content = regular_file(Path(text), _MOST_BYTES).read_text(encoding="utf-8")
     except UnicodeDecodeError as error:
-        raise ValueError(f"--loads is {given}, which is no text; name one of numbers") from error
+        raise ValueError(
+            f"--loads is {text}, which is not a text; name a file of numbers"
+        ) from error
     try:
-        return load_values(re.sub("#.*", "", text).replace(",", " ").split())
+        return load_values(re.sub("#.*", "", content).replace(",", " ").split())
     except ValueError as error:
-        raise ValueError(f"{given}: {error}") from error
+        raise ValueError(f"{text}: {error}") from error
 
 
 @click.command(
@@ -157,7 +159,7 @@ def cycle(
 
     The exit code is 0 if the cycle is complete (on a sphere without --loads, if contact is lost)
     and 1 if it ended early; the output is written in both cases. It is 2 if the input cannot be
-    used, and 75 after Ctrl-C or SIGTERM: the states so far are then kept beside the output, and
+    used, and 75 after Ctrl-C or SIGTERM: the states so far are then kept next to the output, and
     the same command continues from there.
     """
     from crackfront.core.cycle.load_schedule import DEFAULT_STEP

@@ -44,7 +44,7 @@ def _in_si(unit: str) -> _Callback:
     """Callback that gives an option its value in a unit of SI."""
 
     def value(_: click.Context, option: click.Parameter, text: str | None) -> float | None:
-        return None if text is None else si_value(text, unit, what=option.opts[0])
+        return None if text is None else si_value(text, unit, name=option.opts[0])
 
     return value
 
@@ -58,7 +58,7 @@ def _window(
     ends = text.split(":")
     if len(ends) != 2:
         raise ValueError(f"--window is {text!r}; give two contact radii, as in 50um:150um")
-    low, high = (si_value(end, "m", what=option.opts[0]) for end in ends)
+    low, high = (si_value(end, "m", name=option.opts[0]) for end in ends)
     return low, high
 
 
@@ -130,12 +130,12 @@ def loop(
 
     FILE is a text with headings and two or three of these columns. Works of adhesion are averaged
     over the same contact radii in both branches, as in simulations. FILE may also be a cycle in
-    netCDF that `crackfront cycle` or a sweep has written. Its works of adhesion are those of the
-    simulation; they are in reduced units unless the file states a sphere, or --radius, --modulus
-    and --work-of-adhesion name one.
+    netCDF that `crackfront cycle` or a sweep has written, with the works of adhesion of
+    the simulation. They are in reduced units unless the file states a sphere, or --radius,
+    --modulus and --work-of-adhesion name one.
 
-    Options of reading, from --channel to --longest, are those of `crackfront predict` and apply to
-    the --scans.
+    Options of reading, from --channel to --longest, are the same as in `crackfront predict` and
+    apply to the --scans.
     """
     from crackfront.measured.loops.simulated_loop import is_netcdf
 
@@ -197,8 +197,8 @@ def _measured(
     recording = read_recording(path, heads, units)
     if radius is None:
         raise ValueError(f"{path} does not state the sphere; give its --radius, as in 1.25mm")
-    known = ("modulus_error", "radius_error", "stiffness", "window")
-    rig = Rig(radius, contact_modulus, **{name: options[name] for name in known})
+    rig_options = ("modulus_error", "radius_error", "stiffness", "window")
+    rig = Rig(radius, contact_modulus, **{name: options[name] for name in rig_options})
     return analyse_loop(recording, rig)
 
 
@@ -235,7 +235,7 @@ def _simulated(
     if radius is None or contact_modulus is None or work_of_adhesion is None:
         raise ValueError(
             f"{path} is in reduced units; give --radius, --modulus and --work-of-adhesion for "
-            "SI units, or none of them"
+            "SI units, or leave all three out"
         )
     scales = Scales(radius, work_of_adhesion, contact_modulus)
     return simulated_loop(in_si_units(cycle, scales), str(path))

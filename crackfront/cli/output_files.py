@@ -23,7 +23,7 @@ def check_writable(folder: Path) -> None:
 def check_overwriting(inputs: Iterable[Path], outputs: Mapping[str, Path | None]) -> None:
     """Raise ValueError if an output is a file that the command reads, or two outputs are one.
 
-    The outputs are those of options by their names; a figure without suffix is a PDF and a PNG.
+    `outputs` are the files that options name; a figure without suffix is a PDF and a PNG.
     """
     # `Path.resolve` raises an error for a link to itself.
     read = {os.path.realpath(path) for path in inputs}

@@ -198,7 +198,7 @@ def quantity(unit: str, name: str, example: str) -> BeforeValidator:
         option = _named(info)
         check_type(option, value, (str, Real), f"a {name}, as '{example}' or in {unit}")
         if isinstance(value, str):
-            return si_value(value, unit, what=option)
+            return si_value(value, unit, name=option)
         check_within(option, float(value), SI[unit], unit)
         return float(value)
 
@@ -254,7 +254,7 @@ def _position(text: str, option: str) -> float:
     """Position in a scan from a text, whose unit may be missing if it is zero (Units: m)."""
     zero = _ZERO.fullmatch(text)
     if zero is None or (zero[1] and not is_unit(zero[1], "m")):
-        return si_value(text, "m", what=option)
+        return si_value(text, "m", name=option)
     return 0.0
 
 

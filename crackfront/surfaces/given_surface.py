@@ -1,4 +1,4 @@
-"""Surfaces from arrays of a user, in reduced units or those of SI."""
+"""Surfaces from arrays of a user, in reduced or SI units."""
 
 from __future__ import annotations
 
@@ -97,8 +97,8 @@ def surface(
     unit = units or ("reduced" if sphere is None else _SI[kind])
     array = surface_array(kind, _unit(kind, unit, sphere) * samples, length / len(samples))
     if kind == "chemical":
-        stated = "" if unit in _REDUCED[kind] else f"{float(np.mean(samples)):.4g} {unit}"
-        check_mean(array.values, unit, stated)
+        mean = "" if unit in _REDUCED[kind] else f"{float(np.mean(samples)):.4g} {unit}"
+        check_mean(array.values, unit, mean)
     surface_adhesion(array)
     return array
 
@@ -147,22 +147,22 @@ def _stated(values: xr.DataArray, units: str | None) -> tuple[xr.DataArray, str 
     """
     if {*values.dims} == {"x", "y"}:
         values = values.transpose("x", "y")
-    stated = stated_unit(values.attrs)
-    if stated in (None, "", "1"):
+    stated_units = stated_unit(values.attrs)
+    if stated_units in (None, "", "1"):
         return values, units
     # Surfaces in reduced units say so by the names of their units.
-    stated = "reduced" if stated == VERTICAL else str(stated)
-    if units not in (None, stated):
+    stated_units = "reduced" if stated_units == VERTICAL else str(stated_units)
+    if units not in (None, stated_units):
         raise ValueError(
-            f"units is {units!r}, but the array states {stated!r}; leave units out, or drop "
+            f"units is {units!r}, but the array states {stated_units!r}; leave units out, or drop "
             "the attribute"
         )
-    return values, stated
+    return values, stated_units
 
 
 def _check_side(values: xr.DataArray, side: float | str, sphere: Scales | None) -> None:
     """Raise ValueError if coordinates of an array span another side, or pixels are not square."""
-    wanted = float(side) if sphere is None else in_si("side", side, "m")
+    expected_side = float(side) if sphere is None else in_si("side", side, "m")
     for name in ("x", "y"):
         along_dimension = name in values.coords and {"x", name} <= {*values.dims}
         if not along_dimension or values.sizes[name] < 2:
@@ -176,13 +176,15 @@ def _check_side(values: xr.DataArray, side: float | str, sphere: Scales | None) 
             continue
         span = values.sizes[name] * spacing(values, name)
         # Pixels are square, so that the side along x determines the side along y.
-        expected = wanted * values.sizes[name] / values.sizes["x"]
+        expected = expected_side * values.sizes[name] / values.sizes["x"]
         if abs(factor * span / expected - 1) > UNEQUAL:
-            other = "" if name == "x" else f", where a side of {side} along x makes pixels square"
-            remedy = "this side" if name == "x" else "values on square pixels"
+            reason, remedy = "", "this side"
+            if name == "y":
+                reason = f", where a side of {side} along x makes pixels square"
+                remedy = "values on square pixels"
             raise ValueError(
                 f"side is {side}, but the coordinate {name} of the array spans "
-                f"{span:.6g}{'' if unit == '1' else f' {unit}'}{other}; give {remedy}, or the "
+                f"{span:.6g}{'' if unit == '1' else f' {unit}'}{reason}; give {remedy}, or the "
                 "values alone"
             )
 

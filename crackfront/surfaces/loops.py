@@ -63,22 +63,22 @@ def run_loop(
         sphere at the centre of the tile, wherever the zero of its coordinates is; or what
         :func:`crackfront.straight_front` makes of one.
     loads : iterable of float, optional
-        Loads to visit in their order, down and up as often as they say; one that stands twice is
-        a hold. The loop ends where contact is lost. By default, for a sphere, from first contact
-        to the largest penetration, and to pull-off. (Units: reduced vertical length; of a straight
-        front that of its tile)
+        Loads to visit in their order, down and up as often as they say; a repeated load is a pause.
+        The loop ends where contact is lost. By default, for a sphere, from first contact to the
+        largest penetration, and to pull-off. (Units: reduced vertical length; for a straight front
+        the length of its tile)
     max_penetration : float, optional
         Largest penetration in place of loads, by default 1. (Units: reduced vertical length)
     step : float, optional
         Largest difference of loads: equal steps lead from one to the next. By default 0.02 in place
         of loads; those that are given are visited as they are. The fronts do not depend on it.
-        (Units: that of loads)
+        (Units: as the loads)
     error : float, optional
         Standard error of the factor k of either branch that the numerics may leave; measured
         laws choose sites, samples and tolerance. They need a sphere and the attributes
         `short_cutoff`, `roll_off` and `hurst`, as :func:`crackfront.random_surface` sets them;
         with these it is 0.03 by default, or what the finest numerics on the pixels leave, and the
-        result states it; without them an error is refused.
+        result states it; without these attributes `error` is not allowed.
     sites : int, optional
         Sites of the front, in place of an error. By default those that the error needs; where
         there is none, one a pixel or more.
@@ -102,14 +102,14 @@ def run_loop(
         the fronts `radius(step, angle)` or `position(step, y)`, and
         measures of the whole: `e_el`, `w_rms`, `correlation_length`, `w_appr`, `w_retr` and what
         else the table of a sweep has of them, of a straight front over the last period of its tile
-        or less; NaN where the loop has no steady part. The attribute `result` states them, the
+        or less; NaN where the loop lacks a steady part. The attribute `result` states them, the
         forces of jump-in and pull-off or the pinning force, `steady_sentence` why they are NaN.
 
     Raises
     ------
     ValueError
         If the surface, a length or the solver cannot be used, the pixels are too coarse for an
-        error that is asked for, or there is no memory for the fronts.
+        error that is asked for, or the memory is too small for the fronts.
     TypeError
         If an argument is of another type.
 
@@ -128,7 +128,7 @@ def run_loop(
     ('step', 'y')
     """
     numbers = {"max_penetration": max_penetration, "step": step}
-    check_numbers(**{name: one for name, one in numbers.items() if one is not None})
+    check_numbers(**{name: number for name, number in numbers.items() if number is not None})
     for name, value in (("fronts", fronts), ("energy", energy)):
         check_type(name, value, bool, "True or False")
     if not callable(progress):
@@ -260,15 +260,15 @@ def find_instabilities(
     Raises
     ------
     ValueError
-        If an argument cannot be used, a front is not found, or the surface is that of a straight
-        front, which has no first contact and no pull-off to end a branch.
+        If an argument cannot be used, a front is not found, or the surface is a straight front,
+        which lacks the first contact and the pull-off that end a branch.
     TypeError
         If an argument is of another type.
     """
     if isinstance(surface, LoopContact):
         raise ValueError(
-            "the instabilities are those of a sphere between first contact and pull-off, which a "
-            "straight front has not; give the surface itself"
+            "instabilities are located on a sphere, between first contact and pull-off, which a "
+            "straight front lacks; give the surface itself"
         )
     if direction not in get_args(Direction):
         raise ValueError(f"direction is {direction!r}; give 1 for approach or -1 for retraction")
@@ -296,9 +296,10 @@ def find_instabilities(
         field, touched, start, loads, direction, travel=reach, precision=precision, solver=solver
     )
     jumps = [motion for motion in steps if motion.unstable]
-    found = labelled_fields(measured_instabilities(jumps, field, reach))
+    instabilities = labelled_fields(measured_instabilities(jumps, field, reach))
     angle = field.geometry.variables[1]
-    return Dataset(found, {angle.name: labelled(angle, field.geometry.sites)}, {"travel": reach})
+    angles = {angle.name: labelled(angle, field.geometry.sites)}
+    return Dataset(instabilities, angles, {"travel": reach})
 
 
 _SMOOTH = 0.25

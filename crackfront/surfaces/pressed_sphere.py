@@ -117,11 +117,11 @@ class PressedSphere(LoopContact):
             sizes = replace(chosen.resolution, tile_side=n_point * adhesion.pixel, n_point=n_point)
             simulation = replace(chosen, resolution=sizes)
             # Where no error is asked for, the result states the one that is left.
-            if numerics.error is not None and (left := missed_error(simulation, error)):
+            if numerics.error is not None and (remaining := missed_error(simulation, error)):
                 pixels = spectrum.short_cutoff / adhesion.pixel
                 raise ValueError(
                     f"error is {error:g}, but the finest numerics on {pixels:.3g} pixels per short "
-                    f"cutoff leave {left:.2g}; ask for that, or leave error out"
+                    f"cutoff leave {remaining:.2g}; ask for that, or leave error out"
                 )
             field = simulation_field(simulation, adhesion)
             tolerance = chosen.solver.tolerance

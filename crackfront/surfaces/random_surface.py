@@ -71,7 +71,7 @@ def random_surface(
     Raises
     ------
     ValueError
-        If there is no such spectrum, surface or error.
+        If the spectrum, surface or error is impossible.
     TypeError
         If an argument is of another type.
 
@@ -126,7 +126,7 @@ def _shape(short_cutoff: float | Spectrum, roll_off: float | None, hurst: float 
     check_numbers(short_cutoff=short_cutoff, **numbers)
     if hurst is not None and roll_off is None:
         raise ValueError(
-            f"hurst is {hurst:g}, but without a roll_off the spectrum is flat and has no Hurst "
+            f"hurst is {hurst:g}, but without a roll_off the spectrum is flat and lacks a Hurst "
             "exponent; give the roll_off, or leave hurst out"
         )
     longest = short_cutoff if roll_off is None else roll_off
@@ -160,7 +160,7 @@ def chosen_simulation(
         longest = spectrum.longest_feature
         if not longest <= side < math.inf:
             raise ValueError(
-                f"side is {side}; the tile must hold the longest waves of the spectrum, of "
+                f"side is {side}; the tile must fit the longest waves of the spectrum, of "
                 f"{longest:g}, or its e_el is not the one that is asked for"
             )
         numerics = Numerics(error, tile_roll_offs=0.0, tile_cutoffs=side / cutoff)
@@ -196,7 +196,7 @@ def stated_spectrum(surface: DataArray) -> Spectrum | None:
     beyond = modes.wavevector > 2 * np.pi / spectrum.short_cutoff * (1 + 1e-9)
     if np.sum(modes.power[beyond]) > 1e-9 * np.sum(modes.power):
         raise ValueError(
-            f"the surface holds waves shorter than its attributes say, "
+            f"the surface has waves shorter than its attributes say, "
             f"{spectrum.short_cutoff:g}; remove {' and '.join(spectrum.parameters)}, so that the "
             "pixels decide"
         )

@@ -35,7 +35,7 @@ def save_result(result: xr.DataArray | xr.Dataset, path: str | Path) -> None:
     Raises
     ------
     ValueError
-        If the array has no name.
+        If the array lacks a name.
     TypeError
         If the result is of another type, or netCDF cannot store an attribute.
     OSError

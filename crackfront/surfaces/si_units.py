@@ -115,9 +115,9 @@ def in_reduced_units(data: Labelled, scales: units.Scales) -> Labelled:
     True
     """
     check_scales(scales)
-    stated = attributes_sphere(data.attrs, CONVERTED_FOR)
-    if stated is not None and not are_equal(stated, scales):
-        sphere = ", ".join(f"{name} {value:g}" for name, value in asdict(stated).items())
+    stated_sphere = attributes_sphere(data.attrs, CONVERTED_FOR)
+    if stated_sphere is not None and not are_equal(stated_sphere, scales):
+        sphere = ", ".join(f"{name} {value:g}" for name, value in asdict(stated_sphere).items())
         raise ValueError(f"the data were converted for another sphere, {sphere}; give that one")
 
     def change(unit: str, part: xr.DataArray | None) -> tuple[float, str]:

@@ -40,7 +40,7 @@ _FEWEST_SAMPLES = 0.5
 """Samples a pixel: the field of a straight front begins two pixels behind its first front."""
 
 _LINE_ROUND_OFF = 10.0
-"""Round-off of forces of the line, by Fourier transforms, over that of its shortest mode alone."""
+"""Round-off of forces of the line by Fourier transforms, relative to its shortest mode alone."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,7 +119,7 @@ class StraightFront(LoopContact):
         return StraightSetup(
             field=field,
             front=front,
-            # A branch begins with a front of its own: making contact has no energy here.
+            # A branch begins with a front of its own: making contact releases no energy here.
             loads=chain([next(way)._replace(start=front)], way),
             expected=int(n_state),
             seconds=seconds,
@@ -130,7 +130,7 @@ class StraightFront(LoopContact):
         )
 
     def _check_round_off(self, adhesion: AdhesionMap, furthest: float, n_site: int) -> None:
-        """Raise if digits of places so far from 0 do not hold forces to the tolerance."""
+        """Raise if the round-off of places so far from 0 exceeds the tolerance of forces."""
         length, period = (adhesion.pixel * n for n in adhesion.work_of_adhesion.shape[::-1])
         stiffness = 1 / self.spring + _LINE_ROUND_OFF * math.pi * n_site / length
         force = float(np.finfo(float).eps) * furthest * stiffness
@@ -163,8 +163,8 @@ def straight_front(surface: DataArray, spring: float) -> StraightFront:
     """A straight front for :func:`crackfront.run_loop`, whose loads are places of its springs.
 
     The front is as long as the side of the surface along y. Where this is below ten times the
-    length of the springs, the factor k is larger than that of a long front, by which the law of k
-    was measured; the result of the loop says so.
+    length of the springs, the factor k is larger than on a long front, on which the law of k was
+    measured; the result of the loop says so.
 
     Parameters
     ----------
@@ -181,8 +181,8 @@ def straight_front(surface: DataArray, spring: float) -> StraightFront:
     Raises
     ------
     ValueError
-        If the spring has no such length, or the surface another name than that of one. The loop
-        refuses springs that are longer than the front.
+        If the spring cannot have this length, or the name of the array is not the name of a
+        surface. The loop raises an error if springs are longer than the front.
     TypeError
         If an argument is of another type.
     """

@@ -74,20 +74,20 @@ def check_real(values: object) -> None:
         raise TypeError("the values are complex numbers; give real ones, as in values.real")
 
 
-def check_mean(values: Array, units: str, stated: str = "") -> None:
+def check_mean(values: Array, units: str, mean_in_si: str = "") -> None:
     """Raise ValueError if the mean work of adhesion is far from w_int, with the likely cause.
 
-    The values are in units of w_int; `units` are the units that the user named, `stated` is the
-    mean in units of SI, if the user has these.
+    The values are in units of w_int; `units` are the units that the user named, `mean_in_si`
+    is the mean in units of SI, if the user has these.
     """
     mean = float(np.mean(values))
     if not math.isfinite(mean) or _LEAST_MEAN <= mean <= _LARGEST_MEAN:
         return
     bounds = f"it must lie between {_LEAST_MEAN:g} and {_LARGEST_MEAN:g}"
-    if stated:
+    if mean_in_si:
         raise ValueError(
-            f"the mean work of adhesion is {stated}, {mean:.4g} of that of the sphere; {bounds}: "
-            "check the units, or the work of adhesion of the sphere"
+            f"the mean work of adhesion is {mean_in_si}, {mean:.4g} times the w_int of the "
+            f"sphere; {bounds}: check the units, or the work of adhesion of the sphere"
         )
     cause = "check the values, or take their mean for w_int"
     if units != "w_int" and _LEAST_MEAN <= mean * WORK_OF_ADHESION <= _LARGEST_MEAN:

@@ -66,8 +66,8 @@ def surface_kind(surface: xr.DataArray) -> FieldKind:
 
     ValueError if no surface has that name, TypeError if it is not a labelled array.
     """
-    wanted = "an xarray.DataArray height(x, y), as surface, random_surface and read_scan make it"
-    check_type("surface", surface, xr.DataArray, wanted)
+    expected = "an xarray.DataArray height(x, y), as surface, random_surface and read_scan make it"
+    check_type("surface", surface, xr.DataArray, expected)
     kinds = {item.name: kind for kind, item in SURFACES.items()}
     if surface.name not in kinds:
         raise ValueError(
@@ -87,7 +87,7 @@ def read_field(path: Path) -> xr.DataArray:
     names = [item.name for item in SURFACES.values() if item.name in dataset]
     if not names:
         raise UnreadableFileError(
-            f"{path} has no surface (it has: {', '.join(map(str, dataset.data_vars))}); name its "
+            f"{path} lacks a surface (it has: {', '.join(map(str, dataset.data_vars))}); name its "
             f"variable {' or '.join(item.name for item in SURFACES.values())}"
         )
     if len(names) > 1:
