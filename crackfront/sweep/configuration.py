@@ -53,7 +53,7 @@ class Configuration(Section):
         check_distinct("spectrum name", [spectrum.name for spectrum in self.spectra])
         if self.field == "chemical" and self.amplitudes.elastic_energy is not None:
             raise section_error(
-                "amplitudes.elastic_energy has no meaning for a chemical field; give "
+                "amplitudes.elastic_energy is meaningless for a chemical field; give "
                 "amplitudes.work_of_adhesion_rms"
             )
         measured = [item.name for item in self.spectra if item.surface is not None]
@@ -84,7 +84,7 @@ class Configuration(Section):
 def load_configuration(path: Path) -> Configuration:
     """Configuration of a sweep, read from a YAML file and validated.
 
-    ConfigurationError if the file cannot be read, is no YAML mapping, or anything in it is unknown,
-    missing or out of range; one sentence for each.
+    ConfigurationError if the file cannot be read, is not a YAML mapping, or anything in it is
+    unknown, missing or out of range; one sentence for each.
     """
     return validated(path, yaml_mapping(path), Configuration)

@@ -85,8 +85,8 @@ def _check_costs(sweep: Sweep) -> None:
     for item in sweep.spectra:
         for simulation in sweep.one_per_amplitude(item):
             cost = expected_cost(simulation)
-            what = f"simulations of {item.name}"
-            check_memory(what, cost.memory, _COARSER, anywhere=True)
+            task = f"simulations of {item.name}"
+            check_memory(task, cost.memory, _COARSER, anywhere=True)
             seconds += sweep.n_realisation * cost.seconds
     check_time("the simulations", seconds, _COARSER)
 
@@ -127,8 +127,8 @@ def _check_tolerance_and_error(simulation: Simulation, requested: Settings | flo
                 "to which forces of pinning are proportional, so that k comes out too large; use "
                 f"{elastic_energy / 10:.1g} or less"
             )
-    elif left := missed_error(simulation, requested):
+    elif remaining := missed_error(simulation, requested):
         raise ValueError(
-            f"numerics: error is {requested:g}, but the finest numerics leave {left:.2g} for "
+            f"numerics: error is {requested:g}, but the finest numerics leave {remaining:.2g} for "
             f"{name} at e_el {elastic_energy:g}; allow that, or give the settings"
         )

@@ -38,8 +38,8 @@ def opened(
 ) -> tuple[Sweep, Store, Provenance]:
     """Sweep of a configuration file, its store, and the origin of what is computed for it.
 
-    ConfigurationError if no machine can run the sweep, or the results are those of another
-    configuration that is still there, or of an older layout.
+    ConfigurationError if no machine can run the sweep, or the results belong to another
+    configuration that is still there, or have an older layout.
     """
     sweep = load_sweep(configuration)
     check_feasible(sweep, configuration)

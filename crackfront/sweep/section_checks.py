@@ -16,12 +16,12 @@ def check_makes(make: Callable[[], object]) -> None:
         raise section_error(str(error)) from error
 
 
-def check_distinct(what: str, values: Iterable[object]) -> None:
+def check_distinct(name: str, values: Iterable[object]) -> None:
     """Raise if a value occurs twice."""
     earlier = set()
     for value in values:
         if value in earlier:
-            raise section_error(f"{what} {value!r} stands twice; remove or change one")
+            raise section_error(f"{name} {value!r} stands twice; remove or change one")
         earlier.add(value)
 
 
@@ -33,11 +33,11 @@ def check_not_overruled(section: Section, decider: str, keys: Iterable[str]) -> 
         )
 
 
-def check_exactly_one(what: str, values: tuple[Any, Any], otherwise: str = "give one") -> None:
+def check_exactly_one(problem: str, values: tuple[Any, Any], otherwise: str = "give one") -> None:
     """Raise unless exactly one of two values is there."""
     n_value = sum(value is not None for value in values)
     if n_value != 1:
-        raise section_error(f"{what}; {'remove one' if n_value else otherwise}")
+        raise section_error(f"{problem}; {'remove one' if n_value else otherwise}")
 
 
 def missing_keys(section: Section, keys: Iterable[str]) -> list[str]:

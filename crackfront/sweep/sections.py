@@ -75,7 +75,7 @@ class AmplitudesSection(Section):
     def elastic_energies(self, measured: float) -> tuple[float, ...]:
         """e_el / w_int, from w_rms^2 = 4 e_el w_int where the rms is given.
 
-        Multiples of measured heights are those of its root; four digits, which names state.
+        Multiples of measured heights are multiples of its root; four digits, which names state.
         """
         if self.elastic_energy is not None:
             return self.elastic_energy

@@ -111,7 +111,7 @@ class SpectrumSection(Section):
     The method `shape` of such a section returns the spectrum and what its name ends with.
     """
 
-    # Names of files have up to 255 letters, of which those of checkpoints add some hundred.
+    # Names of files have up to 255 letters, and names of checkpoints add about a hundred.
     name: Annotated[str, Field(pattern=r"^[A-Za-z0-9_-]+$", max_length=100)]
     short_cutoff: Positive | None = None
     roll_off: Positive | None = None
@@ -122,8 +122,8 @@ class SpectrumSection(Section):
     @model_validator(mode="after")
     def _complete(self) -> SpectrumSection:
         if sections := self._sections():
-            others = "short_cutoff", "roll_off", "hurst", *sections[1:]
-            check_not_overruled(self, sections[0], others)
+            overruled = "short_cutoff", "roll_off", "hurst", *sections[1:]
+            check_not_overruled(self, sections[0], overruled)
             return self
         if self.short_cutoff is not None:
             check_makes(self._self_affine)

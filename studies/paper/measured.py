@@ -89,7 +89,7 @@ def _rows(path: Path) -> list[tuple[int, list[str]]]:
     except OSError as error:
         raise section_error(f"{path} cannot be read: {error.strerror}") from error
     except UnicodeDecodeError as error:
-        raise section_error(f"{path} is no UTF-8 text; save it as UTF-8") from error
+        raise section_error(f"{path} is not a text in UTF-8; save it as UTF-8") from error
     lines = ("" if line.lstrip().startswith("#") else line for line in text.splitlines())
     reader = csv.reader(lines, strict=True)
     try:
