@@ -59,8 +59,8 @@ def measured_loop(
     Returns
     -------
     MeasuredLoop
-        w_appr, w_retr, hysteresis and more in SI units; printed, it is a page. Those of a simulated
-        cycle are what the simulation has, and in its units.
+        w_appr, w_retr, hysteresis and more in SI units; printed, it is a page. The values of a
+        simulated cycle are those that the simulation states, in its units.
 
     Raises
     ------
@@ -119,7 +119,7 @@ def _check_no_rig(**arguments: object) -> None:
     """Raise ValueError if an argument describes the rig of a simulated cycle, which has none."""
     if names := [name for name, value in arguments.items() if value is not None]:
         raise ValueError(
-            f"a simulated cycle states its sphere and has no rig; leave out {', '.join(names)} "
+            f"a simulated cycle states its sphere and lacks a rig; leave out {', '.join(names)} "
             "(crackfront.in_si_units gives a cycle in reduced units a sphere)"
         )
 
@@ -149,7 +149,7 @@ def _recording(arrays: Mapping[str, ArrayLike] | Dataset) -> Recording:
             )
     elif unknown := set(map(str, arrays)) - set(UNITS):
         raise ValueError(
-            f"a loop has no {', '.join(sorted(unknown))}; give two of {', '.join(UNITS)}"
+            f"a loop lacks {', '.join(sorted(unknown))}; give two of {', '.join(UNITS)}"
         )
     force, radius, displacement = (
         _column(name, columns[name]) if name in columns else None for name in UNITS
@@ -166,5 +166,5 @@ def _column(name: str, values: ArrayLike) -> Array:
     except (TypeError, ValueError) as error:
         raise TypeError(f"the values of {name} are no array of numbers: {error}") from error
     if not np.any(np.isfinite(column)):
-        raise ValueError(f"{name} has no finite value; leave the column out, or check the file")
+        raise ValueError(f"{name} lacks finite values; leave the column out, or check the file")
     return np.where(np.isfinite(column), column, np.nan)

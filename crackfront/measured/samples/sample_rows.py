@@ -129,12 +129,12 @@ def _yaml_rows(path: Path) -> Iterator[tuple[int, dict[str, Any]]]:
         where = "" if error.problem_mark is None else f", line {error.problem_mark.line + 1}"
         raise ValueError(f"{path}{where}: this is not YAML: {error.problem}; correct it") from error
     rows = content.get("samples") if isinstance(content, dict) else content
-    others = [name for name in content if name != "samples"] if isinstance(content, dict) else []
-    if rows is not None and others:
-        raise ValueError(f"{path} has {str(others[0])!r} next to samples; remove it")
+    further = [name for name in content if name != "samples"] if isinstance(content, dict) else []
+    if rows is not None and further:
+        raise ValueError(f"{path} has {str(further[0])!r} next to samples; remove it")
     if not isinstance(rows, list) or not all(isinstance(row, dict) for row in rows):
         raise ValueError(
-            f"{path} has no list of samples; write 'samples:' with '- sample: A' below"
+            f"{path} lacks a list of samples; write 'samples:' with '- sample: A' below"
         )
     for row in rows:
         where = f"{path}, line {row.lc.line + 1}"

@@ -56,9 +56,9 @@ def raw_scan(path: Path, options: ReadingOptions, height_scale: float = 1.0) -> 
     channel, name = chosen_channel(path, reader, options.channel)
     if channel.nb_grid_pts is not None:
         check_points(path, channel.nb_grid_pts)
-    given, sides = units_and_sides(path, reader.format(), channel, options)
+    added, sides = units_and_sides(path, reader.format(), channel, options)
     with errors_as_sentences(path, reader.format()):
-        raw = reader.topography(channel_index=channel.index, **given)
+        raw = reader.topography(channel_index=channel.index, **added)
     if not raw.is_uniform:
         line = even_line(path, raw.positions(), raw.heights())
         raw = library_scan(line.heights, line.size, unit=raw.unit, info=raw.info)
@@ -88,8 +88,8 @@ def raw_scan(path: Path, options: ReadingOptions, height_scale: float = 1.0) -> 
 @silenced()
 def is_stated(path: Path, channel: str | None) -> tuple[bool, bool]:
     """Whether a file states the unit and the sides of a channel."""
-    stated, _ = chosen_channel(path, _reader(path), channel)
-    return stated.unit is not None, is_sized(stated)
+    chosen, _ = chosen_channel(path, _reader(path), channel)
+    return chosen.unit is not None, is_sized(chosen)
 
 
 @silenced()

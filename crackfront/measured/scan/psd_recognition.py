@@ -50,7 +50,7 @@ def check_no_spectrum(path: Path, text: NumberTables) -> None:
             reason = "its values are positive and fall all along, as no heights do"
     if reason is not None:
         raise ValueError(
-            f"{path} holds a spectral density, no line scan: {reason}; predict from it with "
+            f"{path} contains a spectral density, not a line scan: {reason}; predict from it with "
             f"--psd {path}, or name the columns x and z in its head if they are a line"
         )
 

@@ -18,13 +18,13 @@ LARGEST_FILE = 0.125
 
 
 def check_readable(path: Path) -> None:
-    """Raise where a path is no regular file, or one that is empty or larger than the memory."""
+    """Raise if a path is not a regular file, or the file is empty or larger than the memory."""
     if not regular_file(path, LARGEST_FILE * memory_at_hand()).stat().st_size:
         raise ValueError(f"{path} is empty; export it from the instrument again")
 
 
 def check_points(path: Path, counts: Sequence[int]) -> None:
-    """Raise where a map has more points than the memory holds, before any of them is read."""
+    """Raise if a map has more points than fit in memory, before any of them is read."""
     check_memory(
         f"{path}, which claims {' x '.join(map(str, counts))} points,",
         _BYTES_PER_POINT * math.prod(map(float, counts)),

@@ -52,10 +52,10 @@ def text_reader(path: Path, text: NumberTables) -> Any:
             table = table.with_columns(places)
         headings = table.headings
     if kind == "dektak" or are_points(table):
-        stated = _stated_head(path, text, kind)
-        if stated is not None:
+        head = _stated_head(path, text, kind)
+        if head is not None:
             text.check_single_table()
-            unit, factor, info = stated
+            unit, factor, info = head
             if unit is None:
                 unit, factor = _stated_units(path, headings)
             points = read_points(table, kind)
@@ -102,9 +102,9 @@ def _stated_units(path: Path, headings: Sequence[Heading]) -> tuple[str | None, 
             for heading in headings
         )
         raise ValueError(
-            f"{path}: its columns are {shown}; name those of the points x, y and z, each with its "
-            "unit of length and x and y in the same, as in x (um),y (um),z (nm), which options do "
-            "not replace"
+            f"{path}: its columns are {shown}; name the columns of the points x, y and z, each "
+            "with its unit of length and x and y in the same, as in x (um),y (um),z (nm), which "
+            "options do not replace"
         )
     place, height = units[0], units[-1]
     return place, in_metres(height, 1.0)[0] / in_metres(place, 1.0)[0]

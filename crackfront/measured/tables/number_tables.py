@@ -39,7 +39,7 @@ _FEWEST_ROWS = 8
 _MOST_COLUMNS = 8
 """Columns of the widest table whose headings are read; wider ones are maps."""
 
-_ADVICE = "export the scan again, or write nan where there is no value"
+_ADVICE = "export the scan again, or write nan where a value is missing"
 
 _Rows = list[tuple[int, list[str]]]
 """Rows of numbers: their lines, from 0, and their cells."""
@@ -111,7 +111,7 @@ def number_tables(path: Path) -> NumberTables | None:
     Returns
     -------
     NumberTables or None
-        None if the file is not a text, or has no row of numbers.
+        None if the file is not a text, or lacks a row of numbers.
 
     Raises
     ------
