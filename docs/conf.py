@@ -159,7 +159,7 @@ def _visit_displaymath(self: HTML5Translator, node: nodes.math_block) -> None:
     raise nodes.SkipNode
 
 
-def _refuse_network(app: Sphinx, error: Exception | None) -> None:
+def _check_network(app: Sphinx, error: Exception | None) -> None:
     """End the build where a page loads a script, a style or a picture from a network."""
     loaded = re.compile(r"<(?:script|link|img|iframe)\b[^>]*\s(?:src|href)=\"(?:https?:)?//[^\"]*")
     for page in Path(app.outdir).rglob("*.html"):
@@ -249,4 +249,4 @@ def setup(app: Sphinx) -> None:
     app.connect("autodoc-process-docstring", _escape_magnitudes, priority=400)
     app.connect("autodoc-process-docstring", _describe_options, priority=600)
     app.connect("builder-inited", _write_references)
-    app.connect("build-finished", _refuse_network)
+    app.connect("build-finished", _check_network)

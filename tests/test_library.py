@@ -287,7 +287,7 @@ def test_instabilities_sweep_what_the_front_travels_and_lose_energy(surface, jum
         ({"roll_off": 0.1}, "roll_off 0.1 is shorter than short_cutoff 0.4"),
         ({"roll_off": 0.8, "hurst": 0.0}, "hurst is 0.0; it must lie in"),
         ({"hurst": 0.8}, "hurst is 0.8, but without a roll_off the spectrum is flat"),
-        ({"side": 0.1}, "side is 0.1; the tile must hold the longest waves"),
+        ({"side": 0.1}, "side is 0.1; the tile must fit the longest waves"),
         ({"kind": "rough"}, "kind is 'rough'; choose one of roughness, chemical"),
         ({"seed": -1}, "seed is -1; it must lie between 0 and"),
         ({"realisation": -2}, "realisation is -2; it must lie between 0 and"),
@@ -405,12 +405,12 @@ def test_an_array_is_the_same_surface_in_all_units():
         (
             0.063 * (1 + WAVE),
             {"units": "mJ/m2", "side": "1mm", "sphere": SPHERE},
-            r"adhesion is 0\.063 mJ/m2, 0\.001 of that of the sphere; .* check the units, or the w",
+            r"adhesion is 0\.063 mJ/m2, 0\.001 times the w_int of the sphere; .* check the units",
         ),
         (
             1 + WAVE,
             {"side": "1mm", "sphere": SPHERE},
-            r"adhesion is 1 J/m\^2, 15\.87 of that of the sphere;",
+            r"adhesion is 1 J/m\^2, 15\.87 times the w_int of the sphere;",
         ),
         (
             1 + WAVE,
@@ -553,7 +553,9 @@ def test_scales_take_texts_with_units():
     assert asdict(given) == pytest.approx(asdict(SPHERE), rel=1e-12)
     with pytest.raises(ValueError, match=r"0\.0007 Pa, too soft to be solid; was '0.7MPa' meant"):
         cf.Scales("1mm", "63mJ/m2", "0.7mPa")
-    with pytest.raises(ValueError, match="radius is '1kg', which is no length; write a number"):
+    with pytest.raises(
+        ValueError, match="radius is '1kg', whose unit is not a unit of length; write a number"
+    ):
         cf.Scales("1kg", 1, 1)
     with pytest.raises(ValueError, match=r"radius is -1\.0; it must be positive and finite"):
         cf.Scales(-1, 1, 1)
@@ -736,9 +738,9 @@ def test_the_pixels_of_a_map_lie_around_their_places(surface):
 def test_unknown_variables_have_no_units_to_convert(loop):
     with pytest.raises(ValueError, match="spring_position is of a straight front, which touches"):
         cf.in_si_units(loop.force.rename("spring_position"), SPHERE)
-    with pytest.raises(ValueError, match="extra is no variable of a surface or of a cycle; drop"):
+    with pytest.raises(ValueError, match="extra is not a variable of a surface or a cycle; drop"):
         cf.in_si_units(loop.assign(extra=loop.force), SPHERE)
-    with pytest.raises(ValueError, match="the array has no name"):
+    with pytest.raises(ValueError, match="the array lacks a name"):
         cf.in_si_units(loop.force.rename(None), SPHERE)
 
 

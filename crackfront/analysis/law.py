@@ -28,8 +28,8 @@ from numpy.typing import ArrayLike
 from scipy.special import ndtr
 
 from crackfront.analysis.estimate import Estimate, normal_estimate
-from crackfront.core.adhesion import FieldKind, refuse_unknown_kind
-from crackfront.core.arguments import refuse_no_numbers
+from crackfront.core.adhesion import FieldKind, check_kind
+from crackfront.core.arguments import check_numbers
 from crackfront.core.arrays import Array
 
 if TYPE_CHECKING:
@@ -298,8 +298,8 @@ def pinning_factor(
     >>> 2.3 < infinite.factor.value < 3.2
     True
     """
-    refuse_no_numbers(w_rms=w_rms, size=size)
-    refuse_unknown_kind(kind)
+    check_numbers(w_rms=w_rms, size=size)
+    check_kind(kind)
     if not 0 < w_rms < 2:
         raise ValueError(
             f"w_rms is {w_rms:g} w_int; it must lie between 0 and 2, where e_el reaches w_int"
@@ -307,7 +307,7 @@ def pinning_factor(
     if not size > 0:
         raise ValueError(f"size g is {size:g}; it must be positive, or inf")
     if breadth is not None:
-        refuse_no_numbers(breadth=breadth)
+        check_numbers(breadth=breadth)
         if not _NARROWEST <= breadth < math.inf:
             raise ValueError(
                 f"breadth is {breadth:g}; it must be finite and at least {_NARROWEST:g}, the "

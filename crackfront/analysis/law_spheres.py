@@ -24,7 +24,7 @@ from crackfront.analysis.law import (
 from crackfront.core import jkr
 from crackfront.core.adhesion import FieldKind, larkin_length
 from crackfront.core.arrays import Array
-from crackfront.core.bounds import LENGTH, refuse_outside
+from crackfront.core.bounds import LENGTH, check_within
 
 if TYPE_CHECKING:
     from crackfront.core.spectrum import Spectrum
@@ -133,7 +133,7 @@ def _sphere_spring(elastic_energy: float, contact_radius: float) -> Callable[[fl
             f"energy of full conformity is {elastic_energy:.4g} w_int; the factors k need one "
             "between 0 and 1"
         )
-    refuse_outside("contact radius", contact_radius, LENGTH)
+    check_within("contact radius", contact_radius, LENGTH)
 
     def spring(work_of_adhesion: float) -> float:
         return jkr.spring(contact_radius, work_of_adhesion)

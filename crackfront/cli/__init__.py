@@ -1,4 +1,4 @@
-"""The command `crackfront`: its sections, and how it refuses input."""
+"""The command `crackfront`: its sections, and how it reports wrong input."""
 
 from __future__ import annotations
 

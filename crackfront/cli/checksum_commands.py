@@ -21,24 +21,24 @@ def verify(place: Path, as_json: bool) -> None:
     """Check a folder of results, or its archive (ZIP), against its checksums, SHA256SUMS.
 
     `sha256sum --check SHA256SUMS` in the folder does the same, but for files that the list does not
-    name. The exit code is 1 if a file is damaged, missing or not in the list, and 2 if there is no
-    whole list. Nothing is changed.
+    name. The exit code is 1 if a file is damaged, missing or not in the list, and 2 if the
+    list is missing or incomplete. Nothing is changed.
     """
     from crackfront.sweep.integrity import verification
 
-    found = verification(place)
-    lines = [f"{counted(found.verified, 'file')} verified"]
+    report = verification(place)
+    lines = [f"{counted(report.verified, 'file')} verified"]
     for kind, names in (
-        ("damaged", found.damaged),
-        ("missing", found.missing),
-        ("not in the list", found.unlisted),
+        ("damaged", report.damaged),
+        ("missing", report.missing),
+        ("not in the list", report.unlisted),
     ):
         lines += [f"{kind}: {name}" for name in names]
-    echo_answer(asdict(found), lines, as_json=as_json)
-    if not found.is_whole:
+    echo_answer(asdict(report), lines, as_json=as_json)
+    if not report.is_whole:
         raise click.ClickException(
-            f"{place} is not as it was written: {len(found.damaged)} damaged, "
-            f"{len(found.missing)} missing, {len(found.unlisted)} not in the list; {_REMEDY}"
+            f"{place} is not as it was written: {len(report.damaged)} damaged, "
+            f"{len(report.missing)} missing, {len(report.unlisted)} not in the list; {_REMEDY}"
         )
 
 

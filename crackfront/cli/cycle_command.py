@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import click
 
 from crackfront.cli.answers import StoppedError, announce_compilation, announce_cost, echo_answer
-from crackfront.cli.output_files import refuse_foreign_netcdf, refuse_overwriting, refuse_unwritable
+from crackfront.cli.output_files import check_overwriting, check_replaced_netcdf, check_writable
 from crackfront.cli.parameters import FILE, Number, as_json, examples, whole
 from crackfront.core.arguments import regular_file
 from crackfront.core.bounds import (
@@ -45,22 +45,24 @@ _MOST_BYTES = 1e8
 """Largest size of a file of loads. (Units: byte)"""
 
 
-def _loads(_: click.Context, __: click.Parameter, given: str | None) -> tuple[float, ...] | None:
-    """Loads of a text with commas, or of a file, in which what stands behind # is none."""
+def _loads(_: click.Context, __: click.Parameter, text: str | None) -> tuple[float, ...] | None:
+    """Loads of a text with commas, or of a file, in which # begins a comment."""
     from crackfront.surfaces.loop_setup import load_values
 
-    if given is None:
+    if text is None:
         return None
-    if re.fullmatch(r"[-+.\de]+", given) or ("," in given and not Path(given).exists()):
-        return load_values([one.strip() for one in given.split(",")])
+    if re.fullmatch(r"[-+.\de]+", text) or ("," in text and not Path(text).exists()):
+        return load_values([part.strip() for part in text.split(",")])
     try:
-        text = regular_file(Path(given), _MOST_BYTES).read_text(encoding="utf-8")
+        content = regular_file(Path(text), _MOST_BYTES).read_text(encoding="utf-8")
     except UnicodeDecodeError as error:
-        raise ValueError(f"--loads is {given}, which is no text; name one of numbers") from error
+        raise ValueError(
+            f"--loads is {text}, which is not a text; name a file of numbers"
+        ) from error
     try:
-        return load_values(re.sub("#.*", "", text).replace(",", " ").split())
+        return load_values(re.sub("#.*", "", content).replace(",", " ").split())
     except ValueError as error:
-        raise ValueError(f"{given}: {error}") from error
+        raise ValueError(f"{text}: {error}") from error
 
 
 @click.command(
@@ -157,7 +159,7 @@ def cycle(
 
     The exit code is 0 if the cycle is complete (on a sphere without --loads, if contact is lost)
     and 1 if it ended early; the output is written in both cases. It is 2 if the input cannot be
-    used, and 75 after Ctrl-C or SIGTERM: the states so far are then kept beside the output, and
+    used, and 75 after Ctrl-C or SIGTERM: the states so far are then kept next to the output, and
     the same command continues from there.
     """
     from crackfront.core.cycle.load_schedule import DEFAULT_STEP
@@ -171,7 +173,7 @@ def cycle(
     from crackfront.surfaces.straight_front import straight_front
     from crackfront.surfaces.surface_array import read_field
 
-    _refuse_outputs(field_file, output, figure)
+    _check_outputs(field_file, output, figure)
     solution = named_solver(solver, DEFAULT_TOLERANCE)
     surface = read_field(field_file)
     pressed = surface if spring is None else straight_front(surface, spring)
@@ -202,17 +204,17 @@ def cycle(
         raise click.ClickException(f"at {end} {recorder.status.value}")
 
 
-def _refuse_outputs(field_file: Path, output: Path, figure: Path | None) -> None:
+def _check_outputs(field_file: Path, output: Path, figure: Path | None) -> None:
     """Raise if an output cannot be written, or would overwrite a file of something else."""
     from crackfront.simulate.cycle_files import checkpoint_path
-    from crackfront.simulate.storage import refuse_no_file
+    from crackfront.simulate.storage import check_regular_file
 
-    refuse_no_file(output)
+    check_regular_file(output)
     written = {"--output": output, "--figure": figure, "the checkpoint": checkpoint_path(output)}
-    refuse_overwriting([field_file], written)
-    refuse_foreign_netcdf("--output", output)
+    check_overwriting([field_file], written)
+    check_replaced_netcdf("--output", output)
     for path in (output, figure or output):
-        refuse_unwritable(path.parent)
+        check_writable(path.parent)
 
 
 def _recorded(

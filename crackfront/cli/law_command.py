@@ -10,7 +10,7 @@ import click
 
 from crackfront.cli.answers import echo_answer
 from crackfront.cli.parameters import as_json, examples
-from crackfront.core.bounds import LENGTH, refuse_outside
+from crackfront.core.bounds import LENGTH, check_within
 
 if TYPE_CHECKING:
     from crackfront.analysis.estimate import Estimate
@@ -75,24 +75,26 @@ def law(
     given_front = any(item is not None for item in (*front, breadth))
     if given_front and any(item is not None for item in sphere):
         raise ValueError(
-            f"options of a front ({_FRONT}) and a sphere ({_SPHERE}) are mixed; name those of one"
+            f"options of a front ({_FRONT}) and a sphere ({_SPHERE}) are mixed; name either of them"
         )
     if w_rms is not None and g is not None:
-        found = pinning_factor(w_rms, g, field, breadth)
+        factor = pinning_factor(w_rms, g, field, breadth)
         # JSON has no infinity.
         place: dict[str, Any] = {"w_rms": w_rms, "g": g if math.isfinite(g) else "inf"}
         place |= {} if breadth is None else {"breadth": breadth}
         size, shape = g, breadth
-        entries = _entries(found.factor, found, found, place, found.warning)
+        entries = _entries(factor.factor, factor, factor, place, factor.warning)
     elif spectrum is not None and elastic_energy is not None and contact_radius is not None:
-        known = sphere_factors(field, _shape(spectrum), elastic_energy, contact_radius)
-        size, shape = known.size, spectral_breadth(field, _shape(spectrum))
-        place = {"w_rms": 2 * math.sqrt(elastic_energy), "l_kappa": known.spring}
-        place |= {"larkin_length": known.larkin_length, "g": known.size}
-        entries = _entries(known.both, known.approach, known.retraction, place, known.warning)
+        factors = sphere_factors(field, _shape(spectrum), elastic_energy, contact_radius)
+        size, shape = factors.size, spectral_breadth(field, _shape(spectrum))
+        place = {"w_rms": 2 * math.sqrt(elastic_energy), "l_kappa": factors.spring}
+        place |= {"larkin_length": factors.larkin_length, "g": factors.size}
+        entries = _entries(
+            factors.both, factors.approach, factors.retraction, place, factors.warning
+        )
     else:
         raise ValueError(f"the options are incomplete; name {_FRONT}, or else {_SPHERE}")
-    departures = [one.sentence for one in shipped_law().departures_at(size, shape)]
+    departures = [departure.sentence for departure in shipped_law().departures_at(size, shape)]
     entries |= {
         "departures": departures,
         "measured": {"w_rms": shipped_law().disorder, "g": shipped_law().size},
@@ -153,14 +155,14 @@ def _shape(text: str) -> SelfAffineSpectrum:
     from crackfront.core.spectrum import SelfAffineSpectrum
 
     try:
-        given = [float(part) for part in text.split(",")]
+        numbers = [float(part) for part in text.split(",")]
         # The Hurst exponent has no effect on a flat spectrum.
-        short_cutoff, roll_off, hurst = (*given * 2, 1.0) if len(given) == 1 else given
+        short_cutoff, roll_off, hurst = (*numbers * 2, 1.0) if len(numbers) == 1 else numbers
     except ValueError as error:
         raise ValueError(
             f"--spectrum is {text!r}; write short cutoff, roll-off and Hurst exponent, as in "
             "0.005,0.1,0.3, or the cutoff of a flat spectrum"
         ) from error
     for length in (short_cutoff, roll_off):
-        refuse_outside("--spectrum: a wavelength", length, LENGTH)
+        check_within("--spectrum: a wavelength", length, LENGTH)
     return SelfAffineSpectrum(short_cutoff, roll_off, hurst)

@@ -9,8 +9,15 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from crackfront.cli.answers import echo_json
-from crackfront.cli.output_files import refuse_overwriting, refuse_unwritable
-from crackfront.cli.parameters import FILE, Number, as_json, examples, options_of, refuse_without
+from crackfront.cli.output_files import check_overwriting, check_writable
+from crackfront.cli.parameters import (
+    FILE,
+    Number,
+    as_json,
+    check_needed_option,
+    examples,
+    options_of,
+)
 from crackfront.core.bounds import Range
 from crackfront.measured.options import (
     ReadingOptions,
@@ -37,7 +44,7 @@ def _in_si(unit: str) -> _Callback:
     """Callback that gives an option its value in a unit of SI."""
 
     def value(_: click.Context, option: click.Parameter, text: str | None) -> float | None:
-        return None if text is None else si_value(text, unit, what=option.opts[0])
+        return None if text is None else si_value(text, unit, name=option.opts[0])
 
     return value
 
@@ -51,7 +58,7 @@ def _window(
     ends = text.split(":")
     if len(ends) != 2:
         raise ValueError(f"--window is {text!r}; give two contact radii, as in 50um:150um")
-    low, high = (si_value(end, "m", what=option.opts[0]) for end in ends)
+    low, high = (si_value(end, "m", name=option.opts[0]) for end in ends)
     return low, high
 
 
@@ -123,12 +130,12 @@ def loop(
 
     FILE is a text with headings and two or three of these columns. Works of adhesion are averaged
     over the same contact radii in both branches, as in simulations. FILE may also be a cycle in
-    netCDF that `crackfront cycle` or a sweep has written. Its works of adhesion are those of the
-    simulation; they are in reduced units unless the file states a sphere, or --radius, --modulus
-    and --work-of-adhesion name one.
+    netCDF that `crackfront cycle` or a sweep has written, with the works of adhesion of
+    the simulation. They are in reduced units unless the file states a sphere, or --radius,
+    --modulus and --work-of-adhesion name one.
 
-    Options of reading, from --channel to --longest, are those of `crackfront predict` and apply to
-    the --scans.
+    Options of reading, from --channel to --longest, are the same as in `crackfront predict` and
+    apply to the --scans.
     """
     from crackfront.measured.loops.simulated_loop import is_netcdf
 
@@ -136,10 +143,10 @@ def loop(
         raise ValueError("a prediction for --scans needs w_int; give --work-of-adhesion")
     reading = _reading(scans, options)
     rig = {name: options[name] for name in options if name not in ReadingOptions.model_fields}
-    refuse_without(context, "modulus", "poisson")
-    refuse_overwriting([path, *scans], {"--figure": figure})
+    check_needed_option(context, "modulus", "poisson")
+    check_overwriting([path, *scans], {"--figure": figure})
     if figure is not None:
-        refuse_unwritable(figure.parent)
+        check_writable(figure.parent)
     contact_modulus = None if modulus is None else modulus / (1 - poisson**2)
     if is_netcdf(path):
         if names := [name for name, value in rig.items() if value]:
@@ -190,8 +197,8 @@ def _measured(
     recording = read_recording(path, heads, units)
     if radius is None:
         raise ValueError(f"{path} does not state the sphere; give its --radius, as in 1.25mm")
-    known = ("modulus_error", "radius_error", "stiffness", "window")
-    rig = Rig(radius, contact_modulus, **{name: options[name] for name in known})
+    rig_options = ("modulus_error", "radius_error", "stiffness", "window")
+    rig = Rig(radius, contact_modulus, **{name: options[name] for name in rig_options})
     return analyse_loop(recording, rig)
 
 
@@ -228,7 +235,7 @@ def _simulated(
     if radius is None or contact_modulus is None or work_of_adhesion is None:
         raise ValueError(
             f"{path} is in reduced units; give --radius, --modulus and --work-of-adhesion for "
-            "SI units, or none of them"
+            "SI units, or leave all three out"
         )
     scales = Scales(radius, work_of_adhesion, contact_modulus)
     return simulated_loop(in_si_units(cycle, scales), str(path))

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 
-def refuse_unwritable(folder: Path) -> None:
+def check_writable(folder: Path) -> None:
     """Raise an OSError where a folder cannot be made or written to, before anything is computed."""
     import tempfile
 
@@ -20,10 +20,10 @@ def refuse_unwritable(folder: Path) -> None:
         raise OSError(error.errno, error.strerror, str(folder)) from error
 
 
-def refuse_overwriting(inputs: Iterable[Path], outputs: Mapping[str, Path | None]) -> None:
+def check_overwriting(inputs: Iterable[Path], outputs: Mapping[str, Path | None]) -> None:
     """Raise ValueError if an output is a file that the command reads, or two outputs are one.
 
-    The outputs are those of options by their names; a figure without suffix is a PDF and a PNG.
+    `outputs` are the files that options name; a figure without suffix is a PDF and a PNG.
     """
     # `Path.resolve` raises an error for a link to itself.
     read = {os.path.realpath(path) for path in inputs}
@@ -45,7 +45,7 @@ def refuse_overwriting(inputs: Iterable[Path], outputs: Mapping[str, Path | None
             written[place] = option
 
 
-def refuse_foreign_table(option: str, path: Path | None, first: str) -> None:
+def check_replaced_table(option: str, path: Path | None, first: str) -> None:
     """Raise ValueError if a file exists that is not a table with this first column."""
     if path is None or not path.is_file():
         return
@@ -54,7 +54,7 @@ def refuse_foreign_table(option: str, path: Path | None, first: str) -> None:
             raise _foreign(option, path)
 
 
-def refuse_foreign_netcdf(option: str, path: Path | None) -> None:
+def check_replaced_netcdf(option: str, path: Path | None) -> None:
     """Raise ValueError if a file exists that is not a netCDF file of crackfront."""
     from crackfront.simulate.storage import UnreadableFileError, read_attributes
 

@@ -41,10 +41,10 @@ class Number(click.FloatRange):
         try:
             float(value)
         except ValueError:
-            self.fail(f"{value!r} is no number", param, ctx)
+            self.fail(f"{value!r} is not a number", param, ctx)
         number = super().convert(value, param, ctx)
         if math.isnan(number):
-            self.fail("nan is no number", param, ctx)
+            self.fail("nan is not a number", param, ctx)
         return number
 
 
@@ -82,7 +82,7 @@ def options_of(record: type[Options], *, required: bool = False) -> Callable[[Co
     return decorated
 
 
-def refuse_without(context: click.Context, needed: str, *names: str) -> None:
+def check_needed_option(context: click.Context, needed: str, *names: str) -> None:
     """Raise ValueError if an option is given without another one that it needs."""
     if not context.params[needed]:
         for name in names:
@@ -90,12 +90,12 @@ def refuse_without(context: click.Context, needed: str, *names: str) -> None:
                 raise ValueError(f"{_option(name)} has an effect only with {_option(needed)}")
 
 
-def refuse_together(context: click.Context, other: str, *names: str) -> None:
+def check_together(context: click.Context, decider: str, *names: str) -> None:
     """Raise ValueError if an option is given with another one that leaves it without effect."""
-    if context.params[other]:
+    if context.params[decider]:
         for name in names:
             if context.get_parameter_source(name) is not ParameterSource.DEFAULT:
-                raise ValueError(f"{_option(name)} has no effect with {_option(other)}; drop one")
+                raise ValueError(f"{_option(name)} has no effect with {_option(decider)}; drop one")
 
 
 def _option(name: str) -> str:

@@ -133,12 +133,12 @@ def summary(configuration: Path, output: Path | None) -> None:
 
     sweep, store, origin = opened(configuration, output, warn)
     about = {name: text for name, text in store.about(sweep).items() if name != "configuration"}
-    kept = store.folder / "fit.nc"
+    fit_file = store.folder / "fit.nc"
     request = fit_request(sweep).digest
-    if kept.is_file() and fitted_request(kept) != request:
+    if fit_file.is_file() and fitted_request(fit_file) != request:
         raise ValueError(
-            f"{kept} is the fit of another range or table than those of the configuration given, "
-            "or of an older version; run crackfront fit with it, or the workflow"
+            f"{fit_file} is the fit of another range or table than this configuration has, or of "
+            "an older version; run crackfront fit with this one, or the workflow"
         )
     pictures = {text: store.folder / "figures" / f"{name}.png" for name, text in _CAPTIONS.items()}
     if absent := [path for path in pictures.values() if not path.is_file()]:
@@ -146,10 +146,10 @@ def summary(configuration: Path, output: Path | None) -> None:
             f"{absent[0]} is not there; run crackfront figures with this configuration, or the "
             "workflow"
         )
-    if other := [path for path in pictures.values() if picture_subject(path) != request]:
+    if outdated := [path for path in pictures.values() if picture_subject(path) != request]:
         raise ValueError(
-            f"{other[0]} was drawn with another configuration than the one given, or by an older "
-            "version; run crackfront figures with this one, or the workflow"
+            f"{outdated[0]} was drawn with another configuration than the one given, or by an "
+            "older version; run crackfront figures with this one, or the workflow"
         )
     page = summary_page(
         f"Adhesion hysteresis: {configuration.stem}",
@@ -198,8 +198,7 @@ def fit_of_sweep(configuration: Path) -> SweepFit:
     sweep, store, _ = opened(configuration, None)
     if not store.hysteresis.exists():
         raise ValueError(
-            f"{store.folder} holds no hysteresis.nc; run the sweep first: "
-            f"make SWEEP={configuration}"
+            f"{store.folder} lacks hysteresis.nc; run the sweep first: make SWEEP={configuration}"
         )
     return _fitted(sweep, store)
 
@@ -234,8 +233,8 @@ def _loop_example(sweep: Sweep, table: SweepTable) -> Simulation:
     longest = max(self_affine or sweep.spectra, key=lambda item: max(0.0, item.spring))
     spectrum, amplitude, realisation = np.nonzero(table.finite)
     away = np.abs(np.array(sweep.elastic_energies) - 0.05)[amplitude]
-    others = spectrum != sweep.spectra.index(longest)
-    first = np.lexsort((realisation, away, others))[0]
+    is_elsewhere = spectrum != sweep.spectra.index(longest)
+    first = np.lexsort((realisation, away, is_elsewhere))[0]
     return sweep.simulation(
         sweep.spectra[spectrum[first]],
         sweep.elastic_energies[amplitude[first]],

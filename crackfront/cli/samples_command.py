@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from crackfront.cli.output_files import refuse_foreign_table, refuse_overwriting, refuse_unwritable
-from crackfront.cli.parameters import FILE, examples, options_of, refuse_together
+from crackfront.cli.output_files import check_overwriting, check_replaced_table, check_writable
+from crackfront.cli.parameters import FILE, check_together, examples, options_of
 from crackfront.measured.options import PredictionOptions, ReadingOptions, SphereOptions
 
 if TYPE_CHECKING:
@@ -69,49 +69,49 @@ def samples(
     `crackfront predict` for scans, sphere and theory. Options of the command apply to rows that do
     not give a value.
 
-    If a row cannot be used, the table is refused with the number of its line before anything is
+    If a row cannot be used, the command ends with an error that states its line, before anything is
     computed. A sample whose files fail later has the outcome `refused` in its row. The exit code is
-    the largest of all samples, each as that of `crackfront predict`.
+    the largest of all samples, each as in `crackfront predict`.
     """
     from crackfront.measured.samples.sample import read_samples
 
-    refuse_together(context, "no_figure", "figure", "quantity")
-    refuse_overwriting([path], {"--csv": table, "--figure": figure})
-    refuse_foreign_table("--csv", table, "sample")
+    check_together(context, "no_figure", "figure", "quantity")
+    check_overwriting([path], {"--csv": table, "--figure": figure})
+    check_replaced_table("--csv", table, "sample")
     stem = Path("results/samples", path.stem)
     table = table or stem.with_name(f"{stem.name}.csv")
     common = {name: value for name, value in options.items() if value not in (None, ())}
     series = read_samples(path, common)
     if not no_figure:
-        refuse_unwritable((figure or stem).parent)
-    found = write_samples(table, series, "sample")
-    refused = [one.sample.name for one in found if one.outcome == "refused"]
+        check_writable((figure or stem).parent)
+    results = write_samples(table, series, "sample")
+    refused = [result.sample.name for result in results if result.outcome == "refused"]
     if refused:
         click.echo(f"without a value: {', '.join(refused)}; the table states the reasons", err=True)
     if not no_figure:
         from crackfront.measured.page.series import series_figure
         from crackfront.plots.style import save_figure
 
-        drawn = series_figure([one.point(quantity) for one in found], quantity)
+        drawn = series_figure([result.point(quantity) for result in results], quantity)
         for file in save_figure(drawn, figure or stem):
             click.echo(f"figure: {file}", err=str(table) == "-")
-    context.exit(max(exit_code(one.outcome, strict) for one in found))
+    context.exit(max(exit_code(result.outcome, strict) for result in results))
 
 
 def write_samples(path: Path, samples: Sequence[Sample], first: str) -> list[SampleResult]:
     """Write a table with a row for each sample, as soon as it is known; - is standard output."""
     from crackfront.measured.samples.sample_results import predicted_samples
-    from crackfront.simulate.storage import refuse_no_file, write_text
+    from crackfront.simulate.storage import check_regular_file, write_text
 
-    is_printed, found = str(path) == "-", []
+    is_printed, results = str(path) == "-", []
     if not is_printed:
-        refuse_no_file(path)
-        refuse_unwritable(path.parent)
+        check_regular_file(path)
+        check_writable(path.parent)
     text = ""
-    for one in predicted_samples(samples):
-        click.echo(_line(one), err=is_printed)
-        found.append(one)
-        rows = [{first: each.row["sample"]} | each.row for each in found]
+    for result in predicted_samples(samples):
+        click.echo(_line(result), err=is_printed)
+        results.append(result)
+        rows = [{first: each.row["sample"]} | each.row for each in results]
         if first != "sample":
             rows = [{k: v for k, v in row.items() if k not in ("sample", "group")} for row in rows]
         # After every sample, as each takes seconds: an interruption keeps what was read.
@@ -123,17 +123,17 @@ def write_samples(path: Path, samples: Sequence[Sample], first: str) -> list[Sam
         if not is_printed:
             write_text(path, text)
     click.echo(text if is_printed else f"table: {path}", nl=not is_printed)
-    return found
+    return results
 
 
-def _line(one: SampleResult) -> str:
+def _line(result: SampleResult) -> str:
     """What came of a sample."""
     from crackfront.measured.prediction.texts import ENERGY, estimate_text
 
-    if one.prediction is None:
-        return f"{one.sample.name}: {one.outcome}"
-    hysteresis = estimate_text(ENERGY, one.prediction.hysteresis)
-    return f"{one.sample.name}: hysteresis {hysteresis}; {one.outcome}"
+    if result.prediction is None:
+        return f"{result.sample.name}: {result.outcome}"
+    hysteresis = estimate_text(ENERGY, result.prediction.hysteresis)
+    return f"{result.sample.name}: hysteresis {hysteresis}; {result.outcome}"
 
 
 def exit_code(outcome: str, strict: bool) -> int:

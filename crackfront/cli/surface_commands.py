@@ -1,4 +1,4 @@
-"""`crackfront surface` and `crackfront predict`: what scans of a surface hold, and its adhesion."""
+"""`crackfront surface` and `crackfront predict`: what scans tell of a surface, and its adhesion."""
 
 from __future__ import annotations
 
@@ -10,18 +10,18 @@ import click
 
 from crackfront.cli.answers import announce_compilation, echo_answer, echo_json
 from crackfront.cli.output_files import (
-    refuse_foreign_netcdf,
-    refuse_foreign_table,
-    refuse_overwriting,
-    refuse_unwritable,
+    check_overwriting,
+    check_replaced_netcdf,
+    check_replaced_table,
+    check_writable,
 )
 from crackfront.cli.parameters import (
     FILE,
     as_json,
+    check_needed_option,
+    check_together,
     examples,
     options_of,
-    refuse_together,
-    refuse_without,
     whole,
 )
 from crackfront.cli.samples_command import exit_code, write_samples
@@ -57,7 +57,7 @@ def _listed(
     """The scans, unless a command is to list their channels instead of what it does."""
     if context.params.get("list_channels"):
         if not scans:
-            raise ValueError("--list-channels lists those of scans; name SCANS")
+            raise ValueError("--list-channels lists the channels of scans; name SCANS")
         from crackfront.measured.scan.instruments import list_channels
 
         for scan in scans:
@@ -143,8 +143,8 @@ def predict(
     SCANS are files of instruments in any format that SurfaceTopography reads, one measurement of
     the surface or several. Instead of scans, --psd names an exported spectral density, or --rms,
     --hurst and --correlation-length or --roll-off describe a self-affine surface. Works of
-    adhesion are w_int - e_el -+ k e_el. k is that of `crackfront law`, divided by the ratio of the
-    front to boundary elements.
+    adhesion are w_int - e_el -+ k e_el. k is the factor of `crackfront law`, divided by the
+    ratio of the front to boundary elements.
 
     Exit code 0: a prediction, with reservations where there are any or where it cannot be decided
     whether the theory applies (3 with --strict). 4: the theory does not apply; nothing is
@@ -156,14 +156,14 @@ def predict(
     from crackfront.measured.prediction.prediction import check_and_predict
 
     scales = _scales(options)
-    given = checked_options(PredictionOptions, options, "--")
+    theory = checked_options(PredictionOptions, options, "--")
     name = _origin(scans, psd, options)
-    refuse_without(context, "simulate", "realisations", "seed")
-    refuse_together(context, "no_figure", "figure", "panel")
-    refuse_together(context, "as_json", "is_long")
+    check_needed_option(context, "simulate", "realisations", "seed")
+    check_together(context, "no_figure", "figure", "panel")
+    check_together(context, "as_json", "is_long")
     inputs = scans if psd is None else (psd,)
-    refuse_overwriting(inputs, {"--csv": table, "--figure": figure})
-    refuse_foreign_table("--csv", table, "scan")
+    check_overwriting(inputs, {"--csv": table, "--figure": figure})
+    check_replaced_table("--csv", table, "scan")
     if table is not None:
         if not scans:
             raise ValueError("--csv writes a row for each scan; name scans")
@@ -172,13 +172,14 @@ def predict(
         from crackfront.measured.samples.sample import scans_as_samples
 
         reading = reading_options(for_files(options, scans), len(scans), "--")
-        found = write_samples(table, scans_as_samples(scans, reading, scales, given), "scan")
-        context.exit(max(exit_code(one.outcome, strict) for one in found))
+        samples = scans_as_samples(scans, reading, scales, theory)
+        results = write_samples(table, samples, "scan")
+        context.exit(max(exit_code(result.outcome, strict) for result in results))
     stem = Path("results/predict", name) if figure is None else figure
     if not no_figure:
-        refuse_unwritable(stem.parent)
+        check_writable(stem.parent)
     surface: Surface = _surface(scans, options) if scans else _stated_surface(psd, options)
-    (verdict, prediction), outcome = check_and_predict(surface, scales, given), None
+    (verdict, prediction), outcome = check_and_predict(surface, scales, theory), None
     say: Say = (lambda _: None) if as_json else click.echo
     if prediction is not None:
         say(repr(prediction))
@@ -199,10 +200,10 @@ def predict(
 
 
 def _origin(scans: tuple[Path, ...], psd: Path | None, options: Mapping[str, Any]) -> str:
-    """Name for the figure of a surface, which is refused unless it is given in one way."""
-    stated = named_options(SelfAffineOptions, options)
-    number = f"--{stated[0].replace('_', '-')}" if stated else "--rms"
-    ways = {"SCANS": bool(scans), "--psd": psd is not None, number: bool(stated)}
+    """Name for the figure of a surface; ValueError unless the surface is given in one way."""
+    numbers = named_options(SelfAffineOptions, options)
+    number = f"--{numbers[0].replace('_', '-')}" if numbers else "--rms"
+    ways = {"SCANS": bool(scans), "--psd": psd is not None, number: bool(numbers)}
     named = [way for way, is_named in ways.items() if is_named]
     if len(named) != 1:
         raise ValueError(
@@ -266,27 +267,27 @@ def surface(scans: tuple[Path, ...], as_json: bool, field: Path | None, **option
 
     is_pressed = any(options[name] is not None for name in SphereOptions.model_fields)
     scales = _scales(options) if is_pressed or field is not None else None
-    refuse_overwriting(scans, {"--field": field})
-    refuse_foreign_netcdf("--field", field)
+    check_overwriting(scans, {"--field": field})
+    check_replaced_netcdf("--field", field)
     if field is not None:
-        from crackfront.simulate.storage import refuse_no_file
+        from crackfront.simulate.storage import check_regular_file
 
         if len(scans) > 1:
             raise ValueError(f"--field takes one scan, not {len(scans)}; name the one to press on")
-        refuse_no_file(field)
-        refuse_unwritable(field.parent)
-    found = _surface(scans, options)
-    content = machine_readable(found, scales)
-    echo_answer(content, [report_text(found, scales)], as_json=as_json)
+        check_regular_file(field)
+        check_writable(field.parent)
+    measured = _surface(scans, options)
+    content = machine_readable(measured, scales)
+    echo_answer(content, [report_text(measured, scales)], as_json=as_json)
     if field is None or scales is None:
         return
-    if len(found.scans) > 1:
-        raise ValueError(f"--field takes one scan, and {scans[0]} holds {len(found.scans)}")
+    if len(measured.scans) > 1:
+        raise ValueError(f"--field takes one scan, and {scans[0]} contains {len(measured.scans)}")
     from crackfront.measured.tile import scan_surface
     from crackfront.surfaces.saving import save_result
     from crackfront.surfaces.surface_adhesion import surface_adhesion
 
-    pressed = scan_surface(found.scans[0], scales)
+    pressed = scan_surface(measured.scans[0], scales)
     energy = surface_adhesion(pressed).e_el
     save_result(pressed, field)
     if not as_json:

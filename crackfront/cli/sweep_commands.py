@@ -15,7 +15,7 @@ import click
 from crackfront.cli.answers import announce_compilation, announce_cost, echo_answer, table, warn
 from crackfront.cli.parameters import FILE, Number, as_json, examples, whole
 from crackfront.core.bounds import COUNT, Range
-from crackfront.core.resources import refuse_beyond_memory
+from crackfront.core.resources import check_memory
 from crackfront.core.words import counted, in_bytes
 
 # The rest is imported where it is used, so that --help does not wait for it.
@@ -56,8 +56,8 @@ def plan(configuration: Path, output: Path | None, block: int | None, as_json: b
     store.set_aside_damaged()
     shards, expected = sweep.shards(block), expectations(sweep)
     progress = {item.name: store.progress(sweep, item) for item in sweep.spectra}
-    missing = [one for found in progress.values() for one in found.missing]
-    n_missing = sum(found.n_missing for found in progress.values())
+    missing = [item for inventory in progress.values() for item in inventory.missing]
+    n_missing = sum(inventory.n_missing for inventory in progress.values())
     content = {
         "results": store.folder,
         "spectra": [item.name for item in sweep.spectra],
@@ -65,7 +65,7 @@ def plan(configuration: Path, output: Path | None, block: int | None, as_json: b
         "realisations": sweep.n_realisation,
         "simulations": sweep.n_simulation,
         "missing": n_missing,
-        "arithmetic": sorted(set().union(*(found.arithmetic for found in progress.values()))),
+        "arithmetic": sorted(set().union(*(item.arithmetic for item in progress.values()))),
         "shards": [shard.name for shard in shards],
         "unit_of_lengths": "reduced" if sweep.scales is None else "m",
         "expected": expected,
@@ -88,10 +88,10 @@ def _plan_lines(
 
     everything = sum(progress.values(), Inventory())
     lateral, unit = (1.0, "") if sweep.scales is None else (sweep.scales.lateral, " (m)")
-    spectra, left = [], []
+    spectra, to_run = [], []
     for item in sweep.spectra:
-        found = progress[item.name]
-        shape, sizes = item.spectrum, [one.resolution for one in sweep.one_per_amplitude(item)]
+        inventory = progress[item.name]
+        shape, sizes = item.spectrum, [each.resolution for each in sweep.one_per_amplitude(item)]
         spectra.append(
             (
                 item.name,
@@ -99,15 +99,17 @@ def _plan_lines(
                 f"{lateral * shape.longest_feature:.4g}",
                 f"{shape.hurst:.2f}" if hasattr(shape, "hurst") else "-",
                 *(
-                    _span([getattr(one, name) for one in expected[item.name]], "{:.2g}")
+                    _span([getattr(each, name) for each in expected[item.name]], "{:.2g}")
                     for name in ("disorder", "size", "factor")
                 ),
                 _span([size.n_angle for size in sizes]),
                 _span([size.n_point for size in sizes]),
-                f"{found.stored}/{found.stored + found.n_missing}",
+                f"{inventory.stored}/{inventory.stored + inventory.n_missing}",
             )
         )
-        left.append(_left(item.name, sum(shard.item is item for shard in shards), found.missing))
+        to_run.append(
+            _to_run(item.name, sum(shard.item is item for shard in shards), inventory.missing)
+        )
     lengths = f"lambda_s{unit}", f"lambda_r{unit}"
     yield from table(
         ("spectrum", *lengths, "H", "s", "g", "k", "angles", "points", "stored"),
@@ -116,9 +118,9 @@ def _plan_lines(
     yield "s is w_rms/w_int, g the size, and k what the law expects at the largest load"
     yield from filter(None, (*everything.sentences(), mixture_sentence(everything.arithmetic)))
     yield ""
-    left.append(_left("all", len(shards), everything.missing))
+    to_run.append(_to_run("all", len(shards), everything.missing))
     header = "to run", "shards", "simulations", "core hours", "longest s", "MB a rank"
-    yield from table(header, left)
+    yield from table(header, to_run)
     energies = ", ".join(f"{energy:g}" for energy in sweep.elastic_energies)
     yield f"\n{len(sweep.elastic_energies)} amplitudes e_el/w_int: {energies}"
     lowest, highest = sweep.fit.lowest_elastic_energy, sweep.fit.highest_elastic_energy
@@ -139,7 +141,7 @@ def _costs(missing: Sequence[MissingSimulations]) -> dict[str, float]:
     }
 
 
-def _left(name: str, n_shard: int, missing: Sequence[MissingSimulations]) -> tuple[str, ...]:
+def _to_run(name: str, n_shard: int, missing: Sequence[MissingSimulations]) -> tuple[str, ...]:
     """Row of what the missing simulations of a spectrum, or of all, are expected to cost."""
     core, longest, memory = _costs(missing).values()
     n_missing = sum(item.realisations.size for item in missing)
@@ -149,10 +151,10 @@ def _left(name: str, n_shard: int, missing: Sequence[MissingSimulations]) -> tup
 
 def _span(values: Sequence[float | None], form: str = "{:.0f}") -> str:
     """Range of values over the amplitudes, or the one that all have."""
-    known = [value for value in values if value is not None]
-    if not known:
+    present = [value for value in values if value is not None]
+    if not present:
         return "-"
-    low, high = form.format(min(known)), form.format(max(known))
+    low, high = form.format(min(present)), form.format(max(present))
     return low if low == high else f"{low}-{high}"
 
 
@@ -163,7 +165,7 @@ def _block(context: click.Context, parameter: click.Parameter, value: str | None
     first, dash, last = value.partition("-")
     if not (dash and first.isdecimal() and last.isdecimal() and int(first) <= int(last)):
         raise click.BadParameter(
-            f"{value!r} is no range of numbers; write the first and the last, as in 0-49"
+            f"{value!r} is not a range of numbers; write the first and the last, as in 0-49"
         )
     return range(int(first), int(last) + 1)
 
@@ -234,7 +236,7 @@ def _simulate(
         if inventory.missing:
             costs = _costs(inventory.missing)
             busy = min(workers.n_here, inventory.n_missing)
-            refuse_beyond_memory(
+            check_memory(
                 f"{counted(busy, 'rank')} of {in_bytes(costs['bytes_a_rank'])}",
                 costs["bytes_a_rank"] * busy,
                 "use fewer ranks, coarser numerics or a smaller tile",
@@ -243,7 +245,8 @@ def _simulate(
             for sentence in steady_part_warnings(sweep):
                 warn(sentence)
         lacking = [
-            (shard, found.simulations()) for shard, found in zip(shards, inventories, strict=True)
+            (shard, inventory.simulations())
+            for shard, inventory in zip(shards, inventories, strict=True)
         ]
         run_missing(store, lacking, origin, workers, checkpoint)
         for shard in shards:
@@ -298,13 +301,15 @@ def status(folder: Path, as_json: bool) -> None:
     """
     from crackfront.sweep.inventory import Inventory
     from crackfront.sweep.parameters import load_sweep
-    from crackfront.sweep.results_folder import refuse_older_layout
+    from crackfront.sweep.results_folder import check_layout
     from crackfront.sweep.store import Store
 
     store = Store(folder, warn)
-    refuse_older_layout(folder)
+    check_layout(folder)
     if not store.configuration.is_file():
-        raise ValueError(f"{folder} holds no sweep that was begun; name results/<its name>")
+        raise ValueError(
+            f"{folder} is not the folder of a sweep that was begun; name results/<its name>"
+        )
     sweep = load_sweep(store.configuration)
     inventories = {item.name: store.progress(sweep, item) for item in sweep.spectra}
     progress, running = _progress(inventories), store.running_shards()
@@ -328,18 +333,19 @@ class Progress:
 
 def _progress(inventories: Mapping[str, Inventory]) -> list[Progress]:
     """Progress of each spectrum; the time that is left assumes the speed so far."""
-    known = [*inventories.values()]
-    spent, expected = (sum(getattr(one, name) for one in known) for name in _SPENT)
+    spent, expected = (
+        sum(getattr(inventory, name) for inventory in inventories.values()) for name in _SPENT
+    )
     pace = spent / expected if spent else 1.0
     return [
         Progress(
             name,
-            found.done,
-            found.failed,
-            found.n_missing,
-            pace * sum(item.seconds for item in found.missing),
+            inventory.done,
+            inventory.failed,
+            inventory.n_missing,
+            pace * sum(item.seconds for item in inventory.missing),
         )
-        for name, found in inventories.items()
+        for name, inventory in inventories.items()
     ]
 
 

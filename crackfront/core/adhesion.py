@@ -17,8 +17,8 @@ if TYPE_CHECKING:
 FieldKind = Literal["roughness", "chemical"]
 
 
-def refuse_unknown_kind(kind: str) -> None:
-    """Raise if there is no such kind of fields."""
+def check_kind(kind: str) -> None:
+    """Raise ValueError if a kind of fields is unknown."""
     if kind not in get_args(FieldKind):
         raise ValueError(f"kind is {kind!r}; choose one of {', '.join(get_args(FieldKind))}")
 
@@ -169,8 +169,8 @@ def larkin_length(kind: FieldKind, spectrum: Spectrum, w_rms: float) -> float:
     with the correlator :math:`\Delta(u)` of w_loc integrated along the front, whose spectrum is
     :math:`C_w(q, 0)`, and the pinning force f_2 of second-order perturbation theory. For roughness
     :math:`\xi_u` is the rms height over the rms slope. docs/law.md derives it. Arguments are as of
-    :func:`correlation_length`, and the rms of w_loc (units: w_int); the unit is that of lengths of
-    the spectrum.
+    :func:`correlation_length`, and the rms of w_loc (units: w_int). (Units: as lengths of
+    the spectrum)
     """
     return 2 * np.pi * force_correlation_length(kind, spectrum) / w_rms**2
 

@@ -16,31 +16,31 @@ _TYPES_SHOWN_BY_VALUE = (str, int, float, bool, type(None))
 """Types of which a message shows the value; of all others it names the type."""
 
 _KINDS = {"d": "a folder", "p": "a pipe", "s": "a socket", "c": "a device", "b": "a device"}
-"""What a path names that is no file, by the first letter of its mode."""
+"""What a path that is not a file names, by the first letter of its mode."""
 
 
-def refuse_other_type(
-    name: str, value: object, kind: type[Any] | tuple[type[Any], ...], wanted: str
+def check_type(
+    name: str, value: object, kind: type[Any] | tuple[type[Any], ...], expected: str
 ) -> None:
-    """Raise TypeError if an argument is none of a type, with what is wanted instead.
+    """Raise TypeError if an argument has another type, with what is expected.
 
     Examples
     --------
-    >>> refuse_other_type("surface", "scan.ibw", list, "a list of heights")
+    >>> check_type("surface", "scan.ibw", list, "a list of heights")
     Traceback (most recent call last):
     TypeError: surface is 'scan.ibw'; give a list of heights
     """
     if not isinstance(value, kind):
-        raise TypeError(f"{name} is {_shown(value)}; give {wanted}")
+        raise TypeError(f"{name} is {_shown(value)}; give {expected}")
 
 
-def refuse_no_numbers(**values: object) -> None:
-    """Raise TypeError if one of some arguments is no number."""
+def check_numbers(**values: object) -> None:
+    """Raise TypeError if an argument is not a number."""
     for name, value in values.items():
-        refuse_other_type(name, value, Real, "a number")
+        check_type(name, value, Real, "a number")
 
 
-def nearest_name(name: str, known: Iterable[str], otherwise: str = "choose one of") -> str:
+def nearest_name(name: str, names: Iterable[str], otherwise: str = "choose one of") -> str:
     """What to do about an unknown name: the known one that is near it, or else all of them.
 
     Examples
@@ -50,7 +50,7 @@ def nearest_name(name: str, known: Iterable[str], otherwise: str = "choose one o
     >>> nearest_name("x", ["hurst", "roll_off"], "the keys here are")
     'the keys here are hurst, roll_off'
     """
-    names = list(known)
+    names = list(names)
     near = difflib.get_close_matches(name, names, n=1)
     return f"did you mean {near[0]}?" if near else f"{otherwise} {', '.join(names)}"
 
@@ -73,7 +73,7 @@ def regular_file(path: Path, most_bytes: float = math.inf) -> Path:
     about = path.stat()
     if not stat.S_ISREG(about.st_mode):
         kind = _KINDS.get(stat.filemode(about.st_mode)[0], "something else")
-        raise ValueError(f"{path} is {kind}, no file; name a file")
+        raise ValueError(f"{path} is {kind}, not a file; name a file")
     if about.st_size > most_bytes:
         raise ValueError(
             f"{path} has {in_bytes(about.st_size)}; more than {in_bytes(most_bytes)} are not read"

@@ -34,13 +34,13 @@ DENSITY = Range(1e-3, 1e3)
 """Sites, samples or points per length of a surface."""
 
 PIXELS = Range(2, 1e3)
-"""Points of a tile per shortest wavelength; fewer do not hold it."""
+"""Points of a tile per shortest wavelength; fewer do not resolve it."""
 
 SITES = Range(4, 10**15)
 """Sites of a front; fewer resolve no distortion."""
 
 SEED = Range(0, 2**63 - 1)
-"""Seeds: what a netCDF file can hold as an attribute."""
+"""Seeds that a netCDF file can store as an attribute."""
 
 SI = {
     "m": Range(1e-12, 1e7),
@@ -55,18 +55,18 @@ TOLERANCE = Range(1e-16, 1.0)
 """Force that may be left, relative to w_int per front length."""
 
 
-def refuse_outside(what: str, value: float, bounds: Range, unit: str = "") -> None:
+def check_within(name: str, value: float, bounds: Range, unit: str = "") -> None:
     """Raise a ValueError that names a number if it is not within its bounds.
 
     Examples
     --------
-    >>> refuse_outside("spring", 1e300, LENGTH)
+    >>> check_within("spring", 1e300, LENGTH)
     Traceback (most recent call last):
     ValueError: spring is 1e+300; it must lie between 1e-09 and 1e+09
     """
     if not bounds.least <= value <= bounds.most:
         unit = f" {unit}" if unit else ""
         raise ValueError(
-            f"{what} is {value:g}{unit}; it must lie between {bounds.least:g} and "
+            f"{name} is {value:g}{unit}; it must lie between {bounds.least:g} and "
             f"{bounds.most:g}{unit}"
         )

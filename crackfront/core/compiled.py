@@ -43,7 +43,7 @@ class _FirstCompilation(event.Listener):  # type: ignore[misc]
 
 
 def when_compiling(announce: Callable[[], None]) -> None:
-    """Call a function once, before the first kernel is compiled that the cache does not hold."""
+    """Call a function once, before the first kernel is compiled that is not in the cache."""
     event.register("numba:compile", _FirstCompilation(announce))
 
 
@@ -66,7 +66,7 @@ class _CheckedContent(CompileResultCacheImpl):  # type: ignore[misc]
 
 
 class _KernelCache(FunctionCache):  # type: ignore[misc]
-    """numba's cache, but damaged files are compiled again and a full disk is no error."""
+    """numba's cache, but damaged files are compiled again and a full disk raises no error."""
 
     _impl_class = _CheckedContent
 
@@ -119,7 +119,7 @@ def _say_damaged(folder: Path) -> None:
 
 
 def _function_cache(function: Callable[..., Any]) -> _KernelCache | None:
-    """Cache of a function; None if there is no safe folder or the function is in no file."""
+    """Cache of a function; None without a safe folder, or if the function is not in a file."""
     folder = kernel_folder()
     if folder is None:
         return None

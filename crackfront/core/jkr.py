@@ -65,7 +65,7 @@ def surface_displacement(distance: ArrayLike, radius: float, penetration: float)
 
     .. math:: u = \frac{1}{\pi} [(2 b - r^2) \arcsin(a / r) + a \sqrt{r^2 - a^2}] .
 
-    It is positive into the half-space. (Units: those of b; of the distance r from the apex, of a)
+    It is positive into the half-space. (Units: as b; the distance r from the apex as a)
     """
     r = np.maximum(np.asarray(distance, dtype=float), radius)
     outside = (2 * penetration - r**2) * np.arcsin(radius / r)

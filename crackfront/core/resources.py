@@ -23,7 +23,7 @@ class TooLargeError(ValueError):
     """A computation needs more memory or time than there is."""
 
 
-def refuse_beyond_memory(what: str, needed: float, remedy: str, *, anywhere: bool = False) -> None:
+def check_memory(task: str, needed: float, remedy: str, *, anywhere: bool = False) -> None:
     """Raise TooLargeError if something needs more memory than there is for this process.
 
     The error states the memory that is needed (Units: bytes), the memory of this process and the
@@ -32,15 +32,15 @@ def refuse_beyond_memory(what: str, needed: float, remedy: str, *, anywhere: boo
     at_hand = memory_at_hand()
     if needed > (max(at_hand, MOST_MEMORY) if anywhere else at_hand):
         raise TooLargeError(
-            f"{what} would need {in_bytes(needed)} of memory; here are {in_bytes(at_hand)}: "
+            f"{task} would need {in_bytes(needed)} of memory; here are {in_bytes(at_hand)}: "
             f"{remedy}"
         )
 
 
-def refuse_beyond_time(what: str, seconds: float, remedy: str) -> None:
+def check_time(task: str, seconds: float, remedy: str) -> None:
     """Raise if something takes more than :data:`MOST_SECONDS` of processor time."""
     if not seconds <= MOST_SECONDS:
-        raise TooLargeError(f"{what} would take {in_time(seconds)} of processor time; {remedy}")
+        raise TooLargeError(f"{task} would take {in_time(seconds)} of processor time; {remedy}")
 
 
 def memory_at_hand() -> float:

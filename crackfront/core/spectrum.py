@@ -179,7 +179,7 @@ class SelfAffineSpectrum(Spectrum):
     Raises
     ------
     TypeError
-        If one of them is no number.
+        If one of them is not a number.
     ValueError
         If a length is not positive, the roll-off is shorter than the cutoff, or H is outside
         (0, 1].

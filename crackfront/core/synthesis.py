@@ -45,8 +45,8 @@ def gaussian_field(
     Raises
     ------
     ValueError
-        If the tile has no extent, the shortest wavelength is below two pixels, or the tile is
-        shorter than the shortest wavelength so that it holds no mode.
+        If the side of the tile is not positive, or shorter than the shortest wavelength so that no
+        mode fits, or if the shortest wavelength is below two pixels.
 
     References
     ----------
@@ -75,10 +75,10 @@ def gaussian_field(
 
 
 def _modes(short_cutoff: float, n_point: int, length: float) -> tuple[int, int]:
-    """Largest mode of a spectrum along a side of a tile, and of those that its grid can hold."""
+    """Largest mode of a spectrum along a side of a tile, and largest mode of its grid."""
     if n_point < 4 or not 0 < length < math.inf:
         raise ValueError(
-            f"tile of {n_point} points and side {length} cannot hold a surface; use at least 4 "
+            f"tile of {n_point} points and side {length} cannot have a surface; use at least 4 "
             "points and a positive side"
         )
     pixel = length / n_point

@@ -16,8 +16,8 @@ from typing import Annotated, Any, Literal, TypeVar, get_args
 from pydantic import BaseModel, BeforeValidator, ConfigDict, ValidationError, ValidationInfo
 from pydantic_core import ErrorDetails
 
-from crackfront.core.arguments import nearest_name, refuse_other_type
-from crackfront.core.bounds import SI, Range, refuse_outside
+from crackfront.core.arguments import check_type, nearest_name
+from crackfront.core.bounds import SI, Range, check_within
 from crackfront.core.units import Scales
 from crackfront.core.words import counted
 from crackfront.surfaces.written_units import is_unit, si_value
@@ -196,10 +196,10 @@ def quantity(unit: str, name: str, example: str) -> BeforeValidator:
 
     def checked(value: Any, info: ValidationInfo) -> float:
         option = _named(info)
-        refuse_other_type(option, value, (str, Real), f"a {name}, as '{example}' or in {unit}")
+        check_type(option, value, (str, Real), f"a {name}, as '{example}' or in {unit}")
         if isinstance(value, str):
-            return si_value(value, unit, what=option)
-        refuse_outside(option, float(value), SI[unit], unit)
+            return si_value(value, unit, name=option)
+        check_within(option, float(value), SI[unit], unit)
         return float(value)
 
     return BeforeValidator(checked)
@@ -213,7 +213,7 @@ def number(bounds: Range) -> BeforeValidator:
             converted = float(value)
         except (TypeError, ValueError) as error:
             raise ValueError(f"{_named(info)} is {value!r}; write a number") from error
-        refuse_outside(_named(info), converted, bounds)
+        check_within(_named(info), converted, bounds)
         return converted
 
     return BeforeValidator(checked)
@@ -221,7 +221,7 @@ def number(bounds: Range) -> BeforeValidator:
 
 def _text(value: Any, info: ValidationInfo) -> str:
     """Text, also from a whole number."""
-    refuse_other_type(_named(info), value, (str, Integral), "a text or a number")
+    check_type(_named(info), value, (str, Integral), "a text or a number")
     return str(value)
 
 
@@ -229,7 +229,7 @@ def _region(value: Any, info: ValidationInfo) -> Region:
     """Part of a scan, from a text as in 2um:8um,0um:5um or from pairs of ends in metres."""
     if isinstance(value, (list, tuple)) and value and all(map(_are_numbers, value)):
         return _checked_region(value, str(value), _named(info))
-    refuse_other_type(_named(info), value, str, "a text, as in '2um:8um,0um:5um'")
+    check_type(_named(info), value, str, "a text, as in '2um:8um,0um:5um'")
     return _region_from_text(value, _named(info))
 
 
@@ -254,7 +254,7 @@ def _position(text: str, option: str) -> float:
     """Position in a scan from a text, whose unit may be missing if it is zero (Units: m)."""
     zero = _ZERO.fullmatch(text)
     if zero is None or (zero[1] and not is_unit(zero[1], "m")):
-        return si_value(text, "m", what=option)
+        return si_value(text, "m", name=option)
     return 0.0
 
 
@@ -268,7 +268,7 @@ def _region_or_file(value: Any, option: str) -> Region | Path:
     """Part of a scan from a text with colons or from numbers, else the path of a file."""
     if isinstance(value, tuple) and value and all(map(_are_numbers, value)):
         return _checked_region(value, str(value), option)
-    refuse_other_type(option, value, (str, PathLike), "a part, or the path of a file")
+    check_type(option, value, (str, PathLike), "a part, or the path of a file")
     is_region = isinstance(value, str) and ":" in value
     return _region_from_text(value, option) if is_region else Path(value)
 

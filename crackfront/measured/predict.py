@@ -9,7 +9,7 @@ from typing import Any
 
 from xarray import DataArray
 
-from crackfront.core.arguments import refuse_other_type
+from crackfront.core.arguments import check_type
 from crackfront.core.units import Scales
 from crackfront.measured.density.bands import analysed_scan
 from crackfront.measured.options import (
@@ -34,7 +34,7 @@ from crackfront.measured.spectrum.stated import (
     self_affine_surface_of,
 )
 from crackfront.measured.tile import scan_surface
-from crackfront.surfaces.scales import refuse_no_scales
+from crackfront.surfaces.scales import check_scales
 
 File = str | PathLike[str]
 
@@ -70,7 +70,7 @@ def read_scan(path: File, sphere: Scales, **options: Any) -> DataArray:
         If the file cannot be opened.
     """
     check_option_names("read_scan", options, ReadingOptions)
-    refuse_no_scales(sphere)
+    check_scales(sphere)
     file = _path(path, "path")
     [reading] = reading_options(options, 1)
     surface_library()  # All of it, as the user's program may import it too.
@@ -84,7 +84,7 @@ def read_scan(path: File, sphere: Scales, **options: Any) -> DataArray:
 
 def _path(value: File, name: str) -> Path:
     """Path from an argument; TypeError if it is not a path."""
-    refuse_other_type(name, value, (str, PathLike), "the path of a file")
+    check_type(name, value, (str, PathLike), "the path of a file")
     return Path(value)
 
 
@@ -194,7 +194,7 @@ def predict(
     is_stated = isinstance(scans, StatedSurface)
     records = [PredictionOptions] if is_stated else [PredictionOptions, ReadingOptions]
     check_option_names("predict", options, *records)
-    refuse_no_scales(sphere)
+    check_scales(sphere)
     prediction_options = checked_options(PredictionOptions, options)
     surface: Surface = scans if isinstance(scans, StatedSurface) else _measured(scans, options)
     verdict, prediction = check_and_predict(surface, sphere, prediction_options)
@@ -211,7 +211,7 @@ def predict(
 def _measured(scans: File | Iterable[File], options: dict[str, Any]) -> MeasuredSurface:
     """Surface from one or several scans."""
     paths = [scans] if isinstance(scans, (str, PathLike)) else scans
-    refuse_other_type("scans", paths, Iterable, "the path of a file, or a list of such")
+    check_type("scans", paths, Iterable, "the path of a file, or a list of such")
     files = [_path(path, "scan") for path in paths]
     surface_library()  # All of it, as the user's program may import it too.
     return read_surface(files, reading_options(options, len(files)))

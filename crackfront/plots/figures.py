@@ -15,7 +15,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from xarray import DataArray, Dataset
 
-from crackfront.core.arguments import refuse_other_type
+from crackfront.core.arguments import check_type
 from crackfront.core.arrays import Array
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.plots.axis_units import REDUCED, AxisUnits
@@ -43,9 +43,7 @@ _BINS_A_DECADE = 20
 
 def _drawing(axes: Axes | None) -> AbstractContextManager[Axes]:
     """The user's axes as they are, or new axes in the style of the package."""
-    refuse_other_type(
-        "axes", axes, (Axes, type(None)), "one Axes of matplotlib, as axes[0] of several"
-    )
+    check_type("axes", axes, (Axes, type(None)), "one Axes of matplotlib, as axes[0] of several")
     return shown_axes() if axes is None else nullcontext(axes)
 
 
@@ -60,7 +58,7 @@ def _reduced(data: Labelled) -> tuple[Labelled, AxisUnits]:
 def _check_loop(loop: object) -> None:
     """Raise TypeError unless an argument is a dataset."""
     remedy = "an xarray.Dataset, as run_loop returns it or crackfront cycle has written it"
-    refuse_other_type("loop", loop, Dataset, remedy)
+    check_type("loop", loop, Dataset, remedy)
 
 
 def _check_states(loop: Dataset, name: str) -> None:
@@ -261,7 +259,7 @@ def plot_fronts(
             "the loop has no fronts; run it with fronts=True, or crackfront cycle with "
             "--record fronts"
         )
-    refuse_other_type("most", most, Integral, "a whole number")
+    check_type("most", most, Integral, "a whole number")
     if most < 1:
         raise ValueError(f"most is {most}; draw 1 front or more")
     if "position" in loop:
@@ -312,7 +310,7 @@ def plot_instabilities(jumps: Dataset, axes: Axes | None = None) -> Axes:
     TypeError
         If an argument is of another type.
     """
-    refuse_other_type("jumps", jumps, Dataset, "what find_instabilities returns")
+    check_type("jumps", jumps, Dataset, "what find_instabilities returns")
     if "before" not in jumps or "travel" not in jumps.attrs:
         raise ValueError("jumps is another dataset; give what find_instabilities returns")
     if jumps.before.size == 0:

@@ -77,8 +77,8 @@ def stated_digest(path: Path) -> str | None:
     """
     if match := _NAMED.fullmatch(path.name):
         return match[2]
-    beside = digest_path(path)
-    return beside.read_text(encoding="utf-8", errors="replace")[:64] if beside.is_file() else None
+    file = digest_path(path)
+    return file.read_text(encoding="utf-8", errors="replace")[:64] if file.is_file() else None
 
 
 def is_whole(path: Path) -> bool:
@@ -86,8 +86,8 @@ def is_whole(path: Path) -> bool:
 
     False if nothing states a checksum: the caller knows which files must have one.
     """
-    known = stated_digest(path)
-    return bool(known) and file_digest(path).startswith(str(known))
+    digest = stated_digest(path)
+    return bool(digest) and file_digest(path).startswith(str(digest))
 
 
 def sums_text(digests: Mapping[str, str]) -> str:
@@ -115,7 +115,7 @@ def read_sums(folder: Path) -> dict[str, str]:
     path = folder / SUMS
     if not path.is_file():
         raise ValueError(
-            f"{folder} has no {SUMS}, so nothing says which files belong to it; run make, or "
+            f"{folder} lacks {SUMS}, so nothing says which files belong to it; run make, or "
             "crackfront checksums if it is finished"
         )
     return parsed_sums(path.read_text(encoding="utf-8", errors="replace"), folder)

@@ -5,8 +5,8 @@ other code asks which kind it is. `tests/simulate/test_third_contact.py` adds a 
 file. A new kind must provide the following:
 
 1. Its geometry: the named tuple, the state and the compiled functions that
-   :mod:`crackfront.core.geometry.base` lists. Other loads of a sphere or a line use those of
-   `core/geometry`.
+   :mod:`crackfront.core.geometry.base` lists. Other loads of a sphere or a line use the
+   geometries of `core/geometry`.
 2. A frozen dataclass that derives from :class:`Schedule`. Its fields and its `load_name` are part
    of the key of a simulation. Keys stay the same if a later field has a default.
 3. The problem, :class:`ContactTile`: the sizes of front and tile, the work of adhesion, the field.
@@ -160,7 +160,8 @@ class Forecast(ABC):
     def spring_at(self, work_of_adhesion: float) -> float:
         """Length L_kappa of the springs that hold the front at the largest load (Units: length).
 
-        The work of adhesion (Units: w_int) is that of a branch. ValueError if nothing holds it.
+        The work of adhesion (Units: w_int) is the apparent one of a branch. ValueError if nothing
+        holds the front.
         """
 
 
@@ -219,9 +220,9 @@ class SurfaceLoads(ABC):
         """Loads on the surfaces of one spectrum, amplitude and spring of the sweep."""
 
     @abstractmethod
-    def refuse_unresolved(self, simulation: Simulation) -> None:
+    def check_resolved(self, simulation: Simulation) -> None:
         """Raise ValueError if the numerics are too coarse for loads that this rule made."""
 
 
 SweepLoad = Schedule | SurfaceLoads
-"""Loads of a sweep: those of all simulations, or a rule that makes them for each surface."""
+"""Loads of a sweep: the same for all simulations, or a rule that makes them for each surface."""

@@ -7,8 +7,8 @@ import math
 from dataclasses import dataclass, replace
 
 from crackfront.core import jkr
-from crackfront.core.bounds import LENGTH, PENETRATION, refuse_outside
-from crackfront.core.resources import refuse_beyond_memory, refuse_beyond_time
+from crackfront.core.bounds import LENGTH, PENETRATION, check_within
+from crackfront.core.resources import check_memory, check_time
 from crackfront.core.spectrum import Spectrum
 from crackfront.simulate.numerics import Numerics
 from crackfront.simulate.settings import Settings
@@ -100,19 +100,19 @@ def run_cost(
 def affordable_seconds(*, n_angle: float, n_point: float, n_state: float, n_sample: float) -> float:
     """Rough processor time of a cycle on a given field, in seconds.
 
-    The numbers are those of the sites of the front, the points of the field, the load steps, and
-    the samples that each site passes. TooLargeError if time or memory are more than there is.
+    The arguments count the sites of the front, the points of the field, the load steps, and the
+    samples that each site passes. TooLargeError if time or memory are more than there is.
     """
     cost = run_cost(n_site=n_angle, n_point=n_point, n_state=n_state)
     seconds = cost.seconds + _SAMPLE_SECONDS * n_angle * n_sample
     cycle = f"a cycle of {n_state:.3g} load steps with {n_angle:.3g} sites and"
-    what, remedy = f"{cycle} {n_sample:.3g} samples a ray", "take fewer of them"
-    refuse_beyond_memory(what, cost.memory, remedy)
-    refuse_beyond_time(what, seconds, remedy)
+    task, remedy = f"{cycle} {n_sample:.3g} samples a ray", "take fewer of them"
+    check_memory(task, cost.memory, remedy)
+    check_time(task, seconds, remedy)
     return seconds
 
 
-def refuse_oversized(
+def check_sizes(
     spectrum: Spectrum, numerics: Numerics, settings: Settings, max_penetration: float
 ) -> None:
     """Raise if the tile or the front of a sphere is too large for the memory of any machine.
@@ -121,14 +121,14 @@ def refuse_oversized(
     """
     lengths = {"short_cutoff": spectrum.short_cutoff, "roll_off": spectrum.longest_feature}
     for name, value in lengths.items():
-        refuse_outside(name, value, LENGTH, "reduced lateral lengths")
-    refuse_outside("max_penetration", max_penetration, PENETRATION, "reduced vertical lengths")
+        check_within(name, value, LENGTH, "reduced lateral lengths")
+    check_within("max_penetration", max_penetration, PENETRATION, "reduced vertical lengths")
     cutoff = spectrum.short_cutoff
     points = numerics.tile_side(spectrum) / cutoff * settings.pixels_per_cutoff
     tiles = f"tiles of {points:.2g} x {points:.2g} points"
     remedy = "lower roll_offs, cutoffs or pixels_per_cutoff, or raise short_cutoff"
-    refuse_beyond_memory(tiles, _POINT_BYTES * points**2, remedy, anywhere=True)
+    check_memory(tiles, _POINT_BYTES * points**2, remedy, anywhere=True)
     circle = 2 * math.pi * jkr.equilibrium_radius(max_penetration)
     sites = settings.angles or circle / cutoff * settings.angles_per_cutoff
     remedy = "lower angles or angles_per_cutoff, or raise short_cutoff"
-    refuse_beyond_memory(f"fronts of {sites:.2g} sites", _SITE_BYTES * sites, remedy, anywhere=True)
+    check_memory(f"fronts of {sites:.2g} sites", _SITE_BYTES * sites, remedy, anywhere=True)

@@ -118,7 +118,7 @@ def read_checkpoint(path: Path, simulation: Simulation) -> PartialRun:
     states = simulation.geometry.state_type
     checkpoint = known_checkpoint(dataset, simulation.key, states, path)
     if checkpoint is None or dataset.attrs["physics_version"] != PHYSICS_VERSION:
-        raise UnreadableFileError(f"{path} is no checkpoint of {simulation.label}; move it away")
+        raise UnreadableFileError(f"{path} is not a checkpoint of {simulation.label}; move it away")
     costs = (float(dataset.attrs[name]) for name in ("seconds", "cpu_seconds"))
     return PartialRun(simulation, checkpoint, *costs)
 
@@ -159,7 +159,7 @@ def cycle_record(
 ) -> CycleRecord:
     """Record in a dataset of :func:`cycle_dataset`, or `UnreadableFileError`.
 
-    Its states are by default those of a loop on a user's surface, of a sphere or a straight front.
+    By default it is a loop on a user's surface, with the states of a sphere or a straight front.
     """
     if states is None:
         loops = (kind for kind in _LOOP_STATES if variables(kind)[0].name in dataset)
@@ -169,10 +169,10 @@ def cycle_record(
     name = str(dataset.attrs.get("status", "")).upper()
     end = f"end_{names[0]}"
     if missing or name not in Status.__members__ or end not in dataset.attrs:
-        what = ", ".join(missing) or "a known status"
+        lacking = ", ".join(missing) or "a known status"
         raise UnreadableFileError(
-            f"{place} is no loop: it lacks {what}; give what run_loop returned or crackfront cycle "
-            "wrote"
+            f"{place} is not a loop: it lacks {lacking}; give what run_loop returned or crackfront "
+            "cycle wrote"
         )
     pull_off = dataset.attrs.get("pull_off_energy")
     fronts = dataset.get(states.front_name)

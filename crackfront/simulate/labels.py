@@ -30,9 +30,10 @@ def unit_attributes(unit: str) -> dict[str, str]:
 
 def stated_unit(attributes: Mapping[Any, Any]) -> Any:
     """The unit that attributes state, a reduced one where there is one; None without any."""
-    given = attributes.get("units")
-    found = attributes.get("reduced_unit", given) if given == "1" else given
-    return str(found) if isinstance(found, str) else found
+    unit = attributes.get("units")
+    if unit == "1":
+        unit = attributes.get("reduced_unit", unit)
+    return str(unit) if isinstance(unit, str) else unit
 
 
 def label(variable: Variable, flags: Sequence[str] = ()) -> dict[str, Any]:

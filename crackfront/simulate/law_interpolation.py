@@ -86,7 +86,7 @@ class LawInterpolation:
         return avalanche
 
     def _largest(self, laws: Sequence[ErrorLaw], measured: Array) -> Array:
-        """Largest in the range of amplitudes of what was measured at those of the laws."""
+        """Largest value in the range of amplitudes, interpolated between the laws."""
         energies = np.array([law.elastic_energy for law in laws])
         between = (energies > self.lowest) & (energies < self.highest)
         amplitudes = np.log([self.lowest, *energies[between], self.highest])
@@ -100,7 +100,7 @@ def law_interpolation(
 ) -> LawInterpolation:
     """Shapes with the next correlation lengths, and amplitudes with as early an onset.
 
-    The size is that of the front for which settings are chosen.
+    `size` is the size of the front for which settings are chosen.
     """
     shapes = (_NARROW[kind], "h03", "h08")
     measured = np.log([_relative_correlation_length(*MEASURED[shape]) for shape in shapes])

@@ -1,7 +1,7 @@
 r"""Measured laws of the errors that the numerics leave in w_appr and w_retr, read from `laws.csv`.
 
 `python -m studies accuracy report` fits the laws to measured errors and writes `laws.csv`. An error
-is that of the mean apparent work of adhesion of one branch, in units of e_el: that of its factor k.
+concerns the mean apparent work of adhesion of one branch, in units of e_el, and thus its factor k.
 It has a bias, equal on all surfaces, and a scatter, from avalanches that one discretisation
 triggers and another does not; the scatter falls with the root of the size, the number of cutoffs
 along the front times the number of its states. Each setting has a law of its own,
@@ -61,7 +61,7 @@ class ErrorLaw:
     """+1 for w_appr, -1 for w_retr."""
     bias: tuple[float, float]
     scatter: tuple[float, float]
-    """Coefficients (c_0, c_1) of the logarithm, as of that of the bias. (Units: e_el)"""
+    """Coefficients (c_0, c_1) of the logarithm, as for the bias. (Units: e_el)"""
     avalanche: float
     """Change by one avalanche, on fronts of :data:`LAW_SIZE`; equal for all settings of a shape and
     an amplitude. (Units: e_el)"""

@@ -23,7 +23,7 @@ def numerical_error(
     """Standard errors (w_appr, w_retr) that the numerics leave (Units: w_int).
 
     The size is the number of states times length of the front over the short cutoff, by default the
-    usual one; the front length that of the longest front, by default that of a smooth contact.
+    usual one; the front length is the longest one, by default of a smooth contact.
     (Units: reduced lateral length)
     """
     sizes, cutoff = simulation.resolution, simulation.spectrum.short_cutoff

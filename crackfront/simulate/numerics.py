@@ -42,7 +42,7 @@ class Numerics:
         return chosen_settings(self.settings, kind, spectrum, elastic_energy, usual_size)
 
     def tile_side(self, spectrum: Spectrum) -> float:
-        """Least side of a tile (Units: that of the spectrum)."""
+        """Least side of a tile (Units: as the spectrum)."""
         return max(
             self.tile_roll_offs * spectrum.longest_feature,
             self.tile_cutoffs * spectrum.short_cutoff,

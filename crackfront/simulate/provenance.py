@@ -44,9 +44,9 @@ def _arithmetic() -> str:
     from numba import config
 
     compiled = config.CPU_NAME or get_host_cpu_name(), config.CPU_FEATURES or ""
-    found = np.show_config(mode="dicts")["SIMD Extensions"].get("found", ())
+    extensions = np.show_config(mode="dicts")["SIMD Extensions"].get("found", ())
     versions = (f"{name} {version(name)}" for name in _OF_BITS)
-    return ", ".join([" ".join(filter(None, (*compiled, *found))), *versions])
+    return ", ".join([" ".join(filter(None, (*compiled, *extensions))), *versions])
 
 
 @functools.cache
@@ -55,7 +55,7 @@ def _packages() -> str:
     lock = PACKAGE.with_name("requirements.lock")
     if lock.exists():
         return hashlib.sha256(lock.read_bytes()).hexdigest()[:12]
-    installed = sorted({(one.name, one.version) for one in distributions()})
+    installed = sorted({(package.name, package.version) for package in distributions()})
     return hashlib.sha256(repr(installed).encode()).hexdigest()[:12]
 
 
@@ -78,8 +78,9 @@ class Provenance:
     processor: str = field(default_factory=_processor)
     """Model of the processor that computed the result."""
     arithmetic: str = field(default_factory=_arithmetic)
-    """What decides the last bits beside sources and parameters: the kind of processor that numba
-    compiles for, the instruction sets that numpy uses, and the versions of what computes."""
+    """Processor that numba compiles for, instruction sets of numpy, and versions of libraries.
+
+    They decide the last bits of results."""
     packages: str = field(default_factory=_packages)
     """Digits of requirements.lock, or without that file of the versions of all packages."""
 
@@ -93,7 +94,7 @@ class Provenance:
 def provenance(configuration: str = "") -> Provenance:
     """Origin of what this process computes for a configuration of this text."""
     program = Path(sys.argv[0])
-    # Without its folder, which is that of one machine.
+    # Without its folder, which differs between machines.
     name = program.parent.name if program.name == "__main__.py" else program.name
     return Provenance(
         crackfront_version=__version__,

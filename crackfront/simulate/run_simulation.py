@@ -80,7 +80,7 @@ def run_simulation(
         simulation.elastic_energy,
     )
     measured = adhesion.e_el, adhesion.w_rms, float(np.mean(adhesion.work_of_adhesion < 0))
-    # The run holds the splines alone, not the tile as well.
+    # Only the splines stay in memory during the run, not the tile.
     del adhesion
     recorder = Recorder(
         fronts=simulation.record_fronts,

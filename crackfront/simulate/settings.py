@@ -117,8 +117,10 @@ def _chosen_values(
     for _ in range(_N_BISECTION):
         middle = math.sqrt(low * high)
         chosen = _coarsest(errors, error, middle)
-        left = {setting: errors[setting][..., chosen[setting]] for setting in _SHARES}
-        low, high = (middle, high) if max(branch_errors(left, LAW_SIZE)) <= error else (low, middle)
+        remaining = {setting: errors[setting][..., chosen[setting]] for setting in _SHARES}
+        low, high = (
+            (middle, high) if max(branch_errors(remaining, LAW_SIZE)) <= error else (low, middle)
+        )
     chosen = _coarsest(errors, error, low)
     return {setting: float(values[setting][chosen[setting]]) for setting in _SHARES}
 

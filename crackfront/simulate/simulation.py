@@ -44,12 +44,12 @@ class Simulation:
     resolution: Resolution
     """Sizes of the front and of the tile."""
     schedule: Schedule
-    """Loads of a kind, such as penetrations of a full cycle, or those of a straight front."""
+    """Loads of a kind, such as the penetrations of a full cycle."""
     solver: Solver
     """How its fronts are found."""
     record_fronts: bool = False
     record_energy: bool = False
-    """What to record beside the curves."""
+    """What to record in addition to the curves."""
 
     @property
     def parameters(self) -> dict[str, Any]:
@@ -59,7 +59,7 @@ class Simulation:
         key. The limit of sweeps is not a parameter: a result that did not reach it is the same.
         """
         lengths, numbers = self.spectrum.identity
-        stated: dict[str, Any] = {
+        parameters: dict[str, Any] = {
             "field": self.kind,
             "spectrum": {"lengths": lengths, "numbers": numbers},
             "elastic_energy": self.elastic_energy,
@@ -69,15 +69,15 @@ class Simulation:
             "tolerance": self.solver.tolerance,
         }
         if self.solver.name != "newton":
-            stated["solver"] = self.solver.name
+            parameters["solver"] = self.solver.name
         if record := [name for name, is_recorded in self._recorded if is_recorded]:
-            stated["record"] = record
-        rounded: dict[str, Any] = _rounded(stated)
+            parameters["record"] = record
+        rounded: dict[str, Any] = _rounded(parameters)
         return rounded
 
     @property
     def _recorded(self) -> tuple[tuple[str, bool], ...]:
-        """What may be recorded beside the curves, and whether it is."""
+        """What may be recorded in addition to the curves, and whether it is."""
         return ("fronts", self.record_fronts), ("energy", self.record_energy)
 
     @property
@@ -184,8 +184,8 @@ def simulation_of(
 ) -> Simulation:
     """The simulation of a surface; the largest penetration of the schedule decides its sites.
 
-    The name is that of the spectrum, the numerics are how it is resolved and solved, and `record`
-    is what is kept beside the curves; the rest is as in :class:`Simulation`.
+    `name` names the spectrum, `numerics` say how it is resolved and solved, and `record` what is
+    stored in addition to the curves; the rest is as in :class:`Simulation`.
     """
     settings = numerics.settings_of(kind, spectrum, elastic_energy, schedule.usual_size(spectrum))
     return Simulation(

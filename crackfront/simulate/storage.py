@@ -1,4 +1,4 @@
-"""Files: written whole or not at all, with origin and checksums; read as written, or refused."""
+"""Files: written whole or not at all, with origin and checksums, which reading checks."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from crackfront.core.resources import TooLargeError, refuse_beyond_memory
+from crackfront.core.resources import TooLargeError, check_memory
 from crackfront.simulate.checksums import (
     DAMAGED_SUFFIX,
     DIGITS_IN_NAME,
@@ -49,15 +49,15 @@ _LOCKING = "HDF5_USE_FILE_LOCKING"
 """Environment variable by which HDF5 opens files without a lock, as the command sets it."""
 
 
-def refuse_failing_system(path: Path, error: Exception) -> None:
-    """Raise an OSError if a file, which HDF5 refused, cannot be read or locked by the system."""
+def check_system(path: Path, error: Exception) -> None:
+    """Raise an OSError if the system cannot read or lock a file that HDF5 did not open."""
     with path.open("rb", buffering=0) as file:
-        _refuse_without_locks(path, file.fileno(), error)
+        _check_locks(path, file.fileno(), error)
         while file.read(2**24):
             pass
 
 
-def _refuse_without_locks(path: Path, number: int, error: Exception) -> None:
+def _check_locks(path: Path, number: int, error: Exception) -> None:
     """Raise if HDF5 could not lock an open file, with the path in the message."""
     if os.environ.get(_LOCKING, "").upper() in ("FALSE", "0"):
         return
@@ -84,7 +84,7 @@ def write_dataset(path: Path, dataset: xr.Dataset, origin: Provenance) -> None:
 
 
 def write_derived(path: Path, dataset: xr.Dataset, origin: Provenance) -> None:
-    """Write a dataset as :func:`write_dataset`, and its checksum into `<path>.sha256` beside it.
+    """Write a dataset as :func:`write_dataset`, and its checksum into `<path>.sha256`.
 
     HDF5 does not check the metadata of a file: a flipped bit there may change what is read, and
     from some damage it never returns. The checksum comes first, so that a new file never appears
@@ -98,7 +98,7 @@ def write_derived(path: Path, dataset: xr.Dataset, origin: Provenance) -> None:
 
 
 def write_named_by_digest(folder: Path, name: str, dataset: xr.Dataset, origin: Provenance) -> Path:
-    """Write a dataset into `<name>-<digest>.nc`, the digest that of its content; return the path.
+    """Write a dataset into `<name>-<digest>.nc`, named by its content; return the path.
 
     So the file and its checksum are renamed into place at once.
     """
@@ -146,13 +146,13 @@ def write_text(path: Path, text: str) -> None:
 def replace_atomically(
     path: Path, write: Callable[[Path], Any], before_renaming: Callable[[Path], Any] | None = None
 ) -> None:
-    """Let a function write a file beside the final one, and rename it once it is on disk.
+    """Let a function write a temporary file, and rename it to the final path once it is on disk.
 
     The folder of the final file is created. Another function may be called with the written file
     just before it is renamed. OSError if the place is none for a file, or the disk is
     full; what was there before stays.
     """
-    refuse_no_file(path)
+    check_regular_file(path)
     path.parent.mkdir(parents=True, exist_ok=True)
     # A name of its own: after a killed controller two writers of one file do happen.
     part = path.with_name(f".{path.stem}-{secrets.token_hex(8)}.part")
@@ -165,21 +165,21 @@ def replace_atomically(
         part.replace(path)
     except Exception as error:
         # What netCDF says of a full disk or of locks names anything but these.
-        _refuse_failing_folder(path, error)
+        _check_folder(path, error)
         raise
     finally:
         part.unlink(missing_ok=True)
 
 
-def refuse_no_file(path: Path) -> None:
-    """Raise an OSError if something stands at a path that is no ordinary file."""
+def check_regular_file(path: Path) -> None:
+    """Raise an OSError if a path exists and is not an ordinary file."""
     if path.is_dir():
         raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(path))
     if path.exists() and not path.is_file():
         raise OSError(errno.EINVAL, "it is a device or pipe, which is not replaced", str(path))
 
 
-def _refuse_failing_folder(path: Path, error: Exception) -> None:
+def _check_folder(path: Path, error: Exception) -> None:
     """Raise if not a mebibyte can be written in the folder of a path, or no file locked there."""
     try:
         with tempfile.TemporaryFile(dir=path.parent) as probe:
@@ -187,7 +187,7 @@ def _refuse_failing_folder(path: Path, error: Exception) -> None:
             probe.flush()
             os.fsync(probe.fileno())
             if not _is_of_system(error):
-                _refuse_without_locks(path, probe.fileno(), error)
+                _check_locks(path, probe.fileno(), error)
     except FileSystemError:
         raise
     except OSError as full:
@@ -196,7 +196,7 @@ def _refuse_failing_folder(path: Path, error: Exception) -> None:
 
 
 def _is_of_system(error: Exception) -> bool:
-    """Whether an error has a number of the system; those of netCDF are negative."""
+    """Whether an error has a number of the system; numbers of netCDF are negative."""
     return isinstance(error, OSError) and (error.errno or 0) > 0
 
 
@@ -205,37 +205,35 @@ def read_dataset(
 ) -> xr.Dataset:
     """Dataset of a netCDF file, in memory.
 
-    Variables to read beside the coordinates are those of the names that are there; by default all.
-    `copies` is the memory that is needed at once, relative to that of the variables. TooLargeError
-    if they need more than there is, whatever the file holds of them; UnreadableFileError if there
-    is no such file, it is damaged, or it is no complete netCDF file.
+    `names` are the variables to read in addition to the coordinates, as far as the file has them;
+    by default all. `copies` is the memory needed at once, relative to the size of the variables.
+    TooLargeError if they need more than there is, even if the file stores them compressed;
+    UnreadableFileError if the file is missing, damaged or not a complete netCDF file.
     """
     if not path.is_file():
-        what = "is no file" if path.exists() else "does not exist"
-        raise UnreadableFileError(f"{path} {what}; check the name")
+        problem = "is not a file" if path.exists() else "does not exist"
+        raise UnreadableFileError(f"{path} {problem}; check the name")
     try:
         with xr.open_dataset(path, engine="netcdf4", decode_times=False) as dataset:
-            others = [] if names is None else [name for name in dataset if name not in names]
-            chosen = dataset.drop_vars(others)
-            refuse_beyond_memory(
-                f"the variables of {path}", copies * chosen.nbytes, "use smaller ones"
-            )
+            unused = [] if names is None else [name for name in dataset if name not in names]
+            chosen = dataset.drop_vars(unused)
+            check_memory(f"the variables of {path}", copies * chosen.nbytes, "use smaller ones")
             return chosen.load()
     except (TooLargeError, MemoryError):
         raise
     except Exception as error:  # a damaged file may be wrong in any way
         if _is_of_system(error):
             raise
-        refuse_failing_system(path, error)
+        check_system(path, error)
         raise UnreadableFileError(
-            f"{path} is no complete netCDF file; write it again, or name another"
+            f"{path} is not a complete netCDF file; write it again, or name another"
         ) from error
 
 
 def set_aside_if_damaged(path: Path) -> str:
     """Rename a file that does not agree with its stated checksum; a sentence, or nothing if whole.
 
-    The checksum is in the name of the file, or in `<path>.sha256` beside it.
+    The checksum is in the name of the file, or in `<path>.sha256`.
     """
     if is_whole(path):
         return ""
@@ -264,5 +262,5 @@ def read_derived(path: Path, names: Collection[str] | None = None) -> xr.Dataset
 
 
 def read_attributes(path: Path) -> dict[str, Any]:
-    """What a file says of itself; refused as by :func:`read_dataset`."""
+    """What a file says of itself; errors are as in :func:`read_dataset`."""
     return {str(name): value for name, value in read_dataset(path, ()).attrs.items()}

@@ -1,4 +1,4 @@
-"""Surfaces from arrays of a user, in reduced units or those of SI."""
+"""Surfaces from arrays of a user, in reduced or SI units."""
 
 from __future__ import annotations
 
@@ -6,17 +6,17 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from crackfront.core.adhesion import FieldKind, refuse_unknown_kind
-from crackfront.core.arguments import refuse_no_numbers, refuse_other_type
+from crackfront.core.adhesion import FieldKind, check_kind
+from crackfront.core.arguments import check_numbers, check_type
 from crackfront.core.arrays import Array
-from crackfront.core.bounds import NUMBER, Range, refuse_outside
+from crackfront.core.bounds import NUMBER, Range, check_within
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.core.variables import LATERAL, VERTICAL
 from crackfront.simulate.labels import stated_unit
-from crackfront.surfaces.scales import Scales, in_si, refuse_no_scales
+from crackfront.surfaces.scales import Scales, check_scales, in_si
 from crackfront.surfaces.surface_adhesion import (
-    refuse_complex,
-    refuse_strange_mean,
+    check_mean,
+    check_real,
     surface_adhesion,
 )
 from crackfront.surfaces.surface_array import UNEQUAL, spacing, surface_array
@@ -86,26 +86,26 @@ def surface(
     >>> ripples = surface(20 * wave, side="100um", units="nm", sphere=pdms)
     >>> patches = surface(1 + 0.2 * wave, side=4.0, kind="chemical", units="w_int")
     """
-    refuse_unknown_kind(kind)
-    refuse_other_type("units", units, (str, type(None)), "the name of a unit")
+    check_kind(kind)
+    check_type("units", units, (str, type(None)), "the name of a unit")
     if isinstance(values, xr.DataArray):
         values, units = _stated(values, units)
     samples = _samples(values)
     length = _reduced_side(side, sphere)
     if isinstance(values, xr.DataArray):
-        _refuse_other_side(values, side, sphere)
+        _check_side(values, side, sphere)
     unit = units or ("reduced" if sphere is None else _SI[kind])
     array = surface_array(kind, _unit(kind, unit, sphere) * samples, length / len(samples))
     if kind == "chemical":
-        stated = "" if unit in _REDUCED[kind] else f"{float(np.mean(samples)):.4g} {unit}"
-        refuse_strange_mean(array.values, unit, stated)
+        mean = "" if unit in _REDUCED[kind] else f"{float(np.mean(samples)):.4g} {unit}"
+        check_mean(array.values, unit, mean)
     surface_adhesion(array)
     return array
 
 
 def _samples(values: ArrayLike) -> Array:
     """Values of a tile, NaN where they are masked."""
-    refuse_complex(values)
+    check_real(values)
     try:
         samples: Array = np.ma.array(values, dtype=float).filled(np.nan)
     except (TypeError, ValueError) as error:
@@ -118,12 +118,12 @@ def _samples(values: ArrayLike) -> Array:
 def _reduced_side(side: float | str, sphere: Scales | None) -> float:
     """Side of a tile in reduced lateral lengths."""
     if sphere is None:
-        refuse_no_numbers(side=side)
-        refuse_outside("side", float(side), NUMBER)
+        check_numbers(side=side)
+        check_within("side", float(side), NUMBER)
         return float(side)
-    refuse_no_scales(sphere)
+    check_scales(sphere)
     metres = in_si("side", side, "m")
-    refuse_outside("side", metres, _SIDES, "m")
+    check_within("side", metres, _SIDES, "m")
     return metres / sphere.lateral
 
 
@@ -147,22 +147,22 @@ def _stated(values: xr.DataArray, units: str | None) -> tuple[xr.DataArray, str 
     """
     if {*values.dims} == {"x", "y"}:
         values = values.transpose("x", "y")
-    stated = stated_unit(values.attrs)
-    if stated in (None, "", "1"):
+    stated_units = stated_unit(values.attrs)
+    if stated_units in (None, "", "1"):
         return values, units
     # Surfaces in reduced units say so by the names of their units.
-    stated = "reduced" if stated == VERTICAL else str(stated)
-    if units not in (None, stated):
+    stated_units = "reduced" if stated_units == VERTICAL else str(stated_units)
+    if units not in (None, stated_units):
         raise ValueError(
-            f"units is {units!r}, but the array states {stated!r}; leave units out, or drop "
+            f"units is {units!r}, but the array states {stated_units!r}; leave units out, or drop "
             "the attribute"
         )
-    return values, stated
+    return values, stated_units
 
 
-def _refuse_other_side(values: xr.DataArray, side: float | str, sphere: Scales | None) -> None:
+def _check_side(values: xr.DataArray, side: float | str, sphere: Scales | None) -> None:
     """Raise ValueError if coordinates of an array span another side, or pixels are not square."""
-    wanted = float(side) if sphere is None else in_si("side", side, "m")
+    expected_side = float(side) if sphere is None else in_si("side", side, "m")
     for name in ("x", "y"):
         along_dimension = name in values.coords and {"x", name} <= {*values.dims}
         if not along_dimension or values.sizes[name] < 2:
@@ -176,13 +176,15 @@ def _refuse_other_side(values: xr.DataArray, side: float | str, sphere: Scales |
             continue
         span = values.sizes[name] * spacing(values, name)
         # Pixels are square, so that the side along x determines the side along y.
-        expected = wanted * values.sizes[name] / values.sizes["x"]
+        expected = expected_side * values.sizes[name] / values.sizes["x"]
         if abs(factor * span / expected - 1) > UNEQUAL:
-            other = "" if name == "x" else f", where a side of {side} along x makes pixels square"
-            remedy = "this side" if name == "x" else "values on square pixels"
+            reason, remedy = "", "this side"
+            if name == "y":
+                reason = f", where a side of {side} along x makes pixels square"
+                remedy = "values on square pixels"
             raise ValueError(
                 f"side is {side}, but the coordinate {name} of the array spans "
-                f"{span:.6g}{'' if unit == '1' else f' {unit}'}{other}; give {remedy}, or the "
+                f"{span:.6g}{'' if unit == '1' else f' {unit}'}{reason}; give {remedy}, or the "
                 "values alone"
             )
 

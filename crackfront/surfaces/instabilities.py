@@ -55,9 +55,9 @@ def resolved_motion(
     The steps follow each other from a metastable front (n_site,) at the load start, in direction +1
     (approach) or -1 (retraction), and end where contact is lost. A smooth step moves no site
     further than `travel` (Units: reduced lateral length). A larger motion within a step of
-    `precision` (Units: that of the loads, reduced vertical length) is an instability: those closer
-    in load come out as one. A tolerance of the solver above the precision delays them. ValueError
-    if travel or precision are not positive, or a relaxation fails.
+    `precision` (Units: reduced vertical length, as the loads) is an instability: instabilities
+    closer in load come out as one. A tolerance of the solver above the precision delays them.
+    ValueError if travel or precision are not positive, or a relaxation fails.
     """
     for name, value in (("travel", travel), ("precision", precision)):
         if not 0 < value < math.inf:
@@ -67,13 +67,13 @@ def resolved_motion(
 
     def front_at(value: float) -> Array | None:
         tries.append(Load(value, direction, front))
-        found = next(steps)
-        if found.status is Status.LOST_CONTACT:
+        step = next(steps)
+        if step.status is Status.LOST_CONTACT:
             return None
-        if found.status is not Status.CONVERGED:
+        if step.status is not Status.CONVERGED:
             noun = field.geometry.state_type.load_noun
-            raise ValueError(f"at {noun} {value:.6g}: {found.status.value}")
-        return found.front
+            raise ValueError(f"at {noun} {value:.6g}: {step.status.value}")
+        return step.front
 
     for load in loads:
         # Fronts that were found from further behind are those that a halved step arrives at.
@@ -134,9 +134,9 @@ class Cluster:
 def swept_areas(before: Array, after: Array, geometry: Geometry) -> Array:
     """Area that each site of a front sweeps on its way to another, never negative.
 
-    Parameters are those of :func:`swept_clusters`. (Units: reduced lateral length**2)
+    Parameters are as in :func:`swept_clusters`. (Units: reduced lateral length**2)
     """
-    # The weight, of a sphere the radius, is linear: that of the middle makes a sector exact.
+    # The weight (on a sphere, the radius) is linear: its value in the middle makes a sector exact.
     width = weight(geometry, 0.0) + weight_slope(geometry) * (before + after) / 2
     return np.asarray(np.abs(after - before) * width * geometry.perimeter / before.size)
 
@@ -183,8 +183,8 @@ def shortest_instability(correlation_length: float, rms: float) -> float:
               = \frac{4\pi}{\xi} \left(\frac{w_{rms}}{w_{int}}\right)^2
 
     for an isotropic spectrum C_w of correlation length xi, in the units of xi; the rms is in w_int.
-    The factor is a convention. The paper calls it Larkin length; that of the law of k,
-    :func:`crackfront.core.adhesion.larkin_length`, is 13 times as long for a flat spectrum.
+    The factor is a convention. The paper calls it Larkin length; the Larkin length of the law of
+    k, :func:`crackfront.core.adhesion.larkin_length`, is 13 times as long for a flat spectrum.
 
     Examples
     --------

@@ -6,7 +6,7 @@ import xarray as xr
 
 from crackfront.analysis.table import SweepAxes, SweepRow
 from crackfront.core.adhesion import FieldKind
-from crackfront.core.arguments import refuse_other_type
+from crackfront.core.arguments import check_type
 from crackfront.core.cycle.record import CycleRecord
 from crackfront.core.geometry.sphere import ContactState, sphere
 from crackfront.core.spectrum import Spectrum
@@ -65,12 +65,12 @@ def reduced_unit(name: str) -> str:
         )
     surfaces = " and ".join(item.name for item in SURFACES.values())
     raise ValueError(
-        f"{name} is no variable of a surface or of a cycle; drop or rename it (the names of "
+        f"{name} is not a variable of a surface or a cycle; drop or rename it (the names of "
         f"surfaces are {surfaces})"
     )
 
 
-def refuse_other_units(data: xr.DataArray | xr.Dataset) -> None:
+def check_units(data: xr.DataArray | xr.Dataset) -> None:
     """Raise ValueError if a variable is unknown or not in reduced units; places need no units."""
     dataset = as_dataset(data)
     if attributes_sphere(data.attrs, CONVERTED_FOR) is not None:
@@ -80,9 +80,9 @@ def refuse_other_units(data: xr.DataArray | xr.Dataset) -> None:
         short = "reduced" if needed in (LATERAL, VERTICAL) else needed
         is_place = name in ("x", "y") and unit in (None, "", "1")
         if unit not in (needed, short) and not is_place:
-            stated = "states no units" if unit is None else f"has the units {unit!r}"
+            problem = "states no units" if unit is None else f"has the units {unit!r}"
             raise ValueError(
-                f"{name} {stated}; the attribute units must be '{short}': set it, "
+                f"{name} {problem}; the attribute units must be '{short}': set it, "
                 "or convert other units by in_reduced_units"
             )
 
@@ -90,19 +90,19 @@ def refuse_other_units(data: xr.DataArray | xr.Dataset) -> None:
 def as_dataset(
     data: xr.DataArray | xr.Dataset,
     name: str = "data",
-    wanted: str = "an xarray.DataArray or xarray.Dataset",
+    expected: str = "an xarray.DataArray or xarray.Dataset",
 ) -> xr.Dataset:
     """A dataset, or the dataset of an array.
 
-    ValueError if an array has no name, TypeError if the data are something else, which `wanted`
-    describes.
+    ValueError if an array lacks a name, TypeError if the data are something else; `expected` says
+    what they must be.
     """
     if isinstance(data, xr.Dataset):
         return data
-    refuse_other_type(name, data, xr.DataArray, wanted)
+    check_type(name, data, xr.DataArray, expected)
     if data.name is None:
         raise ValueError(
-            "the array has no name; give it one that says what its values are, as in "
+            "the array lacks a name; give it one that says what its values are, as in "
             "surface.rename('height')"
         )
     return data.to_dataset()

@@ -23,19 +23,19 @@ from itertools import pairwise
 from numbers import Integral
 
 from crackfront.analysis.steady_adhesion import SteadyAdhesion
-from crackfront.core.arguments import refuse_no_numbers, refuse_other_type
+from crackfront.core.arguments import check_numbers, check_type
 from crackfront.core.arrays import Array
 from crackfront.core.bounds import (
     DENSITY,
     NUMBER,
     SITES,
     Range,
-    refuse_outside,
+    check_within,
 )
 from crackfront.core.cycle.follow import Load
 from crackfront.core.cycle.record import CycleRecord
 from crackfront.core.field.fields import TileField
-from crackfront.surfaces.random_surface import refuse_no_fraction
+from crackfront.surfaces.random_surface import check_fraction
 from crackfront.surfaces.tile_measures import TileMeasures
 
 
@@ -76,8 +76,8 @@ class LoopSetup(ABC):
 class LoopNumerics:
     """How a run on a user's surface is resolved.
 
-    ValueError if an error is given beside sites or samples, or a number is out of range; TypeError
-    if it is none.
+    ValueError if an error is given together with sites or samples, or a number is out of range;
+    TypeError if it is not a number.
     """
 
     error: float | None = None
@@ -91,7 +91,7 @@ class LoopNumerics:
 
     def __post_init__(self) -> None:
         if self.error is not None:
-            refuse_no_fraction("error", self.error)
+            check_fraction("error", self.error)
         for name, value in (("sites", self.sites), ("samples", self.samples)):
             if value is not None and self.error is not None:
                 raise ValueError(
@@ -99,11 +99,11 @@ class LoopNumerics:
                     "or the error"
                 )
         if self.sites is not None:
-            refuse_other_type("sites", self.sites, Integral, "a whole number")
-            refuse_outside("sites", self.sites, SITES)
+            check_type("sites", self.sites, Integral, "a whole number")
+            check_within("sites", self.sites, SITES)
         if self.samples is not None:
-            refuse_no_numbers(samples=self.samples)
-            refuse_outside("samples", self.samples, DENSITY)
+            check_numbers(samples=self.samples)
+            check_within("samples", self.samples, DENSITY)
 
     @property
     def by_pixels(self) -> bool:
@@ -120,8 +120,8 @@ class LoopContact(ABC):
     ) -> LoopSetup:
         """What a run begins with.
 
-        Loads that are None are those of a full cycle, if the kind has one. The step is the
-        largest difference of loads; infinity leaves them as they are.
+        If loads is None, a full cycle is run, if the kind has one. The step is the largest
+        difference of loads; infinity leaves them as they are.
         """
 
 
@@ -142,8 +142,8 @@ def remark_on_sites(n_site: int, length: float, measures: TileMeasures) -> str:
 
 
 _LARGEST_MEAN = 0.05
-"""Difference of the mean work of adhesion from that of the theory, beyond which the stiffness of
-the line, which is that at w_int, makes hysteresis wrong. (Units: w_int)"""
+"""Difference between the mean work of adhesion and the theory, beyond which the stiffness of the
+line, which the theory takes at w_int, makes hysteresis wrong. (Units: w_int)"""
 
 
 def remark_on_mean(measures: TileMeasures) -> str:
@@ -162,12 +162,12 @@ _SAMPLES = 2.0
 """Samples per correlation length of w_loc below which they miss its waves."""
 
 
-def refuse_few_samples(
+def check_samples(
     numerics: LoopNumerics, pixel: float, measures: TileMeasures, least: float = 0.0
 ) -> None:
     """Raise if the given samples a pixel miss waves of a tile, or are below the least.
 
-    The pixel is that of the tile. (Units: reduced lateral length)
+    `pixel` is the grid spacing of the tile. (Units: reduced lateral length)
     """
     waves = 0.0 if measures.w_rms == 0 else _SAMPLES * pixel / measures.correlation_length
     needed = math.ceil(1000 * max(waves, least)) / 1000
@@ -179,21 +179,21 @@ def refuse_few_samples(
 
 
 def load_values(loads: Iterable[float | str]) -> tuple[float, ...]:
-    """Loads of a protocol as numbers; a ValueError where there is none, or one is no number."""
+    """Loads of a protocol as numbers; a ValueError if there are none, or one is not a number."""
     if isinstance(loads, str) or not isinstance(loads, Iterable):
         raise TypeError(f"loads is {loads!r}; give the loads to visit, as in [0, 1, 0.5]")
-    found = []
-    for given in loads:
+    values = []
+    for load in loads:
         try:
-            found.append(float(given))
+            values.append(float(load))
         except (TypeError, ValueError):
-            raise ValueError(f"a load is {given!r}; write numbers alone") from None
-        refuse_outside("a load", found[-1], Range(-NUMBER.most, NUMBER.most))
-    if not found:
+            raise ValueError(f"a load is {load!r}; write numbers alone") from None
+        check_within("a load", values[-1], Range(-NUMBER.most, NUMBER.most))
+    if not values:
         raise ValueError("there are no loads; give one or more")
-    return tuple(found)
+    return tuple(values)
 
 
 def state_count(loads: tuple[float, ...], step: float) -> float:
     """Loads of a protocol, about."""
-    return len(loads) + sum(abs(one - other) for one, other in pairwise(loads)) / step
+    return len(loads) + sum(abs(end - start) for start, end in pairwise(loads)) / step

@@ -13,14 +13,14 @@ from xarray import DataArray, Dataset
 from crackfront.analysis.estimate import with_error
 from crackfront.analysis.steady_adhesion import SteadyAdhesion, SteadyMeasures
 from crackfront.analysis.table import SweepAxes, SweepRow
-from crackfront.core.arguments import refuse_no_numbers, refuse_other_type
+from crackfront.core.arguments import check_numbers, check_type
 from crackfront.core.cycle.follow import Load, front_at
 from crackfront.core.cycle.load_schedule import LoadSchedule
 from crackfront.core.cycle.record import CycleRecord, Recorder
 from crackfront.core.cycle.touch import first_touch
 from crackfront.core.geometry.sphere import ContactState
 from crackfront.core.outcome import Direction
-from crackfront.core.resources import refuse_beyond_memory
+from crackfront.core.resources import check_memory
 from crackfront.core.solver import DEFAULT_TOLERANCE
 from crackfront.core.solver.relax import Newton, named_solver
 from crackfront.core.variables import variables
@@ -63,22 +63,22 @@ def run_loop(
         sphere at the centre of the tile, wherever the zero of its coordinates is; or what
         :func:`crackfront.straight_front` makes of one.
     loads : iterable of float, optional
-        Loads to visit in their order, down and up as often as they say; one that stands twice is
-        a hold. The loop ends where contact is lost. By default, for a sphere, from first contact
-        to the largest penetration, and to pull-off. (Units: reduced vertical length; of a straight
-        front that of its tile)
+        Loads to visit in their order, down and up as often as they say; a repeated load is a pause.
+        The loop ends where contact is lost. By default, for a sphere, from first contact to the
+        largest penetration, and to pull-off. (Units: reduced vertical length; for a straight front
+        the length of its tile)
     max_penetration : float, optional
         Largest penetration in place of loads, by default 1. (Units: reduced vertical length)
     step : float, optional
         Largest difference of loads: equal steps lead from one to the next. By default 0.02 in place
         of loads; those that are given are visited as they are. The fronts do not depend on it.
-        (Units: that of loads)
+        (Units: as the loads)
     error : float, optional
         Standard error of the factor k of either branch that the numerics may leave; measured
         laws choose sites, samples and tolerance. They need a sphere and the attributes
         `short_cutoff`, `roll_off` and `hurst`, as :func:`crackfront.random_surface` sets them;
         with these it is 0.03 by default, or what the finest numerics on the pixels leave, and the
-        result states it; without them an error is refused.
+        result states it; without these attributes `error` is not allowed.
     sites : int, optional
         Sites of the front, in place of an error. By default those that the error needs; where
         there is none, one a pixel or more.
@@ -102,14 +102,14 @@ def run_loop(
         the fronts `radius(step, angle)` or `position(step, y)`, and
         measures of the whole: `e_el`, `w_rms`, `correlation_length`, `w_appr`, `w_retr` and what
         else the table of a sweep has of them, of a straight front over the last period of its tile
-        or less; NaN where the loop has no steady part. The attribute `result` states them, the
+        or less; NaN where the loop lacks a steady part. The attribute `result` states them, the
         forces of jump-in and pull-off or the pinning force, `steady_sentence` why they are NaN.
 
     Raises
     ------
     ValueError
         If the surface, a length or the solver cannot be used, the pixels are too coarse for an
-        error that is asked for, or there is no memory for the fronts.
+        error that is asked for, or the memory is too small for the fronts.
     TypeError
         If an argument is of another type.
 
@@ -128,11 +128,11 @@ def run_loop(
     ('step', 'y')
     """
     numbers = {"max_penetration": max_penetration, "step": step}
-    refuse_no_numbers(**{name: one for name, one in numbers.items() if one is not None})
+    check_numbers(**{name: number for name, number in numbers.items() if number is not None})
     for name, value in (("fronts", fronts), ("energy", energy)):
-        refuse_other_type(name, value, bool, "True or False")
+        check_type(name, value, bool, "True or False")
     if not callable(progress):
-        refuse_other_type("progress", progress, type(None), "a function of a state")
+        check_type("progress", progress, type(None), "a function of a state")
     visited = None if loads is None else load_values(loads)
     if visited is None and max_penetration is None and not isinstance(surface, LoopContact):
         max_penetration = 1.0
@@ -142,7 +142,7 @@ def run_loop(
     contact = loop_contact(surface, max_penetration)
     setup = contact.setup(visited, step, LoopNumerics(error, sites, samples))
     if fronts:
-        refuse_beyond_memory(
+        check_memory(
             f"{setup.expected} fronts of {setup.front.size} sites",
             8.0 * setup.expected * setup.front.size,
             "set fronts=False, or take larger steps or a smaller max_penetration",
@@ -260,19 +260,19 @@ def find_instabilities(
     Raises
     ------
     ValueError
-        If an argument cannot be used, a front is not found, or the surface is that of a straight
-        front, which has no first contact and no pull-off to end a branch.
+        If an argument cannot be used, a front is not found, or the surface is a straight front,
+        which lacks the first contact and the pull-off that end a branch.
     TypeError
         If an argument is of another type.
     """
     if isinstance(surface, LoopContact):
         raise ValueError(
-            "the instabilities are those of a sphere between first contact and pull-off, which a "
-            "straight front has not; give the surface itself"
+            "instabilities are located on a sphere, between first contact and pull-off, which a "
+            "straight front lacks; give the surface itself"
         )
     if direction not in get_args(Direction):
         raise ValueError(f"direction is {direction!r}; give 1 for approach or -1 for retraction")
-    refuse_no_numbers(max_penetration=max_penetration, step=step, travel=travel)
+    check_numbers(max_penetration=max_penetration, step=step, travel=travel)
     schedule = LoadSchedule(max_penetration, step)
     if not 0 < travel < math.inf:
         raise ValueError(f"travel is {travel:g}; it must be positive and finite")
@@ -281,13 +281,13 @@ def find_instabilities(
     reach = travel * contact.measures.correlation_length
     if precision is None:
         precision = min(2e-5, step / 10, max(reach**2, _round_off(contact)))
-    refuse_no_numbers(precision=precision)
+    check_numbers(precision=precision)
     if not 0 < precision <= step / 10:
         raise ValueError(
             f"precision is {precision:g}; it must be positive, and at most a tenth of the step, "
             f"{step / 10:g}"
         )
-    _refuse_unresolved_motion(contact, travel, precision, direction)
+    _check_resolved_motion(contact, travel, precision, direction)
     field, solver = contact.field, Newton(min(contact.tolerance, precision / 10))
     start = 0.0 if direction > 0 else max_penetration
     touched = front_at(field, first_touch(field), Load(start, 1), solver)
@@ -296,9 +296,10 @@ def find_instabilities(
         field, touched, start, loads, direction, travel=reach, precision=precision, solver=solver
     )
     jumps = [motion for motion in steps if motion.unstable]
-    found = labelled_fields(measured_instabilities(jumps, field, reach))
+    instabilities = labelled_fields(measured_instabilities(jumps, field, reach))
     angle = field.geometry.variables[1]
-    return Dataset(found, {angle.name: labelled(angle, field.geometry.sites)}, {"travel": reach})
+    angles = {angle.name: labelled(angle, field.geometry.sites)}
+    return Dataset(instabilities, angles, {"travel": reach})
 
 
 _SMOOTH = 0.25
@@ -316,7 +317,7 @@ _PULL_OFF = 1.5
 curvature of the penetration in the radius. (Units: reduced lengths)"""
 
 
-def _refuse_unresolved_motion(
+def _check_resolved_motion(
     contact: LoopSetup, travel: float, precision: float, direction: Direction
 ) -> None:
     """Raise if round-off hides steps of a precision, or if smooth motion counts as a jump."""

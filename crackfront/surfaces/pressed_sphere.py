@@ -24,7 +24,7 @@ from crackfront.surfaces.loop_setup import (
     LoopContact,
     LoopNumerics,
     LoopSetup,
-    refuse_few_samples,
+    check_samples,
     remark_on_mean,
     remark_on_sites,
     state_count,
@@ -96,7 +96,7 @@ class PressedSphere(LoopContact):
             n_sample=4 * samples * radius / adhesion.pixel,
         )
         measures, simulation = tile_measures(adhesion), None
-        refuse_few_samples(numerics, adhesion.pixel, measures)
+        check_samples(numerics, adhesion.pixel, measures)
         spectrum = stated_spectrum(self.surface)
         if spectrum is None and numerics.error is not None:
             raise ValueError(
@@ -117,11 +117,11 @@ class PressedSphere(LoopContact):
             sizes = replace(chosen.resolution, tile_side=n_point * adhesion.pixel, n_point=n_point)
             simulation = replace(chosen, resolution=sizes)
             # Where no error is asked for, the result states the one that is left.
-            if numerics.error is not None and (left := missed_error(simulation, error)):
+            if numerics.error is not None and (remaining := missed_error(simulation, error)):
                 pixels = spectrum.short_cutoff / adhesion.pixel
                 raise ValueError(
                     f"error is {error:g}, but the finest numerics on {pixels:.3g} pixels per short "
-                    f"cutoff leave {left:.2g}; ask for that, or leave error out"
+                    f"cutoff leave {remaining:.2g}; ask for that, or leave error out"
                 )
             field = simulation_field(simulation, adhesion)
             tolerance = chosen.solver.tolerance

@@ -8,13 +8,13 @@ from numbers import Integral
 import numpy as np
 from xarray import DataArray
 
-from crackfront.core.adhesion import FieldKind, refuse_unknown_kind
-from crackfront.core.arguments import refuse_no_numbers, refuse_other_type
+from crackfront.core.adhesion import FieldKind, check_kind
+from crackfront.core.arguments import check_numbers, check_type
 from crackfront.core.bounds import SEED
-from crackfront.core.resources import refuse_beyond_memory
+from crackfront.core.resources import check_memory
 from crackfront.core.spectrum import SelfAffineSpectrum, Spectrum
 from crackfront.core.units import WORK_OF_ADHESION
-from crackfront.simulate.costs import expected_cost, refuse_oversized
+from crackfront.simulate.costs import check_sizes, expected_cost
 from crackfront.simulate.laws import measured_energies
 from crackfront.simulate.numerics import Numerics
 from crackfront.simulate.simulation import Simulation, simulation_adhesion, simulation_of
@@ -71,7 +71,7 @@ def random_surface(
     Raises
     ------
     ValueError
-        If there is no such spectrum, surface or error.
+        If the spectrum, surface or error is impossible.
     TypeError
         If an argument is of another type.
 
@@ -82,7 +82,7 @@ def random_surface(
     ('height', ('x', 'y'), -2.0)
     """
     spectrum = _shape(short_cutoff, roll_off, hurst)
-    refuse_no_fraction("elastic_energy", elastic_energy)
+    check_fraction("elastic_energy", elastic_energy)
     least, most = measured_energies()
     if not least <= elastic_energy <= most:
         raise ValueError(
@@ -123,10 +123,10 @@ def _shape(short_cutoff: float | Spectrum, roll_off: float | None, hurst: float 
         for name, value in numbers.items():
             raise ValueError(f"{name} is {value}, but a whole spectrum is given; leave it out")
         return short_cutoff
-    refuse_no_numbers(short_cutoff=short_cutoff, **numbers)
+    check_numbers(short_cutoff=short_cutoff, **numbers)
     if hurst is not None and roll_off is None:
         raise ValueError(
-            f"hurst is {hurst:g}, but without a roll_off the spectrum is flat and has no Hurst "
+            f"hurst is {hurst:g}, but without a roll_off the spectrum is flat and lacks a Hurst "
             "exponent; give the roll_off, or leave hurst out"
         )
     longest = short_cutoff if roll_off is None else roll_off
@@ -145,40 +145,40 @@ def chosen_simulation(
     realisation: int = 0,
 ) -> Simulation:
     """Simulation of a surface under some loads; arguments as of :func:`random_surface`."""
-    refuse_unknown_kind(kind)
-    refuse_no_fraction("error", error)
-    refuse_no_fraction("elastic_energy", elastic_energy)
+    check_kind(kind)
+    check_fraction("error", error)
+    check_fraction("elastic_energy", elastic_energy)
     for name, number in (("seed", seed), ("realisation", realisation)):
-        refuse_other_type(name, number, Integral, "a whole number")
+        check_type(name, number, Integral, "a whole number")
         if isinstance(number, bool):
             raise TypeError(f"{name} is {number}; give a whole number")
         if not SEED.least <= number <= SEED.most:
             raise ValueError(f"{name} is {number}; it must lie between 0 and {SEED.most}")
     numerics, cutoff = Numerics(error), spectrum.short_cutoff
     if side is not None:
-        refuse_no_numbers(side=side)
+        check_numbers(side=side)
         longest = spectrum.longest_feature
         if not longest <= side < math.inf:
             raise ValueError(
-                f"side is {side}; the tile must hold the longest waves of the spectrum, of "
+                f"side is {side}; the tile must fit the longest waves of the spectrum, of "
                 f"{longest:g}, or its e_el is not the one that is asked for"
             )
         numerics = Numerics(error, tile_roll_offs=0.0, tile_cutoffs=side / cutoff)
     settings = numerics.settings_of(kind, spectrum, elastic_energy)
-    refuse_oversized(spectrum, numerics, settings, schedule.max_penetration)
+    check_sizes(spectrum, numerics, settings, schedule.max_penetration)
     simulation = simulation_of(
         kind, spectrum, elastic_energy, schedule, numerics, seed=seed, realisation=realisation
     )
     n_point = simulation.resolution.n_point
     tiles = f"tiles of {n_point} x {n_point} points"
     remedy = "take a smaller side or a longer short_cutoff"
-    refuse_beyond_memory(tiles, expected_cost(simulation).memory, remedy)
+    check_memory(tiles, expected_cost(simulation).memory, remedy)
     return simulation
 
 
-def refuse_no_fraction(name: str, value: float) -> None:
+def check_fraction(name: str, value: float) -> None:
     """Raise ValueError if a number does not lie between 0 and 1."""
-    refuse_no_numbers(**{name: value})
+    check_numbers(**{name: value})
     if not 0 < value < 1:
         raise ValueError(f"{name} is {value}; it must lie between 0 and 1")
 
@@ -196,7 +196,7 @@ def stated_spectrum(surface: DataArray) -> Spectrum | None:
     beyond = modes.wavevector > 2 * np.pi / spectrum.short_cutoff * (1 + 1e-9)
     if np.sum(modes.power[beyond]) > 1e-9 * np.sum(modes.power):
         raise ValueError(
-            f"the surface holds waves shorter than its attributes say, "
+            f"the surface has waves shorter than its attributes say, "
             f"{spectrum.short_cutoff:g}; remove {' and '.join(spectrum.parameters)}, so that the "
             "pixels decide"
         )

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from crackfront.core.arguments import refuse_other_type
+from crackfront.core.arguments import check_type
 from crackfront.simulate.provenance import provenance
 from crackfront.simulate.storage import read_dataset, write_dataset
 from crackfront.surfaces.labelled import SURFACES, as_dataset
@@ -35,13 +35,13 @@ def save_result(result: xr.DataArray | xr.Dataset, path: str | Path) -> None:
     Raises
     ------
     ValueError
-        If the array has no name.
+        If the array lacks a name.
     TypeError
         If the result is of another type, or netCDF cannot store an attribute.
     OSError
         If the file cannot be written.
     """
-    refuse_other_type("path", path, (str, PathLike), "the path of a file")
+    check_type("path", path, (str, PathLike), "the path of a file")
     dataset = as_dataset(result, "result", "a surface or a loop").copy()
     dataset.attrs = _storable(dataset.attrs)
     for part in dataset.variables.values():
@@ -54,7 +54,7 @@ def _storable(attributes: Mapping[Any, Any]) -> dict[Any, Any]:
     """Attributes as netCDF stores them, truth values as 0 or 1; TypeError if it cannot."""
     storable = {}
     for name, value in attributes.items():
-        refuse_other_type(f"attribute {name}", value, _STORABLE, "numbers or a text, or drop it")
+        check_type(f"attribute {name}", value, _STORABLE, "numbers or a text, or drop it")
         storable[name] = int(value) if isinstance(value, bool | np.bool_) else value
     return storable
 
@@ -79,7 +79,7 @@ def load_result(path: str | Path) -> xr.DataArray | xr.Dataset:
     TypeError
         If an argument is of another type.
     """
-    refuse_other_type("path", path, (str, PathLike), "the path of a file")
+    check_type("path", path, (str, PathLike), "the path of a file")
     dataset = read_dataset(Path(path).expanduser())
     names = [item.name for item in SURFACES.values()]
     if len(dataset) == 1 and next(iter(dataset)) in names:

@@ -9,7 +9,7 @@ from numbers import Real
 from typing import Any
 
 from crackfront.core import units
-from crackfront.core.arguments import refuse_other_type
+from crackfront.core.arguments import check_type
 from crackfront.surfaces.written_units import si_value
 
 CONVERTED_FOR = "sphere_"
@@ -35,7 +35,7 @@ class Scales(units.Scales):
     Raises
     ------
     ValueError
-        If a parameter is not positive and finite, or a text is no such quantity.
+        If a parameter is not positive and finite, or a text is not such a quantity.
     TypeError
         If a parameter is neither a number nor a text.
 
@@ -61,15 +61,15 @@ class Scales(units.Scales):
 def in_si(name: str, value: float | str, unit: str) -> float:
     """Value in SI of an argument that is a number or a text with a unit."""
     if isinstance(value, str):
-        return si_value(value, unit, what=name)
-    refuse_other_type(name, value, Real, f"a number of {unit}, or a text with a unit")
+        return si_value(value, unit, name=name)
+    check_type(name, value, Real, f"a number of {unit}, or a text with a unit")
     return float(value)
 
 
-def refuse_no_scales(sphere: object) -> None:
+def check_scales(sphere: object) -> None:
     """Raise TypeError if an argument is not a sphere."""
-    wanted = "crackfront.Scales(radius, work_of_adhesion, contact_modulus)"
-    refuse_other_type("sphere", sphere, units.Scales, wanted)
+    expected = "crackfront.Scales(radius, work_of_adhesion, contact_modulus)"
+    check_type("sphere", sphere, units.Scales, expected)
 
 
 def sphere_attributes(sphere: units.Scales) -> dict[str, float]:
@@ -85,7 +85,7 @@ def attributes_sphere(attributes: Mapping[Any, Any], prefix: str) -> units.Scale
     return units.Scales(*(float(attributes[name]) for name in names))
 
 
-def are_equal(sphere: units.Scales, other: units.Scales) -> bool:
+def are_equal(sphere: units.Scales, second: units.Scales) -> bool:
     """Whether two spheres are the same but for round-off."""
-    pairs = zip(asdict(sphere).values(), asdict(other).values(), strict=True)
+    pairs = zip(asdict(sphere).values(), asdict(second).values(), strict=True)
     return all(math.isclose(*pair, rel_tol=1e-9) for pair in pairs)

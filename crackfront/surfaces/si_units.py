@@ -14,15 +14,15 @@ from crackfront.simulate.labels import stated_unit, unit_attributes
 from crackfront.surfaces.labelled import (
     ATTRIBUTE_UNITS,
     as_dataset,
+    check_units,
     reduced_unit,
-    refuse_other_units,
 )
 from crackfront.surfaces.scales import (
     CONFIGURED,
     CONVERTED_FOR,
     are_equal,
     attributes_sphere,
-    refuse_no_scales,
+    check_scales,
     sphere_attributes,
 )
 from crackfront.surfaces.written_units import unit_value
@@ -60,8 +60,8 @@ def in_si_units(data: Labelled, scales: units.Scales | None = None) -> Labelled:
                 "the data do not state a sphere, as tables of sweeps with a section scales do; "
                 "name it: in_si_units(data, crackfront.Scales(radius, ...))"
             )
-    refuse_no_scales(scales)
-    refuse_other_units(data)
+    check_scales(scales)
+    check_units(data)
 
     def change(unit: str, _: xr.DataArray | None) -> tuple[float, str]:
         return _si(unit, scales)
@@ -76,7 +76,7 @@ def stated_scales(data: xr.DataArray | xr.Dataset) -> units.Scales | None:
     """
     sphere = attributes_sphere(data.attrs, CONVERTED_FOR)
     if sphere is None:
-        refuse_other_units(data)
+        check_units(data)
     return sphere
 
 
@@ -114,10 +114,10 @@ def in_reduced_units(data: Labelled, scales: units.Scales) -> Labelled:
     >>> bool(np.allclose(reduced * scales.vertical, [1e-9, 2e-9]))
     True
     """
-    refuse_no_scales(scales)
-    stated = attributes_sphere(data.attrs, CONVERTED_FOR)
-    if stated is not None and not are_equal(stated, scales):
-        sphere = ", ".join(f"{name} {value:g}" for name, value in asdict(stated).items())
+    check_scales(scales)
+    stated_sphere = attributes_sphere(data.attrs, CONVERTED_FOR)
+    if stated_sphere is not None and not are_equal(stated_sphere, scales):
+        sphere = ", ".join(f"{name} {value:g}" for name, value in asdict(stated_sphere).items())
         raise ValueError(f"the data were converted for another sphere, {sphere}; give that one")
 
     def change(unit: str, part: xr.DataArray | None) -> tuple[float, str]:

@@ -11,9 +11,9 @@ from xarray import DataArray
 
 from crackfront.analysis.steady_adhesion import SteadyAdhesion, passing_adhesion
 from crackfront.core.adhesion import AdhesionMap
-from crackfront.core.arguments import refuse_no_numbers
+from crackfront.core.arguments import check_numbers
 from crackfront.core.arrays import Array
-from crackfront.core.bounds import NUMBER, refuse_outside
+from crackfront.core.bounds import NUMBER, check_within
 from crackfront.core.cycle.load_schedule import protocol
 from crackfront.core.cycle.record import CycleRecord
 from crackfront.core.geometry.line import initial_front, line_field
@@ -25,7 +25,7 @@ from crackfront.surfaces.loop_setup import (
     LoopContact,
     LoopNumerics,
     LoopSetup,
-    refuse_few_samples,
+    check_samples,
     remark_on_mean,
     remark_on_sites,
     state_count,
@@ -40,7 +40,7 @@ _FEWEST_SAMPLES = 0.5
 """Samples a pixel: the field of a straight front begins two pixels behind its first front."""
 
 _LINE_ROUND_OFF = 10.0
-"""Round-off of forces of the line, by Fourier transforms, over that of its shortest mode alone."""
+"""Round-off of forces of the line by Fourier transforms, relative to its shortest mode alone."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,11 +96,11 @@ class StraightFront(LoopContact):
         remark = self._remark(adhesion)
         values, n_state = adhesion.work_of_adhesion, state_count(loads, step)
         samples, measures = numerics.samples or 1.0, tile_measures(adhesion)
-        refuse_few_samples(numerics, adhesion.pixel, measures, _FEWEST_SAMPLES)
+        check_samples(numerics, adhesion.pixel, measures, _FEWEST_SAMPLES)
         # The first front lies as far behind its load as pinning may pull the springs.
         behind = 1.25 * self.spring * float(np.ptp(values)) / WORK_OF_ADHESION
         furthest = max(abs(min(loads)), abs(max(loads))) + behind + 2 * adhesion.pixel
-        self._refuse_round_off(adhesion, furthest, numerics.sites or values.shape[1])
+        self._check_round_off(adhesion, furthest, numerics.sites or values.shape[1])
         seconds = affordable_seconds(
             n_angle=numerics.sites or values.shape[1],
             n_point=values.size,
@@ -119,7 +119,7 @@ class StraightFront(LoopContact):
         return StraightSetup(
             field=field,
             front=front,
-            # A branch begins with a front of its own: making contact has no energy here.
+            # A branch begins with a front of its own: making contact releases no energy here.
             loads=chain([next(way)._replace(start=front)], way),
             expected=int(n_state),
             seconds=seconds,
@@ -129,8 +129,8 @@ class StraightFront(LoopContact):
             remark="; ".join(filter(None, (remark, remark_on_mean(measures), few_sites))),
         )
 
-    def _refuse_round_off(self, adhesion: AdhesionMap, furthest: float, n_site: int) -> None:
-        """Raise if digits of places so far from 0 do not hold forces to the tolerance."""
+    def _check_round_off(self, adhesion: AdhesionMap, furthest: float, n_site: int) -> None:
+        """Raise if the round-off of places so far from 0 exceeds the tolerance of forces."""
         length, period = (adhesion.pixel * n for n in adhesion.work_of_adhesion.shape[::-1])
         stiffness = 1 / self.spring + _LINE_ROUND_OFF * math.pi * n_site / length
         force = float(np.finfo(float).eps) * furthest * stiffness
@@ -163,8 +163,8 @@ def straight_front(surface: DataArray, spring: float) -> StraightFront:
     """A straight front for :func:`crackfront.run_loop`, whose loads are places of its springs.
 
     The front is as long as the side of the surface along y. Where this is below ten times the
-    length of the springs, the factor k is larger than that of a long front, by which the law of k
-    was measured; the result of the loop says so.
+    length of the springs, the factor k is larger than on a long front, on which the law of k was
+    measured; the result of the loop says so.
 
     Parameters
     ----------
@@ -181,12 +181,12 @@ def straight_front(surface: DataArray, spring: float) -> StraightFront:
     Raises
     ------
     ValueError
-        If the spring has no such length, or the surface another name than that of one. The loop
-        refuses springs that are longer than the front.
+        If the spring cannot have this length, or the name of the array is not the name of a
+        surface. The loop raises an error if springs are longer than the front.
     TypeError
         If an argument is of another type.
     """
     surface_kind(surface)
-    refuse_no_numbers(spring=spring)
-    refuse_outside("spring", spring, NUMBER)
+    check_numbers(spring=spring)
+    check_within("spring", spring, NUMBER)
     return StraightFront(surface, float(spring))

@@ -15,7 +15,7 @@ from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.core.variables import ADHESION
 from crackfront.core.words import counted
 from crackfront.simulate.labels import stated_unit
-from crackfront.surfaces.labelled import refuse_other_units
+from crackfront.surfaces.labelled import check_units
 from crackfront.surfaces.surface_array import surface_kind, tile_values
 
 _UNITS = {"reduced": 1.0, "1": 1.0, ADHESION: WORK_OF_ADHESION}
@@ -46,14 +46,14 @@ def surface_adhesion(surface: xr.DataArray) -> AdhesionMap:
             f"{surface.name} has the dimensions ({', '.join(map(str, surface.dims))}); a tile must "
             "have x and y"
         )
-    refuse_other_units(surface if kind == "roughness" else surface.coords.to_dataset())
-    refuse_complex(surface)
+    check_units(surface if kind == "roughness" else surface.coords.to_dataset())
+    check_real(surface)
     samples, pixel = tile_values(surface)
     corner = float(surface["x"][0]), float(surface["y"][0])
     if kind == "roughness":
-        _refuse_impossible(str(surface.name), samples, 1.0)
+        _check_values(str(surface.name), samples, 1.0)
         if not surface.attrs.get("periodic"):
-            _refuse_seam(samples)
+            _check_seam(samples)
         return replace(rough_adhesion(samples, pixel), corner=corner)
     unit = str(stated_unit(surface.attrs) or "reduced")
     if unit not in _UNITS:
@@ -62,32 +62,32 @@ def surface_adhesion(surface: xr.DataArray) -> AdhesionMap:
             "set them, or convert other units by in_reduced_units"
         )
     samples = _UNITS[unit] * samples
-    _refuse_impossible(str(surface.name), samples, WORK_OF_ADHESION)
-    refuse_strange_mean(samples / WORK_OF_ADHESION, "w_int" if unit == ADHESION else "reduced")
+    _check_values(str(surface.name), samples, WORK_OF_ADHESION)
+    check_mean(samples / WORK_OF_ADHESION, "w_int" if unit == ADHESION else "reduced")
     rms = float(np.std(samples)) / WORK_OF_ADHESION
     return AdhesionMap(samples, pixel, rms**2 / 4, rms, corner)
 
 
-def refuse_complex(values: object) -> None:
+def check_real(values: object) -> None:
     """Raise TypeError if an array has imaginary parts, which a surface does not have."""
     if isinstance(values, (np.ndarray, xr.DataArray)) and values.dtype.kind == "c":
         raise TypeError("the values are complex numbers; give real ones, as in values.real")
 
 
-def refuse_strange_mean(values: Array, units: str, stated: str = "") -> None:
+def check_mean(values: Array, units: str, mean_in_si: str = "") -> None:
     """Raise ValueError if the mean work of adhesion is far from w_int, with the likely cause.
 
-    The values are in units of w_int; `units` are the units that the user named, `stated` is the
-    mean in units of SI, if the user has these.
+    The values are in units of w_int; `units` are the units that the user named, `mean_in_si`
+    is the mean in units of SI, if the user has these.
     """
     mean = float(np.mean(values))
     if not math.isfinite(mean) or _LEAST_MEAN <= mean <= _LARGEST_MEAN:
         return
     bounds = f"it must lie between {_LEAST_MEAN:g} and {_LARGEST_MEAN:g}"
-    if stated:
+    if mean_in_si:
         raise ValueError(
-            f"the mean work of adhesion is {stated}, {mean:.4g} of that of the sphere; {bounds}: "
-            "check the units, or the work of adhesion of the sphere"
+            f"the mean work of adhesion is {mean_in_si}, {mean:.4g} times the w_int of the "
+            f"sphere; {bounds}: check the units, or the work of adhesion of the sphere"
         )
     cause = "check the values, or take their mean for w_int"
     if units != "w_int" and _LEAST_MEAN <= mean * WORK_OF_ADHESION <= _LARGEST_MEAN:
@@ -103,7 +103,7 @@ def refuse_strange_mean(values: Array, units: str, stated: str = "") -> None:
     )
 
 
-def _refuse_impossible(name: str, values: Array, unit: float) -> None:
+def _check_values(name: str, values: Array, unit: float) -> None:
     """Raise ValueError if a value is missing, infinite, or so large that no surface has it."""
     missing = np.argwhere(~np.isfinite(values))
     if missing.size:
@@ -121,7 +121,7 @@ def _refuse_impossible(name: str, values: Array, unit: float) -> None:
         )
 
 
-def _refuse_seam(heights: Array) -> None:
+def _check_seam(heights: Array) -> None:
     """Raise ValueError if heights do not continue from one edge of a tile to the other."""
     for axis, name in enumerate("xy"):
         steps = np.diff(heights, axis=axis, append=np.take(heights, [0], axis=axis))

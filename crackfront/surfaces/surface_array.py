@@ -8,9 +8,9 @@ import numpy as np
 import xarray as xr
 
 from crackfront.core.adhesion import FieldKind
-from crackfront.core.arguments import refuse_other_type
+from crackfront.core.arguments import check_type
 from crackfront.core.arrays import Array
-from crackfront.core.bounds import NUMBER, refuse_outside
+from crackfront.core.bounds import NUMBER, check_within
 from crackfront.core.variables import LATERAL, Variable
 from crackfront.core.words import counted
 from crackfront.simulate.labels import label, labelled
@@ -66,8 +66,8 @@ def surface_kind(surface: xr.DataArray) -> FieldKind:
 
     ValueError if no surface has that name, TypeError if it is not a labelled array.
     """
-    wanted = "an xarray.DataArray height(x, y), as surface, random_surface and read_scan make it"
-    refuse_other_type("surface", surface, xr.DataArray, wanted)
+    expected = "an xarray.DataArray height(x, y), as surface, random_surface and read_scan make it"
+    check_type("surface", surface, xr.DataArray, expected)
     kinds = {item.name: kind for kind, item in SURFACES.items()}
     if surface.name not in kinds:
         raise ValueError(
@@ -87,7 +87,7 @@ def read_field(path: Path) -> xr.DataArray:
     names = [item.name for item in SURFACES.values() if item.name in dataset]
     if not names:
         raise UnreadableFileError(
-            f"{path} has no surface (it has: {', '.join(map(str, dataset.data_vars))}); name its "
+            f"{path} lacks a surface (it has: {', '.join(map(str, dataset.data_vars))}); name its "
             f"variable {' or '.join(item.name for item in SURFACES.values())}"
         )
     if len(names) > 1:
@@ -126,5 +126,5 @@ def spacing(surface: xr.DataArray, name: str) -> float:
             f"{name} advances by {np.min(steps):.6g} to {np.max(steps):.6g}; it must "
             "increase in equal steps"
         )
-    refuse_outside(f"spacing of {name}", mean, NUMBER)
+    check_within(f"spacing of {name}", mean, NUMBER)
     return mean

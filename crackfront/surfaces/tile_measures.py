@@ -42,9 +42,9 @@ class Modes:
         return 2 * np.pi * float(np.sum(self.power) / np.sum(self.power * self.wavevector))
 
     def isotropic_density(self, bins_a_decade: int, area: float) -> tuple[Array, Array]:
-        """Means of the spectral density over bins that hold modes, and their wavevectors.
+        """Means of the spectral density over bins that contain modes, and their wavevectors.
 
-        The bins have equal width on a logarithmic scale, the area is that of the tile (Units:
+        The bins have equal widths on a logarithmic scale; `area` is the area of the tile (Units:
         length**2).
         """
         place = np.floor(bins_a_decade * np.log10(self.wavevector)).astype(int)
@@ -73,7 +73,7 @@ class TileMeasures:
     """Measures of the tile of a loop."""
 
     kind: FieldKind
-    """Whether the mean work of adhesion lies below w_int by e_el, as that of a rough surface."""
+    """Whether the mean work of adhesion lies below w_int by e_el, as on a rough surface."""
     e_el: float
     w_rms: float
     mean: float

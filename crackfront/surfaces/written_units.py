@@ -8,7 +8,7 @@ import re
 import unicodedata
 from typing import Any
 
-from crackfront.core.bounds import SI, refuse_outside
+from crackfront.core.bounds import SI, check_within
 
 _QUANTITY = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(\S.*?)?\s*")
 """A number and what stands behind it."""
@@ -17,7 +17,7 @@ _COMMA = re.compile(r"(?<=\d),(?=\d)")
 """A comma in a number, which stands for a point in one country and for nothing in another."""
 
 _PIXELS = re.compile(r"[a-z_]*(px|pixels?|dots?)(?![a-z])", re.IGNORECASE)
-"""Pixels of a picture, of which pint has a length, that of a style sheet."""
+"""Pixels of a picture; pint would convert them by the length that style sheets define."""
 
 _NAMES = {
     "m": "length",
@@ -40,57 +40,56 @@ _PRODUCT = re.compile(r"(?<=[A-Za-z])\.(?=[A-Za-z])")
 """A full stop between two units, as in mJ.m-2."""
 
 
-def si_value(text: str, unit: str, *, what: str) -> float:
+def si_value(text: str, unit: str, *, name: str) -> float:
     """Value, in an SI unit, of a positive number and its unit, as in 0.7MPa or 63 mJ/m2.
 
-    Its unit may be any of the same dimension; a refusal says what the quantity is. ValueError if
-    there is no unit, an unknown one or one of another dimension, or the number is not positive and
-    finite.
+    The unit may be any of the same dimension; errors mention `name`. ValueError if the unit is
+    missing, unknown or of another dimension, or the number is not positive and finite.
 
     Examples
     --------
-    >>> round(si_value("63mJ/m2", "J/m^2", what="work of adhesion"), 12)
+    >>> round(si_value("63mJ/m2", "J/m^2", name="work of adhesion"), 12)
     0.063
     """
     dimension = _NAMES[unit]
     example = f"write a number and a unit of {dimension}, as in {_EXAMPLES[unit]}"
-    found = _QUANTITY.fullmatch(unicodedata.normalize("NFKC", text).translate(_SIGNS))
+    quantity = _QUANTITY.fullmatch(unicodedata.normalize("NFKC", text).translate(_SIGNS))
     if _COMMA.search(text):
         raise ValueError(
-            f"{what} is {text!r}, a number with a comma; write {_COMMA.sub('.', text)!r} if that "
+            f"{name} is {text!r}, a number with a comma; write {_COMMA.sub('.', text)!r} if that "
             "is meant"
         )
-    if found is None:
-        raise ValueError(f"{what} is {text!r}, which is no number with a unit; {example}")
-    if found[2] is None:
-        raise ValueError(f"{what} is {text!r}, without a unit; {example}")
+    if quantity is None:
+        raise ValueError(f"{name} is {text!r}, which is not a number with a unit; {example}")
+    if quantity[2] is None:
+        raise ValueError(f"{name} is {text!r}, without a unit; {example}")
     try:
-        value = _converted(float(found[1]), _plain(found[2]), unit)
+        value = _converted(float(quantity[1]), _plain(quantity[2]), unit)
     except ValueError as error:
-        wrong = f"whose unit {found[2]} is unknown"
+        wrong = f"whose unit {quantity[2]} is unknown"
         if isinstance(error, PixelError):
             wrong = "in pixels, which have no length"
         elif isinstance(error, DimensionError):
-            wrong = f"which is no {dimension}"
-        raise ValueError(f"{what} is {text!r}, {wrong}; {example}") from error
+            wrong = f"whose unit is not a unit of {dimension}"
+        raise ValueError(f"{name} is {text!r}, {wrong}; {example}") from error
     if not (math.isfinite(value) and value > 0):
-        raise ValueError(f"{what} is {text!r}; it must be positive and finite")
-    if found[2].startswith("mPa"):
+        raise ValueError(f"{name} is {text!r}; it must be positive and finite")
+    if quantity[2].startswith("mPa"):
         meant = text.replace("mPa", "MPa")
         raise ValueError(
-            f"{what} is {text!r}, {value:g} Pa, too soft to be solid; was {meant!r} meant?"
+            f"{name} is {text!r}, {value:g} Pa, too soft to be solid; was {meant!r} meant?"
         )
-    refuse_outside(what, value, SI[unit], unit)
+    check_within(name, value, SI[unit], unit)
     return value
 
 
-def _plain(given: str) -> str:
+def _plain(written: str) -> str:
     """A unit as pint reads it, of one as people and the files of this package write it."""
-    signs = unicodedata.normalize("NFKC", given).translate(_SIGNS)
+    signs = unicodedata.normalize("NFKC", written).translate(_SIGNS)
     return _POWER.sub(r"\1^\2", _PRODUCT.sub("*", signs))
 
 
-def unit_value(given: str, unit: str) -> float:
+def unit_value(written: str, unit: str) -> float:
     """Value of one unit in another of the same dimension; a ValueError where there is none.
 
     Examples
@@ -99,19 +98,19 @@ def unit_value(given: str, unit: str) -> float:
     0.001
     """
     try:
-        return _converted(1.0, _plain(given), unit)
+        return _converted(1.0, _plain(written), unit)
     except PixelError as error:
         raise ValueError(
-            f"the unit {given} is one of pixels, which have no length; give a unit of length"
+            f"the unit {written} is one of pixels, which have no length; give a unit of length"
         ) from error
     except ValueError as error:
-        raise ValueError(f"the unit {given} cannot be converted to {unit}") from error
+        raise ValueError(f"the unit {written} cannot be converted to {unit}") from error
 
 
-def is_unit(given: str, unit: str) -> bool:
+def is_unit(written: str, unit: str) -> bool:
     """Whether a text is a unit of the same dimension as another one."""
     try:
-        unit_value(given, unit)
+        unit_value(written, unit)
     except ValueError:
         return False
     return True
@@ -125,18 +124,18 @@ class PixelError(DimensionError):
     """A unit of pixels, which say nothing of lengths."""
 
 
-def _converted(value: float, given: str, unit: str) -> float:
+def _converted(value: float, written: str, unit: str) -> float:
     """Value in a unit of a number in another one; a ValueError where it has none."""
     import pint
 
-    if _PIXELS.search(given):
-        raise PixelError(given)
+    if _PIXELS.search(written):
+        raise PixelError(written)
     registry = _registry()
     try:
-        return float(registry.Quantity(value, given).to(unit).magnitude)
+        return float(registry.Quantity(value, written).to(unit).magnitude)
     except pint.DimensionalityError as error:
         raise DimensionError(str(error)) from error
-    # A unit that is no expression fails anywhere in pint, whose parser asserts and divides.
+    # A text that is not a unit fails anywhere in pint, whose parser asserts and divides.
     except Exception as error:
         raise ValueError(str(error)) from error
 
@@ -146,7 +145,7 @@ def _registry() -> Any:
     """Registry of units, made once in a process."""
     import pint
 
-    # Files of pint's cache name those of one environment, and fail in others once that is removed.
+    # pint's cache names files of one environment, and fails once that environment is removed.
     return pint.UnitRegistry()
 
 
@@ -164,8 +163,8 @@ def prefixed(unit: str, *values: float, digits: int = 3) -> str:
     >>> prefixed("m", 2.1e-6), prefixed("J/m2", 0.0329, 0.0282, 0.0376)
     ('2.1 um', '32.9 mJ/m2 (28.2 to 37.6)')
     """
-    known = abs(values[0]) > 0 and math.isfinite(values[0])
-    power = 3 * math.floor(math.log10(abs(values[0]) * (1 + 1e-9)) / 3) if known else 0
+    has_size = abs(values[0]) > 0 and math.isfinite(values[0])
+    power = 3 * math.floor(math.log10(abs(values[0]) * (1 + 1e-9)) / 3) if has_size else 0
     power = min(max(power, min(_PREFIXES)), max(_PREFIXES))
     first, *ends = (f"{float(f'{value / 10.0**power:.{digits}g}'):g}" for value in values)
     interval = f" ({ends[0]} to {ends[1]})" if ends and math.isfinite(values[1]) else ""

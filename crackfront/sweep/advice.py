@@ -30,8 +30,8 @@ class Expectation:
     factor: float | None
     """k by the law; None so close to pull-off that nothing holds the edge."""
     needed_penetration: float | None = None
-    """Where the largest one leaves no steady part. (Units: reduced vertical length, or those of a
-    configuration)"""
+    """Set if the largest one leaves no steady part. (Units: reduced vertical length, or as in
+    the configuration)"""
 
 
 def expectation(simulation: Simulation) -> Expectation:

@@ -14,8 +14,15 @@ from typing import Annotated, Literal
 from pydantic import Field, model_validator
 
 from crackfront.core.adhesion import FieldKind
-from crackfront.sweep.section import Count, Section, Seed, refusal, validated, yaml_mapping
-from crackfront.sweep.section_checks import refuse_repeated
+from crackfront.sweep.section import (
+    Count,
+    Section,
+    Seed,
+    section_error,
+    validated,
+    yaml_mapping,
+)
+from crackfront.sweep.section_checks import check_distinct
 from crackfront.sweep.sections import (
     AmplitudesSection,
     FitSection,
@@ -43,29 +50,31 @@ class Configuration(Section):
 
     @model_validator(mode="after")
     def _consistent(self) -> Configuration:
-        refuse_repeated("spectrum name", [spectrum.name for spectrum in self.spectra])
+        check_distinct("spectrum name", [spectrum.name for spectrum in self.spectra])
         if self.field == "chemical" and self.amplitudes.elastic_energy is not None:
-            raise refusal(
-                "amplitudes.elastic_energy has no meaning for a chemical field; give "
+            raise section_error(
+                "amplitudes.elastic_energy is meaningless for a chemical field; give "
                 "amplitudes.work_of_adhesion_rms"
             )
         measured = [item.name for item in self.spectra if item.surface is not None]
         if measured and self.scales is None:
-            raise refusal(
-                f"spectrum {measured[0]!r} is that of a surface in metres; give the section scales"
+            raise section_error(
+                f"spectrum {measured[0]!r} describes a surface in metres; give the section scales"
             )
         if measured and self.field == "chemical":
-            raise refusal(f"spectrum {measured[0]!r} is that of heights; field must be roughness")
+            raise section_error(
+                f"spectrum {measured[0]!r} is the spectrum of heights; field must be roughness"
+            )
         line = self.load.line
         if line is not None and line.uncorrelated and self.numerics.error is not None:
-            raise refusal(
+            raise section_error(
                 f"numerics.error is {self.numerics.error:g}, which chooses other pixels for each "
                 "amplitude, and the disorder of load.line.uncorrelated sites depends on them; give "
                 "angles_per_cutoff, samples_per_cutoff, interpolation, pixels_per_cutoff and "
                 "tolerance"
             )
         if self.amplitudes.measured and not len(measured) == len(self.spectra) == 1:
-            raise refusal(
+            raise section_error(
                 "amplitudes.measured are multiples of the heights of one surface; give one "
                 "spectrum with a section surface"
             )
@@ -75,7 +84,7 @@ class Configuration(Section):
 def load_configuration(path: Path) -> Configuration:
     """Configuration of a sweep, read from a YAML file and validated.
 
-    ConfigurationError if the file cannot be read, is no YAML mapping, or anything in it is unknown,
-    missing or out of range; one sentence for each.
+    ConfigurationError if the file cannot be read, is not a YAML mapping, or anything in it is
+    unknown, missing or out of range; one sentence for each.
     """
     return validated(path, yaml_mapping(path), Configuration)

@@ -271,14 +271,14 @@ def read_result(path: Path, place: int, simulation: Simulation) -> SimulationRes
     """
     [result] = read_results(path, np.array([place]), [simulation])
     if result is None:
-        raise UnreadableFileError(f"{path} has no states of {simulation.label}, which failed")
+        raise UnreadableFileError(f"{path} lacks states of {simulation.label}, which failed")
     return result
 
 
 def read_results(
     path: Path, places: NDArray[np.integer[Any]], simulations: Iterable[Simulation]
 ) -> Iterator[SimulationResult | None]:
-    """Results of simulations at places of a file; None of one that failed before its first state.
+    """Results of simulations at places of a file; None if one failed before its first state.
 
     The checksum of the file has been looked at.
     """

@@ -7,9 +7,9 @@ import sys
 from itertools import product
 from pathlib import Path
 
-from crackfront.core.resources import refuse_beyond_memory, refuse_beyond_time
+from crackfront.core.resources import check_memory, check_time
 from crackfront.simulate.contact import Pressed, SurfaceLoads
-from crackfront.simulate.costs import expected_cost, refuse_oversized
+from crackfront.simulate.costs import check_sizes, expected_cost
 from crackfront.simulate.numerical_errors import missed_error
 from crackfront.simulate.settings import Settings
 from crackfront.simulate.simulation import Simulation
@@ -49,7 +49,7 @@ def check_feasible(sweep: Sweep, path: Path) -> None:
         for item in sweep.spectra:
             for simulation in sweep.one_per_amplitude(item):
                 if isinstance(sweep.schedule, SurfaceLoads):
-                    sweep.schedule.refuse_unresolved(simulation)
+                    sweep.schedule.check_resolved(simulation)
                 _check_resolution(simulation)
                 _check_tolerance_and_error(simulation, sweep.numerics.settings)
     except ValueError as error:
@@ -58,12 +58,12 @@ def check_feasible(sweep: Sweep, path: Path) -> None:
 
 def _check_numbers(sweep: Sweep) -> None:
     """Raise TooLargeError if memory cannot contain lists of simulations or bootstrap samples."""
-    refuse_beyond_memory(
+    check_memory(
         f"realisations: {sweep.n_simulation:.3g} simulations",
         _LISTED_BYTES * sweep.n_simulation,
         "lower their number",
     )
-    refuse_beyond_memory(
+    check_memory(
         f"fit: {sweep.fit.n_bootstrap} bootstrap samples",
         _SAMPLE_BYTES * sweep.fit.n_bootstrap * len(sweep.elastic_energies),
         "lower bootstrap",
@@ -76,7 +76,7 @@ def _check_sizes(sweep: Sweep) -> None:
     for item, elastic_energy in product(sweep.spectra, sweep.elastic_energies):
         usual_size = sweep.schedule.usual_size(item.spectrum)
         settings = sweep.numerics.settings_of(sweep.kind, item.spectrum, elastic_energy, usual_size)
-        refuse_oversized(item.spectrum, sweep.numerics, settings, deepest)
+        check_sizes(item.spectrum, sweep.numerics, settings, deepest)
 
 
 def _check_costs(sweep: Sweep) -> None:
@@ -85,10 +85,10 @@ def _check_costs(sweep: Sweep) -> None:
     for item in sweep.spectra:
         for simulation in sweep.one_per_amplitude(item):
             cost = expected_cost(simulation)
-            what = f"simulations of {item.name}"
-            refuse_beyond_memory(what, cost.memory, _COARSER, anywhere=True)
+            task = f"simulations of {item.name}"
+            check_memory(task, cost.memory, _COARSER, anywhere=True)
             seconds += sweep.n_realisation * cost.seconds
-    refuse_beyond_time("the simulations", seconds, _COARSER)
+    check_time("the simulations", seconds, _COARSER)
 
 
 def _check_resolution(simulation: Simulation) -> None:
@@ -127,8 +127,8 @@ def _check_tolerance_and_error(simulation: Simulation, requested: Settings | flo
                 "to which forces of pinning are proportional, so that k comes out too large; use "
                 f"{elastic_energy / 10:.1g} or less"
             )
-    elif left := missed_error(simulation, requested):
+    elif remaining := missed_error(simulation, requested):
         raise ValueError(
-            f"numerics: error is {requested:g}, but the finest numerics leave {left:.2g} for "
+            f"numerics: error is {requested:g}, but the finest numerics leave {remaining:.2g} for "
             f"{name} at e_el {elastic_energy:g}; allow that, or give the settings"
         )

@@ -23,7 +23,7 @@ _REQUEST = "request"
 
 
 def fitted_request(path: Path) -> str:
-    """Digest of what a `fit.nc` was asked for; refused as by `read_derived`."""
+    """Digest of what a `fit.nc` was asked for; errors are as in `read_derived`."""
     return str(read_derived(path, ()).attrs.get(_REQUEST, ""))
 
 

@@ -52,7 +52,7 @@ class Verification:
 def verification(place: Path) -> Verification:
     """Compare the files of a folder of results, or of its archive, with their list.
 
-    An archive is read, not unpacked. ValueError if there is no list, or it is not whole, or if the
+    An archive is read, not unpacked. ValueError if the list is missing or incomplete, or if the
     place is neither a folder nor an archive.
     """
     if place.is_dir():
@@ -65,7 +65,7 @@ def verification(place: Path) -> Verification:
             digests = _archive_digests(archive)
             members = {_name(member): member for member in archive.infolist()}
             if SUMS not in members:
-                raise ValueError(f"{place} has no {SUMS}; pack it with crackfront archive")
+                raise ValueError(f"{place} lacks {SUMS}; pack it with crackfront archive")
             text = archive.read(members[SUMS]).decode("utf-8", "replace")
     except _UNREADABLE as error:
         raise ValueError(f"{place} cannot be read as an archive (ZIP): {error}") from error
@@ -73,7 +73,7 @@ def verification(place: Path) -> Verification:
 
 
 def _compared(sums: Mapping[str, str], digests: Mapping[str, str]) -> Verification:
-    """Compare the checksums of files with those of the list."""
+    """Compare the checksums of files with the list."""
     damaged = [name for name in sums if name in digests and digests[name] != sums[name]]
     missing = [name for name in sums if name not in digests]
     return Verification(
@@ -107,12 +107,12 @@ def _name(member: ZipInfo) -> str:
 def write_sums(folder: Path) -> Path:
     """Write the list of the checksums of a finished folder of results, and return its path.
 
-    ValueError if the folder has no results, a file does not agree with the checksum in its name or
-    next to it, or a file must have one and has none.
+    ValueError if the folder lacks results, or a file does not agree with the checksum in its name
+    or next to it, or lacks a checksum that it must have.
     """
     names = result_files(folder)
     if not names:
-        raise ValueError(f"{folder} has no files; name a folder of results")
+        raise ValueError(f"{folder} is empty; name a folder of results")
     is_sweep = (folder / "shards").is_dir()
     digests = {}
     for name in names:

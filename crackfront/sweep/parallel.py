@@ -31,7 +31,7 @@ _COUNT_VARIABLES = (
 )
 """Environment variables in which launchers state how many processes they start.
 
-SLURM_NTASKS is not among them: a batch script, which is one process, has that of its job.
+SLURM_NTASKS is not among them: a batch script, which is one process, sees the tasks of its job.
 """
 
 _SECONDS = 0.1
@@ -122,7 +122,7 @@ def ranks() -> Iterator[Ranks | None]:
     if not is_launched():
         yield ALONE
         return
-    _refuse_small_shared_memory()
+    _check_shared_memory()
     from mpi4py import MPI
     from mpi4py.futures import MPICommExecutor
 
@@ -148,7 +148,7 @@ def ranks() -> Iterator[Ranks | None]:
         yield None if pool is None else Ranks(pool, max(1, n_here - 1))
 
 
-def _refuse_small_shared_memory() -> None:
+def _check_shared_memory() -> None:
     """Raise ValueError if MPI has too little memory for messages, as in small containers."""
     with contextlib.suppress(OSError):
         size = shutil.disk_usage(_SHARED_MEMORY).total
@@ -186,7 +186,7 @@ class Ranks:
         which it calls from time to time where it runs in this process; else this process calls it
         while it waits. `keep` takes every task and its result here, also of those that end while
         this is closed. No task begins after a stop was requested. An exception of a task is raised
-        here, when those that run beside it have ended.
+        here, when the tasks that run at the same time have ended.
         """
         if self.executor is None:
             for task in tasks:

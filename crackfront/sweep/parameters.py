@@ -9,7 +9,7 @@ from pathlib import Path
 from crackfront.core.units import Scales
 from crackfront.sweep.configuration import Configuration, load_configuration
 from crackfront.sweep.section import ConfigurationError
-from crackfront.sweep.section_checks import refuse_repeated
+from crackfront.sweep.section_checks import check_distinct
 from crackfront.sweep.sweep import FitRange, NamedSpectrum, Sweep
 
 _ROUND_OFF = 1e-9
@@ -38,7 +38,7 @@ def configured_sweep(configuration: Configuration) -> Sweep:
     scales = None if configuration.scales is None else Scales(**dict(configuration.scales))
     lateral, vertical = (scales.lateral, scales.vertical) if scales else (1.0, 1.0)
     spectra = tuple(_named_spectra(configuration, lateral))
-    refuse_repeated("the name of a spectrum and its spring,", [item.name for item in spectra])
+    check_distinct("the name of a spectrum and its spring,", [item.name for item in spectra])
     if scales is not None and configuration.load.line is None:
         _check_lengths(configuration, scales, spectra)
     return Sweep(

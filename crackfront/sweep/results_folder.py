@@ -26,7 +26,7 @@ SOURCE = "configuration.path"
 """File of a results folder that states the path of its configuration, relative to the folder."""
 
 
-def refuse_older_layout(results: Path) -> None:
+def check_layout(results: Path) -> None:
     """Raise ConfigurationError if results are of a version that kept curves in tar files."""
     if any((results / "curves").glob("*.tar")):
         raise ConfigurationError(
@@ -35,17 +35,21 @@ def refuse_older_layout(results: Path) -> None:
         )
 
 
-def refuse_other_configuration(path: Path, results: Path) -> None:
-    """Raise ConfigurationError if results are those of another configuration that is still there.
+def check_configuration(path: Path, results: Path) -> None:
+    """Raise ConfigurationError if results belong to another configuration that is still there.
 
     Two configurations of one name in two folders would share one folder of results.
     """
     source = results / SOURCE
     if not source.is_file():
         return
-    other = results / source.read_text(encoding="utf-8").strip()
-    if other.is_file() and not other.samefile(path) and other.read_bytes() != path.read_bytes():
+    earlier = results / source.read_text(encoding="utf-8").strip()
+    if (
+        earlier.is_file()
+        and not earlier.samefile(path)
+        and earlier.read_bytes() != path.read_bytes()
+    ):
         raise ConfigurationError(
-            f"{results} has the results of {os.path.relpath(other)}, another configuration than "
+            f"{results} has the results of {os.path.relpath(earlier)}, another configuration than "
             f"{path}; rename one of them, or name another folder by --output"
         )

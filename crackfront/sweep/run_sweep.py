@@ -13,7 +13,7 @@ import numpy as np
 from tqdm import tqdm
 from xarray import Dataset
 
-from crackfront.core.arguments import refuse_other_type
+from crackfront.core.arguments import check_type
 from crackfront.simulate.labels import flag_words
 from crackfront.simulate.provenance import Provenance, provenance
 from crackfront.simulate.storage import read_derived, write_text
@@ -22,8 +22,8 @@ from crackfront.sweep.parallel import deferring_stops
 from crackfront.sweep.parameters import load_sweep
 from crackfront.sweep.results_folder import (
     SOURCE,
-    refuse_older_layout,
-    refuse_other_configuration,
+    check_configuration,
+    check_layout,
     results_folder,
 )
 from crackfront.sweep.rows import COMPLETE
@@ -38,16 +38,16 @@ def opened(
 ) -> tuple[Sweep, Store, Provenance]:
     """Sweep of a configuration file, its store, and the origin of what is computed for it.
 
-    ConfigurationError if no machine can run the sweep, or the results are those of another
-    configuration that is still there, or of an older layout.
+    ConfigurationError if no machine can run the sweep, or the results belong to another
+    configuration that is still there, or have an older layout.
     """
     sweep = load_sweep(configuration)
     check_feasible(sweep, configuration)
     if output is not None and output.exists() and not output.is_dir():
         raise ValueError(f"the output is {output}, a file; name a folder for the results")
     store = Store(results_folder(configuration) if output is None else output, announce)
-    refuse_older_layout(store.folder)
-    refuse_other_configuration(configuration, store.folder)
+    check_layout(store.folder)
+    check_configuration(configuration, store.folder)
     return sweep, store, provenance(movable_text(configuration))
 
 
@@ -88,7 +88,7 @@ def run_sweep(
         After Ctrl-C or SIGTERM. Finished simulations are stored; the same call continues.
     """
     for name, path in (("configuration", configuration), ("output", output or "")):
-        refuse_other_type(name, path, (str, PathLike), "the path of a file or folder")
+        check_type(name, path, (str, PathLike), "the path of a file or folder")
     sweep, store, origin = opened(Path(configuration), None if output is None else Path(output))
     shards = sweep.shards()
     write_source(Path(configuration), store.folder)

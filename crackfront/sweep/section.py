@@ -1,4 +1,4 @@
-"""Strict YAML: sections of configurations, read from files, and sentences for what they refuse."""
+"""Strict YAML: sections of configurations, read from files, and sentences for their errors."""
 
 from __future__ import annotations
 
@@ -27,13 +27,13 @@ from crackfront.core.bounds import (
 )
 
 
-def refusal(message: str) -> PydanticCustomError:
-    """A refusal that keeps its own sentence."""
+def section_error(message: str) -> PydanticCustomError:
+    """An error of a section with its own sentence."""
     return PydanticCustomError("section", "{message}", {"message": message})
 
 
 def bounds_validator(bounds: Range) -> AfterValidator:
-    """Validator that refuses numbers outside of bounds."""
+    """Validator that raises an error for numbers outside of bounds."""
 
     def bounded(value: float) -> float:
         if not bounds.least <= value <= bounds.most:
@@ -52,13 +52,13 @@ Seed = Annotated[int, Field(ge=0), bounds_validator(SEED)]
 Energy = Annotated[float, Field(gt=0, lt=1), bounds_validator(NUMBER)]
 
 _MOST_BYTES = 5e5
-"""Size of a file; that of a person has some thousands."""
+"""Largest size of a file; people write some thousands. (Units: byte)"""
 
 _MOST_VALUES = 200_000
-"""Values, those of repeated anchors included."""
+"""Largest number of values, including values of repeated anchors."""
 
 _MOST_SENTENCES = 20
-"""Refusals of one file that are printed."""
+"""Errors of one file that are printed."""
 
 
 def resolved_path(path: Path, info: ValidationInfo) -> Path:
@@ -86,7 +86,7 @@ class ConfigurationError(ValueError):
 
 
 class Section(BaseModel):
-    """A mapping of a file; unknown keys and conversions are refused."""
+    """A mapping of a file; unknown keys and conversions are not allowed."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
 
@@ -107,18 +107,20 @@ def validated(path: Path, content: object, schema: type[Kind]) -> Kind:
             folder = Path(first.removeprefix(_HOME))
         return schema.model_validate(content, context=folder)
     except ValidationError as error:
-        found = error.errors(include_url=False)
-        around = {item["loc"][:depth] for item in found for depth in range(len(item["loc"]))}
-        # A list whose entries are refused is also called too short.
-        found = [item for item in found if item["type"] != "too_short" or item["loc"] not in around]
-        lines = [f"{path}: {_sentence(item, schema)}" for item in found[:_MOST_SENTENCES]]
-        if len(found) > _MOST_SENTENCES:
-            lines.append(f"{path}: and {len(found) - _MOST_SENTENCES} more such keys and values")
+        errors = error.errors(include_url=False)
+        around = {item["loc"][:depth] for item in errors for depth in range(len(item["loc"]))}
+        # pydantic also calls a list with wrong entries too short.
+        errors = [
+            item for item in errors if item["type"] != "too_short" or item["loc"] not in around
+        ]
+        lines = [f"{path}: {_sentence(item, schema)}" for item in errors[:_MOST_SENTENCES]]
+        if len(errors) > _MOST_SENTENCES:
+            lines.append(f"{path}: and {len(errors) - _MOST_SENTENCES} more such keys and values")
         raise ConfigurationError("\n".join(lines)) from error
 
 
 class _Constructor(SafeConstructor):
-    """Values of YAML 1.2, each key once; refuses integers that are octal in YAML 1.1."""
+    """Values of YAML 1.2, each key once; integers that are octal in YAML 1.1 are errors."""
 
     def construct_mapping(self, node: MappingNode, deep: bool = False) -> dict[Any, Any]:
         """Mapping of a node, each key once."""
@@ -149,9 +151,9 @@ _Constructor.add_constructor("tag:yaml.org,2002:int", _Constructor.construct_yam
 
 
 def yaml_mapping(path: Path) -> dict[str, Any]:
-    """Mapping that a YAML file holds, with tuples for lists.
+    """Mapping in a YAML file, with tuples for lists.
 
-    ConfigurationError if the file cannot be read, holds no mapping, or is too large or deep for
+    ConfigurationError if the file cannot be read, is not a mapping, or is larger or deeper than
     what a person writes.
     """
     try:
@@ -159,7 +161,7 @@ def yaml_mapping(path: Path) -> dict[str, Any]:
     except OSError as error:
         raise ConfigurationError(f"{path} cannot be read: {error.strerror}") from error
     except UnicodeDecodeError as error:
-        raise ConfigurationError(f"{path} is no UTF-8 text; save it as UTF-8") from error
+        raise ConfigurationError(f"{path} is not a text in UTF-8; save it as UTF-8") from error
     except ValueError as error:
         raise ConfigurationError(str(error)) from error
     try:
@@ -168,19 +170,19 @@ def yaml_mapping(path: Path) -> dict[str, Any]:
         content = _frozen(reader.load(text), count())
     except MarkedYAMLError as error:
         line = f" in line {error.problem_mark.line + 1}" if error.problem_mark else ""
-        raise ConfigurationError(f"{path} is no valid YAML{line}: {error.problem}") from error
+        raise ConfigurationError(f"{path} is not valid YAML{line}: {error.problem}") from error
     except RecursionError as error:
         raise ConfigurationError(
             f"{path}: more than {_MOST_VALUES} values, or nested without end; write it shorter"
         ) from error
     except Exception as error:  # what constructors raise at dates and numbers that are none, too
-        raise ConfigurationError(f"{path} is no valid YAML: {error}") from error
+        raise ConfigurationError(f"{path} is not valid YAML: {error}") from error
     if content is None:
         raise ConfigurationError(f"{path} is empty; write a configuration like config/test.yaml")
     if not isinstance(content, dict):
         kind = "a list" if isinstance(content, tuple) else "a single value"
         raise ConfigurationError(
-            f"{path} holds {kind}, not keys with values; write a configuration like "
+            f"{path} contains {kind}, not keys with values; write a configuration like "
             "config/test.yaml"
         )
     return content

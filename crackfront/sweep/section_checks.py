@@ -5,37 +5,39 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from typing import Any
 
-from crackfront.sweep.section import Section, refusal
+from crackfront.sweep.section import Section, section_error
 
 
-def refuse_unless_made(make: Callable[[], object]) -> None:
+def check_makes(make: Callable[[], object]) -> None:
     """Raise if the record of a section raises ValueError for its values."""
     try:
         make()
     except ValueError as error:
-        raise refusal(str(error)) from error
+        raise section_error(str(error)) from error
 
 
-def refuse_repeated(what: str, values: Iterable[object]) -> None:
+def check_distinct(name: str, values: Iterable[object]) -> None:
     """Raise if a value occurs twice."""
     earlier = set()
     for value in values:
         if value in earlier:
-            raise refusal(f"{what} {value!r} stands twice; remove or change one")
+            raise section_error(f"{name} {value!r} stands twice; remove or change one")
         earlier.add(value)
 
 
-def refuse_overruled(section: Section, decider: str, keys: Iterable[str]) -> None:
+def check_not_overruled(section: Section, decider: str, keys: Iterable[str]) -> None:
     """Raise if a section has a key that another one decides."""
     if overruled := [key for key in keys if getattr(section, key) is not None]:
-        raise refusal(f"{decider} already decides {', '.join(overruled)}; remove one or the other")
+        raise section_error(
+            f"{decider} already decides {', '.join(overruled)}; remove one or the other"
+        )
 
 
-def refuse_unless_one(what: str, values: tuple[Any, Any], otherwise: str = "give one") -> None:
+def check_exactly_one(problem: str, values: tuple[Any, Any], otherwise: str = "give one") -> None:
     """Raise unless exactly one of two values is there."""
     n_value = sum(value is not None for value in values)
     if n_value != 1:
-        raise refusal(f"{what}; {'remove one' if n_value else otherwise}")
+        raise section_error(f"{problem}; {'remove one' if n_value else otherwise}")
 
 
 def missing_keys(section: Section, keys: Iterable[str]) -> list[str]:

@@ -32,14 +32,14 @@ from crackfront.sweep.section import (
     Positive,
     Section,
     bounds_validator,
-    refusal,
+    section_error,
 )
 from crackfront.sweep.section_checks import (
+    check_distinct,
+    check_exactly_one,
+    check_makes,
+    check_not_overruled,
     missing_keys,
-    refuse_overruled,
-    refuse_repeated,
-    refuse_unless_made,
-    refuse_unless_one,
 )
 
 Rms = Annotated[float, Field(gt=0, lt=2, allow_inf_nan=False)]
@@ -64,18 +64,18 @@ class AmplitudesSection(Section):
     def _one_measure(self) -> AmplitudesSection:
         measures = [values for _, values in self if values is not None]
         if len(measures) != 1:
-            raise refusal(
+            raise section_error(
                 "amplitudes need exactly one of elastic_energy, work_of_adhesion_rms and measured; "
                 + ("remove one" if measures else "give one")
             )
         # Texts have six digits.
-        refuse_repeated("amplitude", [float(f"{value:g}") for value in measures[0]])
+        check_distinct("amplitude", [float(f"{value:g}") for value in measures[0]])
         return self
 
     def elastic_energies(self, measured: float) -> tuple[float, ...]:
         """e_el / w_int, from w_rms^2 = 4 e_el w_int where the rms is given.
 
-        Multiples of measured heights are those of its root; four digits, which names state.
+        Multiples of measured heights are multiples of its root; four digits, which names state.
         """
         if self.elastic_energy is not None:
             return self.elastic_energy
@@ -115,19 +115,19 @@ class NumericsSection(Section):
     @model_validator(mode="after")
     def _usable(self) -> NumericsSection:
         if self.error is not None:
-            refuse_overruled(self, "error", [item.name for item in fields(Settings)])
+            check_not_overruled(self, "error", [item.name for item in fields(Settings)])
         else:
             needed = ("samples_per_cutoff", "interpolation", "pixels_per_cutoff", "tolerance")
             if missing := missing_keys(self, needed):
-                raise refusal(
+                raise section_error(
                     f"{', '.join(missing)} missing; add what is missing or ask for an error"
                 )
-            refuse_unless_one(
+            check_exactly_one(
                 "numerics need exactly one of angles and angles_per_cutoff",
                 (self.angles, self.angles_per_cutoff),
                 otherwise="give one, or ask for an error",
             )
-        refuse_unless_made(lambda: named_solver(self.solver, DEFAULT_TOLERANCE, self.max_sweeps))
+        check_makes(lambda: named_solver(self.solver, DEFAULT_TOLERANCE, self.max_sweeps))
         return self
 
     def numerics(self) -> Numerics:
@@ -168,7 +168,7 @@ class LineSection(Section):
 
     @model_validator(mode="after")
     def _distinct(self) -> LineSection:
-        refuse_repeated("spring", self.springs)
+        check_distinct("spring", self.springs)
         return self
 
 
@@ -183,15 +183,15 @@ class LoadSection(Section):
     @model_validator(mode="after")
     def _makes_contact(self) -> LoadSection:
         if self.line is not None:
-            refuse_overruled(self, "line", ("max_penetration", "step", "steady"))
+            check_not_overruled(self, "line", ("max_penetration", "step", "steady"))
             return self
         if self.max_penetration is None:
-            raise refusal("key max_penetration is missing; add it, or a section line")
-        refuse_unless_one(
+            raise section_error("key max_penetration is missing; add it, or a section line")
+        check_exactly_one(
             "load needs exactly one of step (full cycles) and steady (parts of them)",
             (self.step, self.steady),
         )
-        refuse_unless_made(lambda: self.schedule(1.0))
+        check_makes(lambda: self.schedule(1.0))
         return self
 
     def schedule(self, vertical: float) -> SweepLoad:
@@ -216,7 +216,7 @@ class FitSection(Section):
     @model_validator(mode="after")
     def _ordered(self) -> FitSection:
         if self.lowest_elastic_energy > self.highest_elastic_energy:
-            raise refusal(
+            raise section_error(
                 f"lowest_elastic_energy {self.lowest_elastic_energy:g} is above "
                 f"highest_elastic_energy {self.highest_elastic_energy:g}; swap them"
             )

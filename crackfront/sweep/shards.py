@@ -77,8 +77,8 @@ def write_shard(
 ) -> None:
     """Write the file of a shard and its checksum.
 
-    Columns are those of `SweepRow`, over amplitudes and realisations in their order. The layout is
-    that of the file of the whole sweep.
+    Columns are the fields of `SweepRow`, over amplitudes and realisations in their order. The
+    layout is the same as in the file of the whole sweep.
     """
     alone = replace(sweep, spectra=(shard.item,))
     shape = 1, len(sweep.elastic_energies), len(shard.realisations)

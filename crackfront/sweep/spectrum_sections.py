@@ -22,10 +22,10 @@ from crackfront.sweep.section import (
     InputFile,
     Positive,
     Section,
-    refusal,
     resolved_path,
+    section_error,
 )
-from crackfront.sweep.section_checks import missing_keys, refuse_overruled, refuse_unless_made
+from crackfront.sweep.section_checks import check_makes, check_not_overruled, missing_keys
 from crackfront.sweep.sweep import NamedSpectrum
 
 # Imported where a configuration names a measured surface.
@@ -56,12 +56,12 @@ class SurfaceSection(Section):
         for key in options:
             if key not in keys:
                 hint = nearest_name(key, keys, "the keys here are")
-                raise refusal(f"unknown key {key}; {hint}")
+                raise section_error(f"unknown key {key}; {hint}")
         masks = _located_masks(options.get("mask"), info)
         try:
             self._options = tuple(reading_options(options | {"mask": masks}, len(self.file)))
         except (TypeError, ValueError) as error:
-            raise refusal(str(error)) from error
+            raise section_error(str(error)) from error
         return self
 
     @functools.cached_property
@@ -111,7 +111,7 @@ class SpectrumSection(Section):
     The method `shape` of such a section returns the spectrum and what its name ends with.
     """
 
-    # Names of files have up to 255 letters, of which those of checkpoints add some hundred.
+    # Names of files have up to 255 letters, and names of checkpoints add about a hundred.
     name: Annotated[str, Field(pattern=r"^[A-Za-z0-9_-]+$", max_length=100)]
     short_cutoff: Positive | None = None
     roll_off: Positive | None = None
@@ -122,14 +122,16 @@ class SpectrumSection(Section):
     @model_validator(mode="after")
     def _complete(self) -> SpectrumSection:
         if sections := self._sections():
-            others = "short_cutoff", "roll_off", "hurst", *sections[1:]
-            refuse_overruled(self, sections[0], others)
+            overruled = "short_cutoff", "roll_off", "hurst", *sections[1:]
+            check_not_overruled(self, sections[0], overruled)
             return self
         if self.short_cutoff is not None:
-            refuse_unless_made(self._self_affine)
+            check_makes(self._self_affine)
         needed = ("short_cutoff",) if self._is_flat else ("short_cutoff", "hurst")
         if missing := missing_keys(self, needed):
-            raise refusal(f"key {', '.join(missing)} is missing; add it, or a table or surface")
+            raise section_error(
+                f"key {', '.join(missing)} is missing; add it, or a table or surface"
+            )
         return self
 
     def named(self, position: int, lateral: float) -> NamedSpectrum:

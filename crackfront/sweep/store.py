@@ -1,7 +1,7 @@
 """The folder of a sweep: the simulations that its files have or lack, its shards, its table.
 
 What is stored are the files of finished simulations (:mod:`crackfront.sweep.curves`). The files of
-shards and of the table are derived from them at any time. A file has one writer, which holds the
+shards and of the table are derived from them at any time. A file has one writer, which has the
 lock of the shard; ranks write only their checkpoints.
 """
 
@@ -70,11 +70,11 @@ Announce = Callable[[str], None]
 """Called with a sentence on a damaged file, or on another process that is waited for."""
 
 _WAIT_SECONDS = 0.5
-"""Time between two attempts to lock a shard that another process holds. (Units: s)"""
+"""Time between two attempts to lock a shard that another process has locked. (Units: s)"""
 
 _MOST_MERGED_BYTES = 1e8
-"""Size of the files of a shard beyond which batches stay as they are: merging holds them in memory
-three times. (Units: byte)"""
+"""Size of the files of a shard beyond which batches stay as they are: merging takes three
+times their memory. (Units: byte)"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -216,11 +216,11 @@ class Store:
 
     @contextlib.contextmanager
     def locked(self, shards: Iterable[Shard]) -> Iterator[None]:
-        """Hold the locks of shards.
+        """Lock shards while the context is open.
 
         Waits where another process has one of them, until that has ended in whatever way, and
         announces it: a killed Snakemake leaves its jobs running, and starts the same ones again.
-        Where the file system has no locks nothing is held. KeyboardInterrupt if a stop is requested
+        On a file system without locks nothing is locked. KeyboardInterrupt if a stop is requested
         meanwhile.
         """
         with contextlib.ExitStack() as files:
@@ -229,20 +229,20 @@ class Store:
                 folder = self.curve_folder(shard)
                 folder.mkdir(parents=True, exist_ok=True)
                 file = files.enter_context((folder / ".lock").open("ab"))
-                self._hold(file, shard)
-                # Only this process writes here now: what is half-written has no writer any more.
+                self._lock(file, shard)
+                # Only this process writes here now: half-written files were left by others.
                 for part in (*folder.glob(".*.part"), *folder.glob(".*.nc")):
                     part.unlink(missing_ok=True)
             yield
 
-    def _hold(self, file: IO[bytes], shard: Shard) -> None:
+    def _lock(self, file: IO[bytes], shard: Shard) -> None:
         """Lock a file, when another process has left it."""
         for attempt in itertools.count():
             try:
                 fcntl.lockf(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
                 return
             except (BlockingIOError, PermissionError):
-                if attempt == 1:  # `status` holds a lock for an instant
+                if attempt == 1:  # `status` locks for an instant
                     self.announce(
                         f"another process simulates {shard.name} in {self.folder} already; waiting "
                         "for its results"
@@ -254,7 +254,7 @@ class Store:
                 return  # a file system without locks
 
     def running_shards(self) -> list[str]:
-        """Names of the shards whose lock another process holds, as far as this machine sees it."""
+        """Names of the shards that another process has locked, as far as this machine sees it."""
         names = []
         for path in sorted((self.folder / "curves").glob("*/.lock")):
             with contextlib.suppress(OSError), path.open("ab") as file:
@@ -267,7 +267,7 @@ class Store:
     def finish_shard(self, sweep: Sweep, shard: Shard, origin: Provenance) -> Path:
         """Merge the files of curves of a shard, and derive the file of its rows.
 
-        The process holds the lock of the shard. ValueError if simulations are missing.
+        The process must have locked the shard. ValueError if simulations are missing.
         """
         path = self.shard_path(shard)
         if self.is_finished(sweep, shard):
@@ -388,7 +388,7 @@ class Store:
         """Attributes of the file of the whole sweep; errors as of :meth:`table`."""
         if not self.hysteresis.exists():
             raise ValueError(
-                f"{self.folder} has no hysteresis.nc; run crackfront aggregate with the "
+                f"{self.folder} lacks hysteresis.nc; run crackfront aggregate with the "
                 "configuration of the sweep, or the workflow"
             )
         about = read_derived(self.hysteresis, ()).attrs
@@ -402,7 +402,7 @@ class Store:
     def aggregate(
         self, sweep: Sweep, origin: Provenance, watched: Callable[[list[Any]], Iterable[Any]] = iter
     ) -> Path:
-        """Write the file of the whole sweep from those of its shards, and return its path.
+        """Write the file of the whole sweep from the files of its shards, and return its path.
 
         Shards are read as `watched` yields them, which may show how far this is. ValueError if
         shards are missing or damaged.

@@ -54,7 +54,7 @@ def summary_page(
 
 
 def _picture(caption: str, path: Path) -> str:
-    """A picture that the page itself holds, with its caption."""
+    """A picture that is embedded in the page, with its caption."""
     # In short lines, which the report of the workflow needs, as it shows this part of the page.
     data = encodebytes(path.read_bytes()).decode()
     return (

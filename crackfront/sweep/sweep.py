@@ -33,7 +33,7 @@ class NamedSpectrum:
 class Shard:
     """What one job runs: a spectrum with all its amplitudes, and a block of its realisations.
 
-    Its name is that of the spectrum, with the first and last realisation where these are not all.
+    Its name is the name of the spectrum, with the first and last realisation if it lacks some.
     """
 
     item: NamedSpectrum
@@ -73,7 +73,7 @@ class Sweep:
     schedule: SweepLoad
     """Loads of all simulations, or how straight fronts are held."""
     record: tuple[Literal["fronts", "energy"], ...]
-    """What to record beside the curves."""
+    """What to record in addition to the curves."""
     failed_fraction: float
     """Part of the simulations that may end without a value."""
     fit: FitRange
@@ -83,7 +83,7 @@ class Sweep:
         spectra = {item.name: item for item in self.spectra}
         if name in spectra:
             return spectra[name]
-        raise ValueError(f"the sweep has no spectrum {name!r}; {nearest_name(name, spectra)}")
+        raise ValueError(f"the sweep lacks a spectrum {name!r}; {nearest_name(name, spectra)}")
 
     def simulation(
         self, item: NamedSpectrum, elastic_energy: float, realisation: int
@@ -129,7 +129,7 @@ class Sweep:
     def shards(self, block: int | str | None = None) -> tuple[Shard, ...]:
         """Shards of a number of realisations each, by default of all.
 
-        ValueError if it is no positive number, or there are more than :data:`MOST_SHARDS` shards.
+        ValueError if the number is not positive, or there are more than :data:`MOST_SHARDS` shards.
         """
         size = self.n_realisation if block is None else block
         if not isinstance(size, int) or size < 1:

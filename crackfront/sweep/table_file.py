@@ -134,7 +134,9 @@ def _axes(sweep: Sweep, realisations: range) -> SweepAxes:
         roll_off=np.array([spectrum.longest_feature for spectrum in spectra]),
         hurst=np.array([getattr(spectrum, "hurst", math.nan) for spectrum in spectra]),
         correlation_length=each("correlation_length")[:, 0],
-        spring=np.array([[_spring(one.schedule) for one in row] for row in one_per_amplitude]),
+        spring=np.array(
+            [[_spring(simulation.schedule) for simulation in row] for row in one_per_amplitude]
+        ),
         n_angle=each("resolution.n_angle"),
         sample_spacing=each("resolution.spacing"),
         tile_side=each("resolution.tile_side"),

@@ -8,7 +8,7 @@ from pathlib import Path
 import click
 
 from crackfront.cli.answers import announce_compilation, announce_cost
-from crackfront.cli.output_files import refuse_unwritable
+from crackfront.cli.output_files import check_writable
 from crackfront.cli.parameters import FILE, examples, whole
 from crackfront.core.arguments import nearest_name
 from crackfront.core.bounds import Range
@@ -63,7 +63,7 @@ def scene(scene: str, output: Path, study: str, realisations: int) -> None:
     """Measure the errors of one scene."""
     if scene not in SCENES:
         raise click.BadParameter(f"there is no scene {scene!r}; {nearest_name(scene, SCENES)}")
-    refuse_unwritable(output)
+    check_writable(output)
     announce_cost(realisations * STUDIES[study].seconds(SCENES[scene]))
     announce_compilation()
     compile_solver("newton", FullCycle)
@@ -156,7 +156,7 @@ def movement(scans: tuple[Path, ...], keep: bool) -> None:
 @output_option(default=Path("examples/scans"))
 def scans(output: Path) -> None:
     """Write the synthetic scans of nanodiamond that the examples read."""
-    refuse_unwritable(output)
+    check_writable(output)
     instrument.write_scans(output)
     click.echo(f"scans: {output}")
 

@@ -23,7 +23,7 @@ from crackfront.sweep.section import (
     Positive,
     Section,
     bounds_validator,
-    refusal,
+    section_error,
 )
 from studies.boundary_elements.contact import HalfSpaceContact, half_space_contact
 
@@ -76,18 +76,18 @@ class Loads(Section):
             low = max(self.steady.first, self.steady.end)
             high = min(self.steady.last, self.steady.turned)
             if not low < high <= max(self.steady.last, self.steady.turned) < most:
-                raise refusal(
+                raise section_error(
                     f"the steady parts are {self.steady}; first must be below last, end below "
                     f"turned, all below max_penetration {most:g}, and both parts must overlap"
                 )
         if not (low <= self.shown_penetration <= high and self.shown_penetration < most):
-            raise refusal(
+            raise section_error(
                 f"shown_penetration {self.shown_penetration:g} is not on both branches; it must "
                 f"be below max_penetration {most:g}, and on both steady parts if there are any"
             )
         return self
 
-    def refuse_step(self) -> None:
+    def check_step(self) -> None:
         """Raise if the step is too large, or leads past penetrations that are compared."""
         steady = self.steady.model_dump() if self.steady else {}
         if self.steady is None and self.step > self.max_penetration / 3 * (1 + 1e-9):

@@ -7,7 +7,7 @@ from pathlib import Path
 import click
 
 from crackfront.cli.answers import StoppedError, announce_compilation
-from crackfront.cli.output_files import refuse_unwritable
+from crackfront.cli.output_files import check_writable
 from crackfront.cli.parameters import FILE, examples
 from crackfront.sweep.watching import with_progress
 from studies.pages import keep_option, tell
@@ -34,7 +34,7 @@ def validate(configuration: Path, output: Path | None) -> None:
     from crackfront.simulate.checksums import forget_sums
     from crackfront.simulate.provenance import provenance
     from crackfront.sweep.integrity import write_sums
-    from crackfront.sweep.results_folder import refuse_other_configuration, results_folder
+    from crackfront.sweep.results_folder import check_configuration, results_folder
     from crackfront.sweep.run_sweep import write_source
     from studies.boundary_elements import study
     from studies.boundary_elements.parameters import load_validation
@@ -45,9 +45,9 @@ def validate(configuration: Path, output: Path | None) -> None:
 
     parameters = load_validation(configuration)
     folder = output or results_folder(configuration)
-    study.refuse_missing_libraries()
-    refuse_unwritable(folder)
-    refuse_other_configuration(configuration, folder)
+    study.check_libraries()
+    check_writable(folder)
+    check_configuration(configuration, folder)
     write_source(configuration, folder)
     origin = provenance(configuration.read_text(encoding="utf-8"))
     announce_compilation()

@@ -112,7 +112,7 @@ def half_space_contact(
     ----------
     .. [1] Sanner et al., Sci. Adv. (2024), supplement, Sec. III.
     """
-    refuse_unresolved(pixel, len(roughness), interaction_range, max_penetration)
+    check_resolved(pixel, len(roughness), interaction_range, max_penetration)
     from Adhesion.Interactions import PowerLaw
     from Adhesion.System import BoundedSmoothContactSystem
     from ContactMechanics import FreeFFTElasticHalfSpace
@@ -137,7 +137,7 @@ def half_space_contact(
     )
 
 
-def refuse_unresolved(
+def check_resolved(
     pixel: float, n_point: int, interaction_range: float, max_penetration: float
 ) -> None:
     """Raise if a grid is too coarse for the attraction, or its domain too small."""

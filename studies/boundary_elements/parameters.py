@@ -9,18 +9,18 @@ from typing import Annotated
 import numpy as np
 from pydantic import Field, model_validator
 
-from crackfront.core.resources import refuse_beyond_memory
+from crackfront.core.resources import check_memory
 from crackfront.sweep.section import (
     Count,
     Positive,
     Section,
     Seed,
-    refusal,
+    section_error,
     validated,
     yaml_mapping,
 )
 from studies.boundary_elements.cases import Case, Loads
-from studies.boundary_elements.contact import refuse_unresolved
+from studies.boundary_elements.contact import check_resolved
 
 _POINT_BYTES = 500.0
 """Memory of a point of a grid, twice as wide in both directions, with some fifteen arrays."""
@@ -75,23 +75,23 @@ class ValidationParameters(Section):
     def _usable(self) -> ValidationParameters:
         spacing, finest = self.front.spacing, self.short_cutoff / _FEWEST_SAMPLES
         if spacing > finest * (1 + 1e-12):
-            raise refusal(
+            raise section_error(
                 f"front: spacing {spacing:g} misses waves of short_cutoff {self.short_cutoff:g}; "
                 f"take {finest:g} or less"
             )
         if self.loads.steady is None and self.loads.shown_penetration < 0:
-            raise refusal(
+            raise section_error(
                 f"loads: shown_penetration {self.loads.shown_penetration:g} has no contact in "
                 "approach; take 0 or more"
             )
         for number, case in enumerate(self.cases):
             try:
-                self._refuse(case)
+                self._check_case(case)
             except ValueError as error:
-                raise refusal(f"cases[{number}]: {error}") from error
+                raise section_error(f"cases[{number}]: {error}") from error
         return self
 
-    def _refuse(self, case: CaseSection) -> None:
+    def _check_case(self, case: CaseSection) -> None:
         """Raise if a case does not hold or resolve roughness and attraction, or is too large."""
         n_point, pixel, cutoff = case.n_point, self.side / case.n_point, self.short_cutoff
         if case.roll_off is not None and case.roll_off < cutoff:
@@ -109,9 +109,9 @@ class ValidationParameters(Section):
                 f"{1 + math.floor(2 * self.side / cutoff)} or more"
             )
         memory = _POINT_BYTES * float(n_point) ** 2
-        refuse_beyond_memory(f"a grid of {n_point} x {n_point} points", memory, "lower n_point")
-        refuse_unresolved(pixel, n_point, case.interaction_range, self.loads.max_penetration)
-        self.case_loads(case).refuse_step()
+        check_memory(f"a grid of {n_point} x {n_point} points", memory, "lower n_point")
+        check_resolved(pixel, n_point, case.interaction_range, self.loads.max_penetration)
+        self.case_loads(case).check_step()
 
     def case_loads(self, case: CaseSection) -> Loads:
         """Loads of all cases, in the steps of this one."""

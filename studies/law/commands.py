@@ -11,7 +11,7 @@ from typing import cast
 import click
 import xarray as xr
 
-from crackfront.cli.output_files import refuse_unwritable
+from crackfront.cli.output_files import check_writable
 from crackfront.cli.parameters import FILE, examples
 from crackfront.plots.style import save_picture
 from crackfront.simulate.sphere.steady_branches import SteadySchedule
@@ -84,7 +84,7 @@ def fit(configurations: tuple[Path, ...], output: Path) -> None:
     Writes cells.csv, a row for every spectrum, amplitude and spring, and law.json, the law.
     Predictions use the copies in studies/law/cells.csv and crackfront/analysis/law.json.
     """
-    refuse_unwritable(output)
+    check_writable(output)
     cells = [cell for path in configurations for cell in _rows(path, law_cells)]
     cells.sort(key=lambda cell: (cell.spectrum, cell.disorder, cell.size))
     text = csv_text(cells or measured_cells())
@@ -124,7 +124,7 @@ def held_out(output: Path) -> None:
     Writes held-out.csv, with the spheres of docs/reference/si-5.nc, which is kept in
     docs/reference.
     """
-    refuse_unwritable(output)
+    check_writable(output)
     schedule = cast(SteadySchedule, load_sweep(Path("config/paper.yaml")).schedule)
     rows = [*scene_rows(), *reference_rows(Path("docs/reference/si-5.nc"), schedule)]
     write_text(output / "held-out.csv", csv_text(rows))
@@ -136,7 +136,7 @@ def held_out(output: Path) -> None:
 @output_option(default=Path("docs/figures"))
 def figure(tables: tuple[Path, ...], output: Path) -> None:
     """Draw the law with the fronts to which it is fitted and with spheres, as law.png."""
-    refuse_unwritable(output)
+    check_writable(output)
     points = sphere_points(read_spheres(tables))
     save_picture(law_figure(spectra_points(measured_cells()), points), output / "law.png")
     click.echo(f"figure: {output / 'law.png'}")

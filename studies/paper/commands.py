@@ -11,7 +11,7 @@ from typing import Any, get_args
 import click
 
 from crackfront.cli.answers import announce_compilation, announce_cost
-from crackfront.cli.output_files import refuse_unwritable
+from crackfront.cli.output_files import check_writable
 from crackfront.cli.parameters import FILE, examples
 from crackfront.cli.result_commands import fit_of_sweep
 from crackfront.plots.style import save_figure, save_picture
@@ -57,7 +57,7 @@ def compute_figure(configuration: Path, scale: str, output: Path) -> None:
     shown = figure(configuration.stem)
     path = output / scale / f"{configuration.stem}.nc"
     forget_sums(output)
-    refuse_unwritable(path.parent)
+    check_writable(path.parent)
     announce_cost(shown.seconds(parameters))
     if (sweep := getattr(parameters, "sweep", None)) is not None:
         record = shown.compute(parameters, click.echo, fit_of_sweep(Path(sweep)))
@@ -159,7 +159,7 @@ def gallery(output: Path, pictures: Path) -> None:
 @keep_option
 def experiment(output: Path, keep: bool) -> None:
     """Compare the measured hysteresis on nanodiamond with the predicted ones."""
-    refuse_unwritable(output)
+    check_writable(output)
     path = _REFERENCE / "main-5bc.nc"
     shown = hystereses(_figure_and_record(path)[1])
     save_picture(hystereses_figure(shown), output / "experiment.png")

@@ -23,7 +23,7 @@ from crackfront.sweep.section import (
     Count,
     Positive,
     Section,
-    refusal,
+    section_error,
 )
 from studies.paper.drawing import BRANCHES, write_beside
 from studies.paper.figure import Check, Figure, Integers, Progress, close_to, values_of
@@ -51,13 +51,15 @@ class RingsParameters(Section):
     def _usable(self) -> RingsParameters:
         (long, short), (low, high) = self.wavelengths, self.case_window
         if not short < long:
-            raise refusal(f"wavelengths are {[long, short]}; they must decrease")
+            raise section_error(f"wavelengths are {[long, short]}; they must decrease")
         if not low < high:
-            raise refusal(f"case_window are {[low, high]}; they must increase")
+            raise section_error(f"case_window are {[low, high]}; they must increase")
         if self.samples < 16:
-            raise refusal(f"samples is {self.samples}; a ring needs at least 16 of them")
+            raise section_error(f"samples is {self.samples}; a ring needs at least 16 of them")
         if self.case_step > high - low:
-            raise refusal(f"case_step {self.case_step:g} is longer than case_window; lower it")
+            raise section_error(
+                f"case_step {self.case_step:g} is longer than case_window; lower it"
+            )
         return self
 
 

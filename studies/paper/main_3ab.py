@@ -27,7 +27,7 @@ from crackfront.surfaces.instabilities import (
     resolved_motion,
     shortest_instability,
 )
-from crackfront.sweep.section import Count, Positive, refusal
+from crackfront.sweep.section import Count, Positive, section_error
 from studies.paper.drawing import BRANCHES, draw_jump, name_panels, write_beside
 from studies.paper.figure import Check, Figure, Integers, Progress, close_to
 from studies.paper.rough import STRONG, WEAK, DisorderParameters, RoughContact, flat_spectrum
@@ -46,7 +46,7 @@ class InstabilityParameters(DisorderParameters):
     @model_validator(mode="after")
     def _ordered(self) -> InstabilityParameters:
         if self.weak >= self.strong:
-            raise refusal(
+            raise section_error(
                 f"e_el is {self.strong:g} for strong and {self.weak:g} for weak disorder; the "
                 "first must be the larger"
             )

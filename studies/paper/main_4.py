@@ -30,7 +30,7 @@ from crackfront.sweep.section import (
     Positive,
     Section,
     Seed,
-    refusal,
+    section_error,
 )
 from studies.paper.drawing import DOTTED, write_beside
 from studies.paper.figure import Check, Figure, Integers, Progress, close_to
@@ -62,12 +62,12 @@ class MappingParameters(Section):
     def _usable(self) -> MappingParameters:
         _ = self.spectrum  # refuses a roll-off below the cutoff
         if not 4 * self.short_cutoff <= self.patch <= self.side:
-            raise refusal(
+            raise section_error(
                 f"patch is {self.patch:g}; it must have at least four short cutoffs "
                 f"({4 * self.short_cutoff:g}) and fit into the side of the tile ({self.side:g})"
             )
         if self.short_cutoff < 2 * self.side / self.n_point * (1 - 1e-12):
-            raise refusal(
+            raise section_error(
                 f"n_point is {self.n_point}; the short cutoff {self.short_cutoff:g} needs two "
                 f"points, so {math.ceil(2 * self.side / self.short_cutoff)} or more"
             )

@@ -12,7 +12,7 @@ from pydantic import model_validator
 from crackfront.core.arrays import Array
 from crackfront.core.variables import variable
 from crackfront.plots import density_axes, style
-from crackfront.sweep.section import Positive, refusal
+from crackfront.sweep.section import Positive, section_error
 from studies.paper.drawing import write_beside
 from studies.paper.figure import Check, Figure, Progress, close_to, values_of
 from studies.paper.film import CONVERTED_LABEL, FilmDensities, FilmParameters, conformity_energy
@@ -35,7 +35,7 @@ class FilmScalesParameters(FilmParameters):
     @model_validator(mode="after")
     def _long_enough(self) -> FilmScalesParameters:
         if self.longest < 10 * self.roll_off:
-            raise refusal(
+            raise section_error(
                 f"longest is {self.longest:g}; show ten roll-off wavelengths "
                 f"({10 * self.roll_off:g}) or more"
             )

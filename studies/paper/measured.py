@@ -19,7 +19,7 @@ from crackfront.analysis.estimate import Estimate, student_estimate
 from crackfront.core import jkr
 from crackfront.core.arrays import Array
 from crackfront.core.units import Scales
-from crackfront.sweep.section import refusal
+from crackfront.sweep.section import section_error
 from studies.paper.figure import Integers
 
 _FEWEST_POINTS = 3
@@ -56,21 +56,23 @@ def read_measured(
     for name in (*(item.name for item in quantities), *words):
         if names.count(name) != 1:
             what = "stands twice; remove one" if name in names else "is missing"
-            raise refusal(f"{top}: column {name} {what}; the header has {', '.join(names)}")
+            raise section_error(f"{top}: column {name} {what}; the header has {', '.join(names)}")
     units = dict(header)
     for name, known, _ in quantities:
         if (unit := units[name]) not in known:
             what = f"is in {unit}" if unit else "has no unit"
-            raise refusal(
+            raise section_error(
                 f"{top}: {name} {what}; write {name} (unit) with one of {', '.join(known)}"
             )
     if len(rows) == 1:
-        raise refusal(f"{path} has a header but no rows; add the points")
+        raise section_error(f"{path} has a header but no rows; add the points")
     lines, numbers, texts = [], [], []
     for line, row in rows[1:]:
         where = f"{path}, line {line}"
         if len(row) != len(header):
-            raise refusal(f"{where} has {len(row)} values for {len(header)} columns; complete it")
+            raise section_error(
+                f"{where} has {len(row)} values for {len(header)} columns; complete it"
+            )
         given = dict(zip(names, row, strict=True))
         numbers.append(
             [_number(where, given[item.name], item, units[item.name]) for item in quantities]
@@ -85,17 +87,17 @@ def _rows(path: Path) -> list[tuple[int, list[str]]]:
     try:
         text = path.read_text(encoding="utf-8-sig")
     except OSError as error:
-        raise refusal(f"{path} cannot be read: {error.strerror}") from error
+        raise section_error(f"{path} cannot be read: {error.strerror}") from error
     except UnicodeDecodeError as error:
-        raise refusal(f"{path} is no UTF-8 text; save it as UTF-8") from error
+        raise section_error(f"{path} is not a text in UTF-8; save it as UTF-8") from error
     lines = ("" if line.lstrip().startswith("#") else line for line in text.splitlines())
     reader = csv.reader(lines, strict=True)
     try:
         rows = [(reader.line_num, row) for row in reader if any(row)]
     except csv.Error as error:
-        raise refusal(f"{path}, line {reader.line_num}: {error}") from error
+        raise section_error(f"{path}, line {reader.line_num}: {error}") from error
     if not rows:
-        raise refusal(f"{path} is empty; it needs a header and rows")
+        raise section_error(f"{path} is empty; it needs a header and rows")
     return rows
 
 
@@ -113,7 +115,7 @@ def _number(where: str, text: str, item: Quantity, unit: str) -> float:
         value = math.nan
     if not math.isfinite(value) or (item.positive and value <= 0):
         must = "a positive number" if item.positive else "a finite number"
-        raise refusal(f"{where}: {item.name} is {text.strip()!r}; it must be {must}")
+        raise section_error(f"{where}: {item.name} is {text.strip()!r}; it must be {must}")
     return value * item.units[unit]
 
 
@@ -143,22 +145,22 @@ def read_force_radius(path: Path | None) -> ForceRadius:
     lines, (force, radius), (branches,) = read_measured(path, (_FORCE, _RADIUS), words=("branch",))
     for line, name in zip(lines, branches, strict=True):
         if name not in _BRANCHES:
-            raise refusal(
+            raise section_error(
                 f"{path}, line {line}: branch is {str(name)!r}; it must be {' or '.join(_BRANCHES)}"
             )
     direction = np.array([_BRANCHES[name] for name in branches])
     back = np.flatnonzero(np.diff(direction) > 0)
     if back.size:
-        raise refusal(
+        raise section_error(
             f"{path}, line {lines[back[0] + 1]}: an approach follows the retraction; the "
             "rows must be one approach and then its retraction"
         )
     approach = force[direction > 0]
     end = f"{path}, line {lines[max(approach.size - 1, 0)]}: the approach"
     if approach.size < _FEWEST_POINTS:
-        raise refusal(f"{end} has {approach.size} points; the fit needs {_FEWEST_POINTS}")
+        raise section_error(f"{end} has {approach.size} points; the fit needs {_FEWEST_POINTS}")
     if approach[-1] <= approach[0]:
-        raise refusal(
+        raise section_error(
             f"{end} ends at {approach[-1]:g} N and begins at {approach[0]:g} N; its force must "
             "grow, so put the rows in the order of measurement"
         )
@@ -189,12 +191,12 @@ def read_profile_density(path: Path | None) -> ProfileDensity:
     wrong = np.flatnonzero(np.diff(wavevector) <= 0)
     if wrong.size:
         before, here = wavevector[wrong[0] : wrong[0] + 2]
-        raise refusal(
+        raise section_error(
             f"{path}, line {lines[wrong[0] + 1]}: q is {here:g} 1/m after {before:g} 1/m; "
             "wavevectors must increase"
         )
     if wavevector.size < 2:
-        raise refusal(f"{path}, line {lines[0]} is the only row; a density needs two or more")
+        raise section_error(f"{path}, line {lines[0]} is the only row; a density needs two or more")
     return ProfileDensity(wavevector, density)
 
 

@@ -18,7 +18,7 @@ from crackfront.core.units import Scales
 from crackfront.core.variables import variable
 from crackfront.simulate.simulation import Simulation
 from crackfront.simulate.sphere.full_cycle import FullCycle
-from crackfront.sweep.section import Positive, refusal
+from crackfront.sweep.section import Positive, section_error
 from studies.paper.figure import Integers
 from studies.paper.film import FilmSection
 from studies.paper.measured import ForceRadius, read_force_radius
@@ -53,12 +53,12 @@ class NanodiamondParameters(RoughParameters, FilmSection):
     @model_validator(mode="after")
     def _possible(self) -> NanodiamondParameters:
         if self.shown_force > self.largest_force:
-            raise refusal(
+            raise section_error(
                 f"shown_force {self.shown_force:g} is above largest_force {self.largest_force:g}; "
                 "lower it"
             )
         if self.whole_elastic_energy >= self.work_of_adhesion:
-            raise refusal(
+            raise section_error(
                 f"energy of full conformity is {self.whole_elastic_energy:.3g} J/m^2, not below "
                 f"work_of_adhesion {self.work_of_adhesion:g}; lower the plateau"
             )

@@ -16,7 +16,7 @@ from crackfront.core.adhesion import larkin_length
 from crackfront.core.arrays import Array
 from crackfront.core.cycle.follow import Load, front_at
 from crackfront.core.cycle.record import CycleRecord, Recorder
-from crackfront.core.cycle.touch import first_touch, refuse_outgrown
+from crackfront.core.cycle.touch import check_field_size, first_touch
 from crackfront.core.field.fields import TileField
 from crackfront.core.outcome import Direction, Status
 from crackfront.core.solver.relax import Newton, Solver
@@ -42,7 +42,7 @@ from crackfront.sweep.section import (
     Positive,
     Section,
     Seed,
-    refusal,
+    section_error,
 )
 from studies.paper.figure import Check
 
@@ -72,7 +72,7 @@ class RoughParameters(Section):
             "roughness", spectrum, elastic_energy, schedule, numerics, seed=self.seed
         )
         if left := missed_error(simulation, self.error):
-            raise refusal(
+            raise section_error(
                 f"error is {self.error:g}, but the finest numerics leave {left:.2g}; ask for that"
             )
         return simulation
@@ -167,7 +167,7 @@ class RetractionParameters(DisorderParameters):
     def _falling(self) -> RetractionParameters:
         largest, first, last = self.max_penetration, self.first_penetration, self.last_penetration
         if not last < first < largest:
-            raise refusal(
+            raise section_error(
                 "penetrations must fall from max_penetration over first_penetration to "
                 f"last_penetration; they are {largest:g}, {first:g} and {last:g}"
             )
@@ -226,7 +226,7 @@ def rough_spectrum(
     try:
         return SelfAffineSpectrum(short_cutoff, roll_off, hurst, plateau)
     except ValueError as error:
-        raise refusal(str(error)) from error
+        raise section_error(str(error)) from error
 
 
 def recorded(
@@ -234,7 +234,7 @@ def recorded(
 ) -> CycleRecord:
     """States of a front that begins in contact that is just made and follows loads."""
     if isinstance(simulation.schedule, Pressed):
-        refuse_outgrown(field, simulation.schedule.max_penetration)
+        check_field_size(field, simulation.schedule.max_penetration)
     compile_solver(simulation.solver.name, FullCycle)
     recorder.run(field, first_touch(field), loads, simulation.solver)
     return recorder.record()

@@ -10,7 +10,7 @@ from pydantic import model_validator
 from scipy.fft import rfft
 
 from crackfront.core.arrays import Array
-from crackfront.sweep.section import Count, Positive, refusal
+from crackfront.sweep.section import Count, Positive, section_error
 from studies.paper.figure import Integers, Progress
 from studies.paper.front_spectra import (
     RoughnessRecord,
@@ -39,7 +39,7 @@ class LineParameters(StraightParameters):
     def _usable(self) -> LineParameters:
         low, high = self.fit_from, self.fit_to
         if low >= high:
-            raise refusal(f"fit_from is {low:g}; it must be below fit_to, {high:g}")
+            raise section_error(f"fit_from is {low:g}; it must be below fit_to, {high:g}")
         return self
 
 
@@ -66,9 +66,9 @@ class RoughnessParameters(RetractionParameters):
         for name in ("strong", "weak"):
             low, high = getattr(self, f"{name}_from"), getattr(self, f"{name}_to")
             if low >= high:
-                raise refusal(f"{name}_from is {low:g}; it must be below {name}_to, {high:g}")
+                raise section_error(f"{name}_from is {low:g}; it must be below {name}_to, {high:g}")
         if self.n_surface < 2:
-            raise refusal("n_surface is 1; an interval needs 2 surfaces or more")
+            raise section_error("n_surface is 1; an interval needs 2 surfaces or more")
         return self
 
 

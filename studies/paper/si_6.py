@@ -30,7 +30,7 @@ from crackfront.sweep.section import (
     Count,
     Positive,
     Seed,
-    refusal,
+    section_error,
 )
 from studies.paper.drawing import DOTTED, write_beside
 from studies.paper.figure import Check, Figure, Progress, close_to, values_of
@@ -57,12 +57,12 @@ class SyntheticFilmParameters(FilmParameters):
     @model_validator(mode="after")
     def _inside(self) -> SyntheticFilmParameters:
         if not self.short_cutoff <= self.shortest <= self.roll_off:
-            raise refusal(
+            raise section_error(
                 f"shortest is {self.shortest:g}; it must lie between short_cutoff "
                 f"({self.short_cutoff:g}) and roll_off ({self.roll_off:g})"
             )
         if self.longest < self.side:
-            raise refusal(
+            raise section_error(
                 f"longest is {self.longest:g}; it must not be below the side of the tile "
                 f"({self.side:g})"
             )

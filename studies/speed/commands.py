@@ -8,7 +8,7 @@ from typing import Any, get_args
 
 import click
 
-from crackfront.cli.output_files import refuse_unwritable
+from crackfront.cli.output_files import check_writable
 from crackfront.cli.parameters import examples
 from crackfront.simulate.provenance import provenance
 from crackfront.simulate.storage import write_text
@@ -64,7 +64,7 @@ def _write(
 @keep_option
 def solvers(groups: tuple[Group, ...], repeats: int, seed: int, output: Path, keep: bool) -> None:
     """Time the solvers against the reference on problems of known size."""
-    refuse_unwritable(output)
+    check_writable(output)
     rows = []
     for problem in PROBLEMS:
         if problem.group in groups:
@@ -83,7 +83,7 @@ def solvers(groups: tuple[Group, ...], repeats: int, seed: int, output: Path, ke
 @keep_option
 def profile(output: Path, keep: bool) -> None:
     """Measure the share of each kernel in default simulations, with Linux's perf."""
-    refuse_unwritable(output)
+    check_writable(output)
     try:
         rows = kernels.shares()
     except RuntimeError as error:
@@ -97,7 +97,7 @@ def profile(output: Path, keep: bool) -> None:
 @keep_option
 def needs(output: Path, keep: bool) -> None:
     """Measure what each request of a contact costs: time, memory, disk, samples."""
-    refuse_unwritable(output)
+    check_writable(output)
     rows = []
     for need in requests.NEEDS:
         # A process before the measured one compiles what the request needs.
@@ -113,7 +113,7 @@ def needs(output: Path, keep: bool) -> None:
 @keep_option
 def costs(output: Path, keep: bool) -> None:
     """Compare the expected processor time of simulations with the measured one."""
-    refuse_unwritable(output)
+    check_writable(output)
     sweeps = cost_model.compared_sweeps(output / "configurations")
     measured = cost_model.measured_costs(sweeps, click.echo)
     parts = {"costs": cost_model.ratio_table(measured)}
@@ -125,5 +125,5 @@ def costs(output: Path, keep: bool) -> None:
 @keep_option
 def scaling(output: Path, keep: bool) -> None:
     """Measure dispatch, start of jobs and later commands; simulate a sweep of a million runs."""
-    refuse_unwritable(output)
+    check_writable(output)
     _write(output / "scaling", "How a sweep scales", sweeps.parts(), keep=keep)

@@ -101,7 +101,7 @@ def test_a_cycle_that_ends_early_is_written_and_has_exit_code_one(
     [
         (("--max-penetration", -1), "max penetration -1.0 never makes contact"),
         (("--step", 0), "load step is 0.0; it must be positive"),
-        (("--step", "nan"), "'--step': nan is no number"),
+        (("--step", "nan"), "'--step': nan is not a number"),
         (("--solver", "none"), "solver"),
         (("--field", "none.nc"), "none.nc does not exist"),
     ],
@@ -248,7 +248,7 @@ def test_the_status_counts_what_is_done_failed_and_left(tmp_path, copy_store):
 
 
 def test_the_status_of_a_folder_without_a_sweep_is_refused(tmp_path):
-    assert "holds no sweep that was begun" in refused("status", tmp_path)
+    assert "is not the folder of a sweep that was begun" in refused("status", tmp_path)
 
 
 @pytest.mark.parametrize("block", ["1", "1-", "2-1", "a-b", "0-9"])
@@ -287,7 +287,7 @@ def test_missing_input_of_the_later_steps_is_refused(tmp_path):
     assert "8 of 8 simulations are in no finished shard" in refused("aggregate", TEST, *output)
     for command in ("fit", "figures"):
         sentence = refused(command, TEST, *output)
-        assert "has no hysteresis.nc; run crackfront aggregate" in sentence
+        assert "lacks hysteresis.nc; run crackfront aggregate" in sentence
 
 
 @pytest.mark.parametrize("command", ["plan", "simulate", "aggregate", "fit", "figures"])
@@ -489,7 +489,7 @@ def test_loads_in_a_list_may_have_blanks_and_must_be_numbers(rough_surface, tmp_
     assert "a load is ''; write numbers alone" in refused(*given, "--loads", "0,,0.5")
     picture = tmp_path / "loads.png"
     picture.write_bytes(b"\x89PNG")
-    assert "which is no text" in refused(*given, "--loads", picture)
+    assert "which is not a text" in refused(*given, "--loads", picture)
 
 
 @pytest.mark.parametrize("harm", ["a flipped bit", "cut off", "something else"])
@@ -622,7 +622,7 @@ def test_a_full_disk_is_told_as_that_whatever_netcdf_says(smooth_tile, tmp_path,
 
     monkeypatch.setattr(xr.Dataset, "to_netcdf", write)
     module = sys.modules["crackfront.cli.cycle_command"]
-    monkeypatch.setattr(module, "refuse_unwritable", lambda folder: None)
+    monkeypatch.setattr(module, "check_writable", lambda folder: None)
     monkeypatch.setattr("crackfront.simulate.storage.tempfile.TemporaryFile", full)
     options = ("--field", smooth_tile, "--max-penetration", "0.1", "--step", "0.1")
     sentence = refused("cycle", *options, "--output", tmp_path / "cycle.nc")

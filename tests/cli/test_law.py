@@ -92,7 +92,7 @@ def test_what_was_not_measured_is_told():
     [
         ({}, "the options are incomplete; name --w-rms and --g, or else --spectrum"),
         ({"--w-rms": "0.4"}, "the options are incomplete"),
-        (SPHERE | {"--g": "3"}, "are mixed; name those of one"),
+        (SPHERE | {"--g": "3"}, "are mixed; name either of them"),
         (FRONT | {"--w-rms": "2"}, "w_rms is 2 w_int; it must lie between 0 and 2"),
         (FRONT | {"--w-rms": "-0.1"}, "w_rms is -0.1 w_int; it must lie between 0 and 2"),
         (FRONT | {"--g": "0"}, "size g is 0; it must be positive, or inf"),

@@ -59,7 +59,7 @@ def test_the_example_of_the_page_has_the_simulated_hysteresis():
         (("--radius", "1.25mm", "--stiffness", "3kg"), "no stiffness"),
         (("--radius", "1.25mm", "--poisson", "0.3"), "--poisson has an effect only with --modulus"),
         (("--radius", "1.25mm", "--scans", "a.al3d"), "--work-of-adhesion"),
-        (("--radius", "1.25mm", "--force", "Kraft"), "has no column 'Kraft'"),
+        (("--radius", "1.25mm", "--force", "Kraft"), "lacks a column 'Kraft'"),
         (("--radius", "1.25mm", "--size", "5"), "--size is of scans; name --scans too"),
         (
             (*ON_SCAN, "--work-of-adhesion", "63mJ/m2", "--tip-radius", "20"),

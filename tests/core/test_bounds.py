@@ -14,12 +14,12 @@ import xarray as xr
 
 from crackfront import random_surface
 from crackfront.core.arguments import regular_file
-from crackfront.core.bounds import LENGTH, refuse_outside
+from crackfront.core.bounds import LENGTH, check_within
 from crackfront.core.resources import (
     MOST_SECONDS,
     TooLargeError,
-    refuse_beyond_memory,
-    refuse_beyond_time,
+    check_memory,
+    check_time,
 )
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.simulate.costs import affordable_seconds
@@ -31,25 +31,25 @@ from tests.commands import refused
 @pytest.mark.parametrize("value", [1e300, -1.0, math.nan, math.inf, 0.0])
 def test_a_number_outside_of_its_bounds_is_named(value):
     with pytest.raises(ValueError, match=r"spring is .*; it must lie between 1e-09 and 1e\+09 m"):
-        refuse_outside("spring", value, LENGTH, "m")
+        check_within("spring", value, LENGTH, "m")
 
 
 def test_the_bounds_themselves_are_allowed():
     for value in LENGTH:
-        refuse_outside("spring", value, LENGTH)
+        check_within("spring", value, LENGTH)
 
 
 def test_memory_is_refused_with_what_is_needed_and_what_is_at_hand():
     with pytest.raises(TooLargeError, match=r"a tile would need 300 PB of memory; here are .*: no"):
-        refuse_beyond_memory("a tile", 3e17, "no")
-    refuse_beyond_memory("a tile", 1e6, "no")
+        check_memory("a tile", 3e17, "no")
+    check_memory("a tile", 1e6, "no")
 
 
 def test_what_another_machine_may_hold_is_refused_only_where_it_will_be_run(monkeypatch):
     monkeypatch.setattr("crackfront.core.resources.memory_at_hand", lambda: 8e9)
-    refuse_beyond_memory("tiles", 1e12, "no", anywhere=True)
+    check_memory("tiles", 1e12, "no", anywhere=True)
     with pytest.raises(TooLargeError, match=r"1 TB of memory; here are 8 GB"):
-        refuse_beyond_memory("tiles", 1e12, "no")
+        check_memory("tiles", 1e12, "no")
 
 
 def test_a_limit_that_the_process_sets_itself_is_what_is_at_hand_from_then_on():
@@ -66,10 +66,10 @@ def test_a_limit_that_the_process_sets_itself_is_what_is_at_hand_from_then_on():
 
 
 def test_a_thousand_years_are_refused_and_half_of_them_are_not():
-    refuse_beyond_time("it", MOST_SECONDS / 2, "no")
+    check_time("it", MOST_SECONDS / 2, "no")
     for seconds in (2 * MOST_SECONDS, math.inf, math.nan):
         with pytest.raises(TooLargeError, match=r"it would take .* of processor time; no"):
-            refuse_beyond_time("it", seconds, "no")
+            check_time("it", seconds, "no")
 
 
 def test_a_million_sites_have_a_price_and_no_refusal():
@@ -93,10 +93,10 @@ def special(kind, path):
 @pytest.mark.parametrize("kind", ["a pipe", "a folder", "a device"])
 def test_what_is_no_file_is_named_at_once(tmp_path, kind):
     path = special(kind, tmp_path / "x.yaml")
-    with pytest.raises(ValueError, match=f"x.yaml is {kind}, no file; name a file"):
+    with pytest.raises(ValueError, match=f"x.yaml is {kind}, not a file; name a file"):
         regular_file(path)
-    assert f"is {kind}, no file" in refused("plan", path)
-    assert "x.yaml is no file; check the name" in refused(
+    assert f"is {kind}, not a file" in refused("plan", path)
+    assert "x.yaml is not a file; check the name" in refused(
         *("cycle", "--field", path, "--max-penetration", 1, "--output", tmp_path / "out.nc")
     )
 
@@ -132,7 +132,7 @@ def tile(tmp_path):
     ("options", "sentence"),
     [
         ({"--error": "inf"}, "'--error': inf is not in the range"),
-        ({"--error": "nan"}, "'--error': nan is no number"),
+        ({"--error": "nan"}, "'--error': nan is not a number"),
         ({"--step": 1e-300}, "load steps with 44.8 sites"),
         ({"--step": 1e-15}, "load steps with 44.8 sites and 57.1 samples a ray would need"),
         ({"--max-penetration": 1e15}, "of memory; here are"),
@@ -173,7 +173,7 @@ def test_many_sites_are_announced_with_their_price(tile, tmp_path, monkeypatch):
 @pytest.mark.parametrize("text", ["1e300MPa", "1e-300Pa", "1e16Pa"])
 def test_a_modulus_that_nothing_has_is_refused(text):
     with pytest.raises(ValueError, match=r"modulus is .* Pa; it must lie between 1e-06 and 1e"):
-        si_value(text, "Pa", what="modulus")
+        si_value(text, "Pa", name="modulus")
 
 
 def test_a_surface_that_no_machine_holds_is_refused_before_it_is_made():

@@ -35,7 +35,7 @@ golden = functools.cache(read_golden)
 each_scene = pytest.mark.parametrize("scene", FRONTS)
 
 
-def refuse_movement(path, version, computed, tolerance=TOLERANCE):
+def check_movement(path, version, computed, tolerance=TOLERANCE):
     """Fail if scenes moved, with how much and what to do."""
     moved = movements(golden(path).scenes, computed, tolerance)
     if moved:
@@ -44,24 +44,24 @@ def refuse_movement(path, version, computed, tolerance=TOLERANCE):
 
 @pytest.mark.parametrize("scene", CLOSED_FORMS)
 def test_closed_forms_and_surfaces_have_not_moved(scene):
-    refuse_movement(PHYSICS, "PHYSICS_VERSION", {scene: CLOSED_FORMS[scene]()})
+    check_movement(PHYSICS, "PHYSICS_VERSION", {scene: CLOSED_FORMS[scene]()})
 
 
 def test_forces_and_energies_of_given_fronts_have_not_moved():
-    refuse_movement(PHYSICS, "PHYSICS_VERSION", {FORCES: forces_and_energies()})
+    check_movement(PHYSICS, "PHYSICS_VERSION", {FORCES: forces_and_energies()})
 
 
 @each_scene
 @pytest.mark.parametrize("solver", SOLVERS)
 def test_every_solver_finds_the_states_of_the_version(scene, solver):
     values = FRONTS[scene](SOLVERS[solver](TIGHT))
-    refuse_movement(PHYSICS, "PHYSICS_VERSION", {scene: values})
+    check_movement(PHYSICS, "PHYSICS_VERSION", {scene: values})
 
 
 @each_scene
 def test_the_default_tolerance_finds_the_same_states_to_its_precision(scene):
     values = FRONTS[scene](Newton(DEFAULT_TOLERANCE))
-    refuse_movement(PHYSICS, "PHYSICS_VERSION", {scene: values}, AT_DEFAULT)
+    check_movement(PHYSICS, "PHYSICS_VERSION", {scene: values}, AT_DEFAULT)
 
 
 def test_a_simulation_without_stored_states_is_simulated_and_others_are_not():
@@ -73,7 +73,7 @@ def test_a_simulation_without_stored_states_is_simulated_and_others_are_not():
 
 
 def test_rows_and_fits_of_stored_states_have_not_moved():
-    refuse_movement(ROWS, "ROWS_VERSION", rows_and_fits(golden(ROWS).given))
+    check_movement(ROWS, "ROWS_VERSION", rows_and_fits(golden(ROWS).given))
 
 
 @pytest.mark.parametrize(

@@ -65,7 +65,7 @@ def test_a_crop_begins_at_zero_in_any_unit_of_length(crop):
     [[low, high]] = checked_options(ReadingOptions, {"crop": crop}).crop
     assert low == 0
     assert high == pytest.approx(1e-5)
-    with pytest.raises(ValueError, match=r"^crop is '0kg', which is no length"):
+    with pytest.raises(ValueError, match=r"^crop is '0kg', whose unit is not a unit of length"):
         checked_options(ReadingOptions, {"crop": "0kg:10um"})
 
 

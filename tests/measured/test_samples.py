@@ -112,7 +112,7 @@ def test_a_mask_of_a_row_is_relative_to_the_table_and_one_of_the_command_is_not(
     [four] = read_samples(table, SPHERE | {"mask": ("mask.txt",)})
     assert four.reading[0].mask == (Path("mask.txt"),)
     table.write_text("sample,scans,mask\nA,a.txt,absent.txt\n")
-    with pytest.raises(ValueError, match=r"line 2: there is no file .*absent.txt; correct its"):
+    with pytest.raises(ValueError, match=r"line 2: .*absent.txt does not exist; correct its"):
         read_samples(table, SPHERE)
 
 
@@ -220,12 +220,16 @@ def test_an_option_without_effect_on_a_sample_is_refused(tmp_path, row, common, 
 @pytest.mark.parametrize(
     ("old", "new", "sentence"),
     [
-        ("A,polished,20", "A,polished,20kg", "line 3: rms is '20kg', which is no length"),
+        (
+            "A,polished,20",
+            "A,polished,20kg",
+            "line 3: rms is '20kg', whose unit is not a unit of length",
+        ),
         ("B,rough,40", "B,rough,", "line 4: a surface of numbers needs rms and hurst, and one"),
         ("B,rough", "A,rough", "line 4: the sample 'A' is in line 3 as well"),
-        ("B,rough", ",rough", "line 4: there is no name; write it in the column 'sample'"),
+        ("B,rough", ",rough", "line 4: the name is missing; write it in the column 'sample'"),
         ("0.8,20nm,,", "1.8,20nm,,", "line 4: hurst is 1.8; it must lie between"),
-        ("hurst", "hurts", "line 3: there is no column 'hurts'; did you mean hurst"),
+        ("hurst", "hurts", "line 3: the column 'hurts' is unknown; did you mean hurst"),
         ("group", "scans", "line 3: the surface is given by scans and rms; name"),
         ("B,rough,40,2,0.8,20nm,,", "B,,,,,,,", "line 4: the surface is given by nothing"),
         ("20nm,,", "20nm,,,,5", "line 4: the row has 10 cells and there are 8 headings"),
@@ -247,7 +251,7 @@ def test_a_row_that_cannot_be_used_is_refused_with_its_line(tmp_path, old, new, 
     ("old", "new", "sentence"),
     [
         ("rms (nm): 20", "rms: 20", "line 2: rms is '20', without a unit"),
-        ("radius: 1.25e-3 m", "radius: true", "line 2: radius is 'True', which is no number"),
+        ("radius: 1.25e-3 m", "radius: true", "line 2: radius is 'True', which is not a number"),
         ("measured_hysteresis: 2mJ/m2", "measured_hysteresis: 2", "is '2', without a unit"),
         ("hurst: 0.8", "hurst: [0.8]", "line 2: hurst is [0.8]; write a number"),
         ("samples:", "sphere: 1\nsamples:", "has 'sphere' next to samples; remove it"),
@@ -265,7 +269,7 @@ def test_yaml_is_read_as_strictly_as_cells(tmp_path, old, new, sentence):
 def test_what_a_row_lacks_is_refused_before_any_work(tmp_path):
     path = tmp_path / "samples.csv"
     path.write_text("sample,scans\nA,absent.al3d\n")
-    with pytest.raises(ValueError, match=r"line 2: there is no file .*absent.al3d; correct"):
+    with pytest.raises(ValueError, match=r"line 2: .*absent.al3d does not exist; correct"):
         read_samples(path, SPHERE)
     path.write_text(CSV)
     with pytest.raises(ValueError, match=r"line 4: the sphere is incomplete; name all of modulus"):
@@ -275,7 +279,7 @@ def test_what_a_row_lacks_is_refused_before_any_work(tmp_path):
         read_samples(path, SPHERE)
     other = tmp_path / "samples.yaml"
     other.write_text("samples: {A: 1}\n")
-    with pytest.raises(ValueError, match="has no list of samples; write 'samples:'"):
+    with pytest.raises(ValueError, match="lacks a list of samples; write 'samples:'"):
         read_samples(other, SPHERE)
     other.write_text("samples:\n  - {sample: A\n  - B: [\n")
     with pytest.raises(ValueError, match=r"samples.yaml, line \d: this is not YAML: "):

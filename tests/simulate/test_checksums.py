@@ -70,5 +70,5 @@ def test_a_damaged_result_that_a_person_keeps_is_refused_with_one_sentence(tmp_p
     result = CliRunner().invoke(main, ["cycle", "--field", str(path), *options])
     assert result.exit_code == 2
     assert result.output.splitlines() == [
-        f"Error: {path} is no complete netCDF file; write it again, or name another"
+        f"Error: {path} is not a complete netCDF file; write it again, or name another"
     ]

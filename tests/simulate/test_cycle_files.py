@@ -83,8 +83,8 @@ def test_a_checkpoint_of_another_load_is_refused():
 def test_a_truncated_checkpoint_and_that_of_another_simulation_are_refused(tmp_path):
     _, found = checkpoints(CYCLE)
     path = write_checkpoint(tmp_path, "checkpoint", found[2], provenance())
-    with pytest.raises(UnreadableFileError, match="is no checkpoint of"):
+    with pytest.raises(UnreadableFileError, match="is not a checkpoint of"):
         read_checkpoint(path, STEADY)
     path.write_bytes(path.read_bytes()[:3000])
-    with pytest.raises(UnreadableFileError, match="is no complete netCDF file"):
+    with pytest.raises(UnreadableFileError, match="is not a complete netCDF file"):
         read_checkpoint(path, CYCLE)

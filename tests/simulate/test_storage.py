@@ -141,7 +141,7 @@ def test_simulations_are_read_back_with_their_costs(tmp_path, result):
 
 def test_a_file_of_something_else_is_refused(tmp_path):
     write_derived(tmp_path / "a.nc", xr.Dataset({"a": ("x", [1.0])}), ORIGIN)
-    with pytest.raises(UnreadableFileError, match="is no loop: it lacks penetration"):
+    with pytest.raises(UnreadableFileError, match="is not a loop: it lacks penetration"):
         cycle_record(read_dataset(tmp_path / "a.nc"))
     with pytest.raises(UnreadableFileError, match=r"a.nc lacks .*spectrum"):
         read_table(tmp_path / "a.nc")
@@ -202,7 +202,7 @@ def test_a_tile_is_read_by_the_names_of_its_dimensions(tmp_path, order):
 
 
 UNUSABLE = {
-    "other name": (tile().rename("w"), "F.nc has no surface (it has: w); name its variable"),
+    "other name": (tile().rename("w"), "F.nc lacks a surface (it has: w); name its variable"),
     "other dims": (tile().rename(y="z"), "has the dimensions (x, z); a tile must have x and y"),
     "one dim": (tile()[0], "has the dimensions (y); a tile must have x and y"),
     "text": (tile().astype(str), "work_of_adhesion is <U"),
@@ -226,7 +226,7 @@ def test_an_unusable_field_is_refused_with_a_sentence(tmp_path, case):
 
 def test_a_file_that_is_no_netcdf_is_refused(tmp_path):
     (tmp_path / "F.nc").write_text("text")
-    with pytest.raises(UnreadableFileError, match=r"F.nc is no complete netCDF file"):
+    with pytest.raises(UnreadableFileError, match=r"F.nc is not a complete netCDF file"):
         read_field(tmp_path / "F.nc")
 
 
@@ -360,7 +360,7 @@ def test_what_the_file_system_cannot_lock_is_no_damage(tmp_path, monkeypatch, nu
     with pytest.raises(FileSystemError, match=re.escape(f"{path} {sentence}")):
         read_dataset(path)
     monkeypatch.setenv("HDF5_USE_FILE_LOCKING", "FALSE")
-    with pytest.raises(UnreadableFileError, match="is no complete netCDF file"):
+    with pytest.raises(UnreadableFileError, match="is not a complete netCDF file"):
         read_dataset(path)
 
 

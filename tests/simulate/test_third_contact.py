@@ -110,8 +110,8 @@ class Cylinder(NamedTuple):
         site = Variable("y", ("y",), LATERAL, "place of a site along the front")
         return Variable(CylinderState.front_name, ("y",), LATERAL, "front"), site
 
-    def state(self, found, load, direction, turn):
-        front = found.front
+    def state(self, relaxation, load, direction, turn):
+        front = relaxation.front
         products = np.maximum(CURVATURE * front**2 - load, 0.0) ** 2 / PLANE
         return CylinderState(
             force=load,
@@ -120,9 +120,9 @@ class Cylinder(NamedTuple):
             rms_half_width=float(np.std(front)),
             apparent_work_of_adhesion=float(np.mean(products) / np.mean(front) / WORK_OF_ADHESION),
             least_travel=float(np.min(np.abs(front - turn))),
-            iterations=found.sweeps,
-            updates=found.updates,
-            residual=found.residual,
+            iterations=relaxation.sweeps,
+            updates=relaxation.updates,
+            residual=relaxation.residual,
         )
 
     def stored_energy(self, front, load):

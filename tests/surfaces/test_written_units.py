@@ -34,7 +34,7 @@ from crackfront.surfaces.written_units import is_unit, si_value, unit_value
     ],
 )
 def test_a_quantity_is_converted_to_si(text, unit, value):
-    assert si_value(text, unit, what="it") == pytest.approx(value, rel=1e-12)
+    assert si_value(text, unit, name="it") == pytest.approx(value, rel=1e-12)
 
 
 @pytest.mark.parametrize(
@@ -67,7 +67,7 @@ def test_a_quantity_is_converted_to_si(text, unit, value):
 )
 def test_a_missing_or_absurd_unit_is_refused_with_the_value_and_an_example(text, sentence):
     with pytest.raises(ValueError, match="modulus is") as caught:
-        si_value(text, "Pa", what="modulus")
+        si_value(text, "Pa", name="modulus")
     assert sentence in str(caught.value)
     assert repr(text) in str(caught.value)
 
@@ -85,7 +85,7 @@ def test_any_text_is_a_unit_or_refused_in_a_sentence(rng):
     for _ in range(300):
         text = "2" + "".join(rng.choice(signs, rng.integers(1, 6)))
         try:
-            assert si_value(text, "m", what="it") > 0
+            assert si_value(text, "m", name="it") > 0
         except ValueError as error:
             refused.append(str(error))
     assert refused

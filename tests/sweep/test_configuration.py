@@ -262,7 +262,10 @@ BAD = {
         "unknown key numerics.tile.sides; the keys here are roll_offs, cutoffs",
     ),
     "missing key": (("seed: 1\n", ""), "key seed is missing; add it"),
-    "key twice": (("seed: 1", "seed: 1\nseed: 2"), "is no valid YAML in line 3: key 'seed' stands"),
+    "key twice": (
+        ("seed: 1", "seed: 1\nseed: 2"),
+        "is not valid YAML in line 3: key 'seed' stands",
+    ),
     "roll-off below the cutoff without hurst": (
         ("roll_off: 0.2, hurst: 0.8", "roll_off: 0.05"),
         "spectra[1]: roll_off 0.05 is shorter than short_cutoff 0.1; lower the cutoff",
@@ -303,7 +306,7 @@ BAD = {
     ),
     "energy of a chemical field": (
         ("field: roughness", "field: chemical"),
-        "amplitudes.elastic_energy has no meaning for a chemical field; give",
+        "amplitudes.elastic_energy is meaningless for a chemical field; give",
     ),
     "unknown field": (
         ("field: roughness", "field: rough"),
@@ -405,7 +408,7 @@ BAD = {
         "numerics: tolerance is 0.03, above e_el 0.02 of flat, to which forces of pinning are "
         "proportional, so that k comes out too large; use 0.002 or less",
     ),
-    "no YAML": (("seed: 1", "seed: [1"), "is no valid YAML in line"),
+    "no YAML": (("seed: 1", "seed: [1"), "is not valid YAML in line"),
 }
 
 
@@ -427,9 +430,9 @@ def test_every_error_has_its_own_sentence(tmp_path):
     ("text", "sentence"),
     [
         ("", "is empty; write a configuration like config/test.yaml"),
-        ("- 1\n- 2\n", "holds a list, not keys with values; write"),
-        ("just text", "holds a single value, not keys with values; write"),
-        ("!!python/object/apply:os.getcwd []", "is no valid YAML in line 1"),
+        ("- 1\n- 2\n", "contains a list, not keys with values; write"),
+        ("just text", "contains a single value, not keys with values; write"),
+        ("!!python/object/apply:os.getcwd []", "is not valid YAML in line 1"),
     ],
 )
 def test_a_file_that_is_no_mapping_is_refused(tmp_path, text, sentence):
@@ -439,7 +442,7 @@ def test_a_file_that_is_no_mapping_is_refused(tmp_path, text, sentence):
 def test_a_file_that_is_no_text_is_refused(tmp_path):
     path = tmp_path / "sweep.yaml"
     path.write_bytes(b"\xff\xfe\x00seed")
-    with pytest.raises(ConfigurationError, match="is no UTF-8 text"):
+    with pytest.raises(ConfigurationError, match="is not a text in UTF-8"):
         load_sweep(path)
 
 
@@ -671,7 +674,7 @@ def test_shards_of_a_measured_spectrum_change_with_the_file(tmp_path):
     [
         (
             with_surface(scales=""),
-            "spectrum 'film' is that of a surface in metres; give the section scales",
+            "spectrum 'film' describes a surface in metres; give the section scales",
         ),
         (
             with_surface(
@@ -680,7 +683,7 @@ def test_shards_of_a_measured_spectrum_change_with_the_file(tmp_path):
                     "{elastic_energy": "{work_of_adhesion_rms",
                 }
             ),
-            "spectrum 'film' is that of heights; field must be roughness",
+            "spectrum 'film' is the spectrum of heights; field must be roughness",
         ),
         (
             with_surface(MEASURED.rstrip() + "\n    hurst: 0.8\n"),
@@ -741,9 +744,9 @@ HARSH = {
     ),
     "depth": ("x: " + "[" * 700 + "]" * 700, "more than 200000 values, or nested without end"),
     "size": ("#" * 10**6, "has 1 MB; more than 0.5 MB are not read"),
-    "a date": ("x: 2026-99-99\n", "is no valid YAML: month must be in 1..12"),
-    "digits": ("x: " + "9" * 5000 + "\n", "is no valid YAML: Exceeds the limit"),
-    "a tag that is not met": ("x: !!bool maybe\n", "is no valid YAML: 'maybe'"),
+    "a date": ("x: 2026-99-99\n", "is not valid YAML: month must be in 1..12"),
+    "digits": ("x: " + "9" * 5000 + "\n", "is not valid YAML: Exceeds the limit"),
+    "a tag that is not met": ("x: !!bool maybe\n", "is not valid YAML: 'maybe'"),
     "a key twice as number and text": ("1: a\n'1': b\n", "line 2: key '1' stands twice"),
     "an octal number of old": (
         "a:\n  b: 010\n",

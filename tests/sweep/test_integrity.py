@@ -125,8 +125,8 @@ def test_a_list_that_is_not_whole_is_not_success(finished, changed):
 
 
 def test_verifying_nothing_is_not_success(running, tmp_path):
-    assert "has no SHA256SUMS" in refused("verify", running)
-    assert "has no files" in refused("checksums", tmp_path / "default/figures/none")
+    assert "lacks SHA256SUMS" in refused("verify", running)
+    assert "is empty" in refused("checksums", tmp_path / "default/figures/none")
 
 
 def test_links_are_followed_and_a_loop_of_them_ends(running, tmp_path):

@@ -14,7 +14,7 @@ from crackfront.core.resources import memory_at_hand
 from crackfront.simulate.costs import expected_cost
 from crackfront.sweep.feasibility import check_feasible
 from crackfront.sweep.parameters import load_sweep
-from crackfront.sweep.results_folder import refuse_other_configuration, results_folder
+from crackfront.sweep.results_folder import check_configuration, results_folder
 from crackfront.sweep.requests import (
     Request,
     fit_request,
@@ -81,10 +81,10 @@ try:
     RESULTS = str(results_folder(Path(CONFIGURATION)))
     SWEEP = load_sweep(Path(CONFIGURATION))
     check_feasible(SWEEP, Path(CONFIGURATION))
-    refuse_other_configuration(Path(CONFIGURATION), Path(RESULTS))
+    check_configuration(Path(CONFIGURATION), Path(RESULTS))
     SHARDS = {shard.name: shard for shard in SWEEP.shards(config.get("block"))}
     VALIDATED = str(results_folder(Path(VALIDATION)))
-    refuse_other_configuration(Path(VALIDATION), Path(VALIDATED))
+    check_configuration(Path(VALIDATION), Path(VALIDATED))
 except ValueError as error:
     raise WorkflowError(str(error)) from None
 

@@ -24,7 +24,7 @@ class LoadSchedule:
     Parameters
     ----------
     max_penetration : float
-        Largest penetration; it is visited even where it is no multiple of the step.
+        Largest penetration; it is visited even if it is not a multiple of the step.
         (Units: reduced vertical length)
     step : float
         Difference of penetrations. (Units: reduced vertical length)
@@ -81,14 +81,14 @@ class LoadSchedule:
 
 
 def protocol(loads: Sequence[float], step: float = math.inf) -> Iterator[Load]:
-    """Loads in their order, each with its direction; a load given twice in a row is a hold.
+    """Loads in their order, each with its direction; a load given twice in a row is a pause.
 
     Where two are further apart than a step, equal steps lead from one to the next.
 
     Raises
     ------
     ValueError
-        If there is no load, or the step is not positive.
+        Without loads, or if the step is not positive.
 
     Examples
     --------

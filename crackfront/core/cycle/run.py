@@ -26,7 +26,7 @@ def run_cycle(
     solver : Solver, optional
         How each front is found.
     recorder : Recorder, optional
-        What to record beside the curves, observers of every state, and a run to continue.
+        What to record in addition to the curves, observers of every state, and a run to continue.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""The front at first contact, and refusals of fields that cannot hold it."""
+"""The front at first contact, and checks that the field is large enough."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ def first_touch(field: Field) -> Array:
     return np.full(field.geometry.n_site, first_place(field))
 
 
-def refuse_outgrown(field: Field, max_penetration: float) -> None:
+def check_field_size(field: Field, max_penetration: float) -> None:
     """Raise if a smooth sphere is larger than the field before its load is fully applied."""
     smooth = jkr.equilibrium_radius(max_penetration)
     if smooth >= last_place(field):
@@ -35,7 +35,7 @@ def checked_touch(field: Field, max_penetration: float) -> Array:
     ValueError
         As :func:`crackfront.core.cycle.run.run_cycle`.
     """
-    refuse_outgrown(field, max_penetration)
+    check_field_size(field, max_penetration)
     radius = first_place(field)
     needed = float(jkr.apparent_work_of_adhesion(radius, 0.0))
     adhesion = front_adhesion(first_touch(field), field) / WORK_OF_ADHESION

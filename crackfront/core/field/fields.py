@@ -122,9 +122,9 @@ def tile_field(
         If a count or length is too small, a value of the tile is not finite, or the interpolation
         is unknown.
     """
-    refuse_unknown_interpolation(interpolation)
+    check_interpolation(interpolation)
     values = np.asarray(adhesion.work_of_adhesion, dtype=float)
-    refuse_unusable(values, names=("x", "y"))
+    check_field_values(values, names=("x", "y"))
     if values.ndim != 2:
         raise ValueError(f"work of adhesion has shape {values.shape}; a tile must be (x, y)")
     if not 0 < adhesion.pixel < np.inf:
@@ -161,14 +161,14 @@ def _mode_coefficients(values: Array) -> Array:
     return np.asarray(irfft2(modes, s=(n_x, n_y)))
 
 
-def refuse_unknown_interpolation(interpolation: str) -> None:
-    """Raise if there is no such interpolation."""
+def check_interpolation(interpolation: str) -> None:
+    """Raise ValueError if an interpolation is unknown."""
     if interpolation not in get_args(Interpolation):
         kinds = ", ".join(get_args(Interpolation))
         raise ValueError(f"interpolation is {interpolation!r}; choose one of {kinds}")
 
 
-def refuse_unusable(values: Array, names: tuple[str, ...]) -> None:
+def check_field_values(values: Array, names: tuple[str, ...]) -> None:
     """Raise if a field contains NaN or infinity, or nothing but zeros."""
     finite = np.isfinite(values)
     if not np.all(finite):

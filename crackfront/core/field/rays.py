@@ -72,11 +72,11 @@ def _ray_adhesion(field, ray, inner, outer):
     total, low, position = 0.0, segment_below(field, inner, 1), inner
     start = evaluate(field, ray, low)
     while position < outer:
-        left, right = sample_place(field, low), sample_place(field, low + 1)
+        lower, upper = sample_place(field, low), sample_place(field, low + 1)
         end = evaluate(field, ray, low + 1)
         piece = ordinates(field, low, start, end)
-        stop = min(right, outer)
-        first, last = (position - left) / (right - left), (stop - left) / (right - left)
+        stop = min(upper, outer)
+        first, last = (position - lower) / (upper - lower), (stop - lower) / (upper - lower)
         values = blend(piece, first) + 4 * blend(piece, 0.5 * (first + last)) + blend(piece, last)
         total += values / 6 * (stop - position)
         position, low, start = stop, low + 1, end

@@ -47,7 +47,7 @@ def make_memory(field: Any) -> SampleMemory:
 
 @dispatched
 def fetch(field: Any, memory: SampleMemory, ray: int, first: int, last: int) -> None:
-    """Make sure that the memory holds a range of samples of a ray."""
+    """Make sure that the memory contains a range of samples of a ray."""
     raise NotImplementedError
 
 
@@ -66,7 +66,7 @@ class SampleMemory(NamedTuple):
         Products and slopes, or (n_site, size, 1) products where pieces are linear; sample m of a
         ray has the place m modulo size, a power of 2.
     first, last : (n_site,) int array
-        Range of samples that each ray holds.
+        Range of samples that are stored for each ray.
     """
 
     samples: NDArray[np.float64]

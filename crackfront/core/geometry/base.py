@@ -14,7 +14,7 @@ A new geometry, such as :mod:`crackfront.core.geometry.line`, must provide the f
    kernels.
 2. A frozen dataclass that has the members of :class:`State`: the record of a front at rest.
 3. An implementation of each dispatched function of this module for the named tuple, registered by
-   :func:`crackfront.core.compiled.implements`. numba compiles it, so it has no keyword arguments.
+   :func:`crackfront.core.compiled.implements`. numba compiles it, without keyword arguments.
 4. The restoring force increases with the place, and so does its slope: solvers find the first
    equilibrium only then. A weight can make it so, as the radius of a sphere.
 5. The restoring force falls where the load increases: an increasing load lets the front advance.
@@ -102,7 +102,7 @@ class Geometry(Protocol):
     def variables(self) -> tuple[Variable, Variable]:
         """What files say of the places of a front, and of the coordinates of its sites."""
 
-    def state(self, found: Relaxation, load: float, direction: Direction, turn: Array) -> Any:
+    def state(self, relaxation: Relaxation, load: float, direction: Direction, turn: Array) -> Any:
         """What is recorded of a front at rest whose branch began at the front `turn`."""
 
     def stored_energy(self, front: Array, load: float) -> float:
@@ -162,7 +162,7 @@ def ray_direction(geometry: Any, ray: int) -> Any:
 
 @jit
 def self_modes(n_site: int) -> float:
-    """Stiffness of the line against the advance of one site, over that of its first mode.
+    """Stiffness of the line against the advance of one site, relative to its first mode.
 
     The mean number of a mode: N/4 for even N, (N^2 - 1)/4N for odd N.
     """

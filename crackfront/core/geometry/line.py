@@ -71,7 +71,7 @@ class Line(NamedTuple):
     length : float
         Period. (Units: length)
     stiffness : float
-        That of the springs, kappa. (Units: reduced energy / length**3)
+        Stiffness of the springs, kappa. (Units: reduced energy / length**3)
     mean : float
         Work of adhesion at which they do not pull. (Units: reduced energy / area)
     corner : tuple of float
@@ -106,25 +106,25 @@ class Line(NamedTuple):
 
     @property
     def variables(self) -> tuple[Variable, Variable]:
-        """Places of a front, and those of its sites."""
+        """Places of a front, and places of its sites along it."""
         site = Variable("y", ("y",), LENGTH, "place of a site along the front")
         return Variable(LineState.front_name, ("y",), LENGTH, "front"), site
 
     def state(
-        self, found: Relaxation, load: float, direction: Direction, turn: Array
+        self, relaxation: Relaxation, load: float, direction: Direction, turn: Array
     ) -> LineState[float]:
         """Quantities that are recorded of a front in equilibrium."""
-        mean = float(np.mean(found.front))
+        mean = float(np.mean(relaxation.front))
         return LineState(
             spring_position=load,
             direction=direction,
             mean_position=mean,
-            rms_position=float(np.std(found.front)),
+            rms_position=float(np.std(relaxation.front)),
             pinning_force=self.stiffness * (load - mean) / WORK_OF_ADHESION,
-            least_travel=float(np.min(np.abs(found.front - turn))),
-            iterations=found.sweeps,
-            updates=found.updates,
-            residual=found.residual,
+            least_travel=float(np.min(np.abs(relaxation.front - turn))),
+            iterations=relaxation.sweeps,
+            updates=relaxation.updates,
+            residual=relaxation.residual,
         )
 
     def stored_energy(self, front: Array, load: float) -> float:
@@ -170,7 +170,8 @@ def line_field(
     Raises
     ------
     ValueError
-        If the spring has no length, or as :func:`crackfront.core.field.fields.tile_field`.
+        If the length of the spring is not positive, or as in
+        :func:`crackfront.core.field.fields.tile_field`.
     """
     if not 0 < spring < np.inf:
         raise ValueError(f"spring is {spring}; its length must be positive and finite")

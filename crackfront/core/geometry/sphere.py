@@ -24,8 +24,8 @@ from crackfront.core.field.fields import (
     Interpolation,
     RayField,
     TileField,
-    refuse_unknown_interpolation,
-    refuse_unusable,
+    check_field_values,
+    check_interpolation,
     tile_field,
 )
 from crackfront.core.geometry import base
@@ -71,9 +71,10 @@ class ContactState(Generic[Value]):
         )
 
     def forces_summary(self, status: Status) -> str:
-        """First force, which at penetration 0 is that of jump-in, and that of pull-off, in words.
+        """First force and pull-off force, in words.
 
-        That of pull-off is known where contact was lost.
+        At penetration 0 the first force is the jump-in force. The pull-off force is known if
+        contact was lost.
         """
         began = "jump-in" if np.ravel(self.penetration)[0] == 0 else "first"
         forces = f"{began} force {np.ravel(self.force)[0]:.4g}"
@@ -121,10 +122,10 @@ class Sphere(NamedTuple):
         return Variable(ContactState.front_name, ("angle",), LATERAL, "front"), angle
 
     def state(
-        self, found: Relaxation, load: float, direction: Direction, turn: Array
+        self, relaxation: Relaxation, load: float, direction: Direction, turn: Array
     ) -> ContactState[float]:
         """Quantities that are recorded of a front in equilibrium."""
-        front = found.front
+        front = relaxation.front
         release = front * jkr.energy_release_rate(front, load)
         return ContactState(
             penetration=load,
@@ -137,9 +138,9 @@ class Sphere(NamedTuple):
             contact_area=float(np.pi * np.mean(front**2)),
             apparent_work_of_adhesion=float(np.mean(release) / np.mean(front) / WORK_OF_ADHESION),
             least_travel=float(np.min(np.abs(front - turn))),
-            iterations=found.sweeps,
-            updates=found.updates,
-            residual=found.residual,
+            iterations=relaxation.sweeps,
+            updates=relaxation.updates,
+            residual=relaxation.residual,
         )
 
     def stored_energy(self, front: Array, load: float) -> float:
@@ -194,7 +195,7 @@ def polar_field(
         If shapes disagree, radii do not increase or are negative, fewer than two samples, or two
         or three angles are given, a value is not finite, or the interpolation is unknown.
     """
-    refuse_unknown_interpolation(interpolation)
+    check_interpolation(interpolation)
     radii = np.asarray(radii, dtype=float)
     values = np.asarray(work_of_adhesion, dtype=float)
     if radii.ndim != 1 or values.ndim not in (1, 2) or values.shape[0] != radii.size:
@@ -204,7 +205,7 @@ def polar_field(
         )
     if not np.all(np.isfinite(radii)) or np.any(np.diff(radii) <= 0) or np.any(radii < 0):
         raise ValueError("radii must be finite, not negative and strictly increasing; sort them")
-    refuse_unusable(values, names=("radius", "angle")[: values.ndim])
+    check_field_values(values, names=("radius", "angle")[: values.ndim])
     rays = np.atleast_2d(values.T)
     if radii[0] == 0:
         radii, rays = radii[1:], rays[:, 1:]
@@ -262,7 +263,7 @@ def contact_field(
     if spacing is None:
         spacing = adhesion.pixel / (2 if interpolation == "cubic" else 4)
     values = adhesion.work_of_adhesion
-    # The refusal of values that are not finite, with their place, is tile_field's.
+    # tile_field raises an error, with the place, if values are not finite.
     strongest = float(np.max(values, where=np.isfinite(values), initial=WORK_OF_ADHESION))
     largest = 1.1 * jkr.equilibrium_radius(max_penetration, strongest / WORK_OF_ADHESION)
     return tile_field(

@@ -1,4 +1,4 @@
-"""A front at a load, the forces on its sites, and how far these hold on the way ahead."""
+"""A front at a load, the forces on its sites, and how far ahead these are valid."""
 
 from __future__ import annotations
 
@@ -260,7 +260,7 @@ def following(site, count):
 
 @kernel(fastmath={"contract", "nnan", "nsz"})
 def harden(problem, front, first, step, part, reach, stiffness):
-    """Raise reaches to part of the steps, and stiffnesses to what holds over them.
+    """Raise reaches to part of the steps, and stiffnesses to values that are valid over them.
 
     The arrays have one entry for each site from `first` on. Returns whether a stiffness grew.
     """
@@ -293,8 +293,8 @@ def touch_samples(problem, front, first, values):
 def drive_sites(problem, front, line):
     """Compute the drives from the forces of the line.
 
-    Returns the largest and the least relative to w_int, without those of sites at rest at the
-    lowest place.
+    Returns the largest and the least relative to w_int, without sites at rest at the lowest
+    place.
     """
     place, product, drive = front.place, front.product, front.drive
     geometry, load, direction = problem.field.geometry, problem.load, problem.direction

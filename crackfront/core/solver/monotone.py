@@ -44,7 +44,7 @@ _CALM = 2e-3
 """Drive, relative to w_int, below which all steps are Newton steps of the whole front."""
 
 _LEVEL = 0.1
-"""Sites above this share of the largest drive are active: windows hold and relax them to it."""
+"""Sites above this share of the largest drive are active: windows relax them to it."""
 
 _LEAST_LEVEL = 0.01
 """Smallest share, to which it falls while less than :data:`_FEW` of the front are active."""

@@ -40,7 +40,7 @@ _MOST_PAIRS = 100
 """Pairs of FFTs after which conjugate gradients are given up."""
 
 _TRIALS = 6
-"""Largest number of solves per step, each with stiffnesses that hold over the step before it."""
+"""Largest number of solves per step, each with stiffnesses valid over the previous step."""
 
 _FALL = 0.8
 """Factor that lowers the share of the softening where the matrix is not positive definite."""
@@ -58,7 +58,7 @@ class Workspace(NamedTuple):
     Attributes
     ----------
     reach, hardening : array
-        Distance ahead, and stiffness of the site's own force that holds over it, negative where
+        Distance ahead, and stiffness of the site's own force that is valid over it, negative where
         the field softens.
     step, right, line : array
         Step along the motion, right side of the linear system, force of the line against the step.
@@ -71,8 +71,8 @@ class Workspace(NamedTuple):
     search, line_along, force_along : array
         Direction of search, force of the line along it, and the same with the force of the sites.
     softening, rigid : (1,) array
-        Part of the softening that the last step used; stiffness of a site, over that of the line
-        against it, above which the system is scaled.
+        Part of the softening that the last step used; stiffness of a site, relative to the
+        line, above which the system is scaled.
     stiff_line, single_line, preconditioner : Filter
         Stiffness of the line in double and in single precision, and the inverse of that with a mean
         stiffness of the sites.
@@ -351,7 +351,7 @@ def _prepare(work, problem, front, tolerance, furthest, guess):
 
 @kernel
 def _fails(work, problem, front, part):
-    """Whether a stiffness does not hold over part of the step; its hardening is raised."""
+    """Whether a stiffness is not valid over part of the step; its hardening is raised."""
     fails = False
     if harden(problem, front, 0, work.step, part, work.reach, work.hardening):
         for i in range(np.uint64(work.step.size)):

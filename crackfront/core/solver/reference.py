@@ -48,7 +48,7 @@ def rosso_krauth(place, problem, max_sweeps):
     """Move every site by its own force over its own stiffness, at most to the next sample.
 
     The places are changed. What a site leaves out when it moves, the pull of its neighbours' moves,
-    only pushes it on: no barrier is ever passed. The stiffness of a cubic piece is that of its
+    only pushes it on: no barrier is ever passed. The stiffness of a cubic piece is the slope of its
     steepest chord from the site to the next sample; a linear piece has only one. Returns a code,
     the numbers of sweeps and of updates of a site, and the largest drive left.
     """

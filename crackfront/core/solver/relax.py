@@ -144,7 +144,7 @@ def relax(
     .. [2] Sanner et al., Sci. Adv. (2024), supplement, Sec. II.
     """
     solver = solver or Newton()
-    _refuse_unusable(front, load, direction, field, solver.tolerance)
+    _check_start(front, load, direction, field, solver.tolerance)
     moved = np.array(front, dtype=float)
     if direction > 0:
         np.maximum(moved, lowest_place(field.geometry, load), out=moved)
@@ -189,9 +189,7 @@ def front_force(front: Array, load: float, field: Field) -> Array:
     return np.asarray(forces.front_force(front, float(load), field))
 
 
-def _refuse_unusable(
-    front: Array, load: float, direction: int, field: Field, tolerance: float
-) -> None:
+def _check_start(front: Array, load: float, direction: int, field: Field, tolerance: float) -> None:
     """Raise if a relaxation cannot start."""
     n_site = field.geometry.n_site
     if direction not in (1, -1):

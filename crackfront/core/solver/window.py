@@ -46,8 +46,8 @@ class Window(NamedTuple):
     Attributes
     ----------
     drive, reach, stiffness, step, prescribed : (LONGEST + HALF_BAND,) array
-        For each site the force along the motion, the distance over which its stiffness holds, this
-        stiffness of its own force, its step, and a step that is prescribed, negative for none.
+        For each site the force along the motion, the stiffness of its own force and the distance
+        over which this is valid, its step, and a step that is prescribed, negative for none.
     band : (LONGEST + HALF_BAND, HALF_BAND + 1) array
         Factors of the banded system.
     coupling : (2 LONGEST + 1,) array

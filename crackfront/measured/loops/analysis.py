@@ -118,7 +118,7 @@ def _calibrated(
     loop = replace(loop, zero=fitted_zero(loop, touching))
     steady = steady_part(loop, loop.contact(), touching)
     if not loop.has_force_and_radius:
-        # What precedes the steady parts has no part in the zero.
+        # Rows before the steady parts do not enter the zero.
         loop = replace(loop, zero=fitted_zero(loop, steady.averaged, near=loop.zero))
         steady = steady_part(loop, loop.contact(), steady.branches)
     return loop, steady

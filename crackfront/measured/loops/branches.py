@@ -110,7 +110,7 @@ def steady_part(loop: CalibratedLoop, contact: Contact, touching: Branches) -> S
         )
     # The row of the turn belongs to both branches.
     if min(approach.size, retraction.size) <= 1:
-        raise ValueError("the loop has no approach or no retraction in contact; record both")
+        raise ValueError("the loop lacks an approach or a retraction in contact; record both")
     if window is None:
         averaged, window = _steady_rows(radius, approach, retraction)
         where = "that both pass after the edge has travelled"

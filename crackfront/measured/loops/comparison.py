@@ -51,7 +51,7 @@ def _reach(measured: float, predicted: float) -> float:
 
 def comparison_lines(loop: MeasuredLoop, prediction: Prediction) -> Iterator[str]:
     """Lines on measured and predicted works of adhesion, and on what may explain a difference."""
-    yield "Measured beside predicted"
+    yield "Measured and predicted"
     for name in ("hysteresis", "w_appr", "w_retr"):
         measured, predicted = (
             prefixed("J/m2", work.value, work.low, work.high)

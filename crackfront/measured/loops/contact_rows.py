@@ -14,7 +14,7 @@ from crackfront.core.arrays import Array
 from crackfront.measured.loops.recording import Recording
 
 FEWEST_FREE_ROWS = 5
-"""Rows out of contact that determine a zero of the force; a line through fewer has no error."""
+"""Rows out of contact that determine a zero of the force; a line through fewer lacks an error."""
 
 _SPIKE = 12.0
 """Distance of a spike from the median of five rows, over the median of this distance.
@@ -38,7 +38,7 @@ _LEAST_PULL = 0.15
 """Departure over the largest pull below which rows are out of contact, as waves of a drift are."""
 
 _STEEP = 0.1
-"""Slope of force over displacement in contact, relative to that of the whole loop.
+"""Slope of force over displacement in contact, relative to the slope of the whole loop.
 
 Out of contact the force hardly changes with the displacement.
 """

@@ -51,8 +51,8 @@ def fitted_modulus(recording: Recording, rig: Rig, rows: Branches) -> float:
 def fitted_zero(loop: CalibratedLoop, rows: Sequence[Rows], near: float | None = None) -> float:
     """Displacement without penetration (Units: m) whose JKR curves fit best, one work a branch.
 
-    The rows are those of each branch. Without a contact radius the zero is sought near a known one,
-    or anywhere. It is 0 if force and radius are recorded.
+    `rows` has the rows of each branch. Without a contact radius the zero is sought near a known
+    one, or anywhere. It is 0 if force and radius are recorded.
     """
     if loop.has_force_and_radius:
         return 0.0
@@ -97,9 +97,9 @@ def _misfit(parts: Sequence[CalibratedLoop], zero: float) -> float:
         if works.size < FEWEST_STATES:
             return _NO_CURVE
         curve = force_at(contact.penetration / scales.vertical, float(np.mean(works)))
-        left = float(np.nanmean((contact.force - scales.force * curve) ** 2))
+        misfit = float(np.nanmean((contact.force - scales.force * curve) ** 2))
         variance = float(np.nanvar(np.asarray(part.recording.force)))
-        total += left / max(variance, _SMALLEST_VARIANCE)
+        total += misfit / max(variance, _SMALLEST_VARIANCE)
     return total
 
 

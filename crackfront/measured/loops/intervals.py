@@ -130,7 +130,7 @@ def _changes(
 def _by_zero_of_branch(loop: CalibratedLoop, averaged: Branches, branch: Rows) -> Array:
     """Numbers with the zero of the displacement that fits one branch.
 
-    It is sought anywhere, or, if the other branch has no works there, near the zero of both.
+    It is sought anywhere, or, if the other branch lacks works there, near the zero of both.
     """
     numbers = _at_zero(loop, fitted_zero(loop, [branch]), averaged)
     if np.all(np.isfinite(numbers)):

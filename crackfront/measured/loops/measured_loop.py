@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from xarray import DataArray, Dataset
 
-from crackfront.core.arguments import refuse_no_numbers, refuse_other_type
+from crackfront.core.arguments import check_numbers, check_type
 from crackfront.core.arrays import Array
 from crackfront.measured.loops.analysis import analyse_loop
 from crackfront.measured.loops.recording import UNITS, Recording, read_recording
@@ -59,8 +59,8 @@ def measured_loop(
     Returns
     -------
     MeasuredLoop
-        w_appr, w_retr, hysteresis and more in SI units; printed, it is a page. Those of a simulated
-        cycle are what the simulation has, and in its units.
+        w_appr, w_retr, hysteresis and more in SI units; printed, it is a page. The values of a
+        simulated cycle are those that the simulation states, in its units.
 
     Raises
     ------
@@ -92,12 +92,12 @@ def measured_loop(
             window=window,
         )
         return simulated_loop(loop)
-    refuse_other_type(
+    check_type(
         "loop", loop, (str, PathLike, Mapping), "the path of a table, or arrays by their names"
     )
     if radius is None:
         raise ValueError("a measured loop does not state its sphere; give its radius in metres")
-    refuse_no_numbers(modulus_error=modulus_error, radius_error=radius_error)
+    check_numbers(modulus_error=modulus_error, radius_error=radius_error)
     rig = Rig(
         radius=in_si("radius", radius, "m"),
         contact_modulus=_optional("contact_modulus", contact_modulus, "Pa"),
@@ -119,7 +119,7 @@ def _check_no_rig(**arguments: object) -> None:
     """Raise ValueError if an argument describes the rig of a simulated cycle, which has none."""
     if names := [name for name, value in arguments.items() if value is not None]:
         raise ValueError(
-            f"a simulated cycle states its sphere and has no rig; leave out {', '.join(names)} "
+            f"a simulated cycle states its sphere and lacks a rig; leave out {', '.join(names)} "
             "(crackfront.in_si_units gives a cycle in reduced units a sphere)"
         )
 
@@ -131,7 +131,7 @@ def _optional(name: str, value: float | str | None, unit: str) -> float | None:
 
 def _window(window: tuple[float | str, float | str]) -> tuple[float, float]:
     """Contact radii of a window (Units: m)."""
-    refuse_other_type("window", window, (tuple, list), "a pair of contact radii")
+    check_type("window", window, (tuple, list), "a pair of contact radii")
     if len(window) != 2:
         raise ValueError(f"window has {len(window)} values; give two contact radii")
     first, last = (in_si("a contact radius of window", end, "m") for end in window)
@@ -149,7 +149,7 @@ def _recording(arrays: Mapping[str, ArrayLike] | Dataset) -> Recording:
             )
     elif unknown := set(map(str, arrays)) - set(UNITS):
         raise ValueError(
-            f"a loop has no {', '.join(sorted(unknown))}; give two of {', '.join(UNITS)}"
+            f"a loop lacks {', '.join(sorted(unknown))}; give two of {', '.join(UNITS)}"
         )
     force, radius, displacement = (
         _column(name, columns[name]) if name in columns else None for name in UNITS
@@ -166,5 +166,5 @@ def _column(name: str, values: ArrayLike) -> Array:
     except (TypeError, ValueError) as error:
         raise TypeError(f"the values of {name} are no array of numbers: {error}") from error
     if not np.any(np.isfinite(column)):
-        raise ValueError(f"{name} has no finite value; leave the column out, or check the file")
+        raise ValueError(f"{name} lacks finite values; leave the column out, or check the file")
     return np.where(np.isfinite(column), column, np.nan)

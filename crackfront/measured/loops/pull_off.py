@@ -23,7 +23,7 @@ _FITS = 1.5
 """Variance about a parabola over the variance of the noise, up to which it fits."""
 
 _AT_ENDS = 9.0
-"""Variance of a parabola at its ends over the variance of a mean; its lowest place is no better."""
+"""Variance of a parabola at its ends, and at its lowest place, over the variance of a mean."""
 
 _SECOND_DIFFERENCES = 6 * 0.455
 """Median of squared second differences of normal noise, over its variance."""

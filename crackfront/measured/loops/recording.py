@@ -104,20 +104,20 @@ def read_recording(path: Path, named: Mapping[str, str], units: Mapping[str, str
 def _places(table: Table, named: Mapping[str, str]) -> dict[str, int]:
     """Places of the columns of force, radius and displacement that a table has."""
     headings = table.headings
-    wanted = {name: text.strip().lower() for name, text in named.items()}
+    requested = {name: text.strip().lower() for name, text in named.items()}
     written = [{heading.text.lower(), plain_name(heading)} for heading in headings]
     places = {}
     for name, pattern in _NAMES.items():
-        if name in wanted:
-            candidates = [n for n, names in enumerate(written) if wanted[name] in names]
+        if name in requested:
+            candidates = [n for n, names in enumerate(written) if requested[name] in names]
             if not candidates:
                 raise ValueError(
-                    f"{table.path} has no column {named[name]!r}; its headings are "
+                    f"{table.path} lacks a column {named[name]!r}; its headings are "
                     f"{listed(headings)}"
                 )
         else:
             candidates = [
-                n for n in matching(headings, pattern) if not written[n] & {*wanted.values()}
+                n for n in matching(headings, pattern) if not written[n] & {*requested.values()}
             ]
         # An area next to the radius has the same values again.
         radii = [n for n in candidates if plain_name(headings[n]).endswith("radius")]
@@ -140,7 +140,7 @@ def _in_si(table: Table, name: str, heading: Heading, values: Array, option: str
     if not unit:
         symbol = "mN" if name == "force" else "um^2" if _is_area(name, heading, "") else "um"
         raise ValueError(
-            f"{table.path}: the column {heading.text!r} has no unit; give one, as in "
+            f"{table.path}: the column {heading.text!r} lacks a unit; give one, as in "
             f"--{name}-unit {symbol}"
         )
     column = _converted(name, heading, values, unit)

@@ -73,7 +73,7 @@ def simulated_loop(cycle: Dataset, name: str = "the cycle") -> MeasuredLoop:
     Raises
     ------
     ValueError
-        If the dataset is not a cycle of a sphere, states no correlation length, or has no steady
+        If the dataset is not a cycle of a sphere, states no correlation length, or lacks a steady
         part.
 
     Examples
@@ -86,7 +86,7 @@ def simulated_loop(cycle: Dataset, name: str = "the cycle") -> MeasuredLoop:
     """
     if "pinning_force" in cycle:
         raise ValueError(
-            f"{name} is of a straight front, which has no contact radius; a loop is that of a "
+            f"{name} is of a straight front, which lacks a contact radius; a loop is of a "
             "sphere, and w_appr and w_retr of the front stand in its file"
         )
     scales = stated_scales(cycle)
@@ -96,7 +96,7 @@ def simulated_loop(cycle: Dataset, name: str = "the cycle") -> MeasuredLoop:
     length = _correlation_length(reduced, name)
     steady = steady_adhesion(record, length)
     if steady.sentence:
-        raise ValueError(f"{name} has no works of adhesion: {steady.sentence}")
+        raise ValueError(f"{name} lacks works of adhesion: {steady.sentence}")
     averaged, _, _ = steady_branches(states, states.mean_radius, "radii", length)
     in_window = np.zeros(states.direction.size, bool)
     in_window[np.concatenate(averaged)] = True

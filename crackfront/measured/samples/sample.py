@@ -167,50 +167,50 @@ def scans_as_samples(
 
 def _sample(folder: Path, row: Mapping[str, Any], common: Mapping[str, Any]) -> Sample:
     """Sample of a row; relative paths begin in the folder of the table."""
-    _refuse_unknown_columns(row)
+    _check_columns(row)
     if "mask" in row:
         row = {**row, "mask": _masks(folder, row["mask"])}
     options = {**common, **row}
-    stated = checked_options(SampleOptions, options)
-    if stated.sample is None:
-        raise ValueError("there is no name; write it in the column 'sample'")
+    values = checked_options(SampleOptions, options)
+    if values.sample is None:
+        raise ValueError("the name is missing; write it in the column 'sample'")
     numbers = checked_options(SelfAffineOptions, row)
-    _refuse_several_surfaces(stated, row)
+    _check_single_surface(values, row)
     if named_options(SelfAffineOptions, row):
         self_affine_surface_of(numbers)
-    if not stated.scans:
-        _refuse_without_effect(ReadingOptions, "scans", row, common)
-    if stated.psd is None:
-        _refuse_without_effect(PsdOptions, "psd", row, common)
-    scans = tuple(file for name in stated.scans for file in _files(folder, name))
+    if not values.scans:
+        _check_effect(ReadingOptions, "scans", row, common)
+    if values.psd is None:
+        _check_effect(PsdOptions, "psd", row, common)
+    scans = tuple(file for name in values.scans for file in _files(folder, name))
     return Sample(
-        name=stated.sample,
-        group=stated.group or "",
+        name=values.sample,
+        group=values.group or "",
         scans=scans,
-        psd=None if stated.psd is None else _file(folder, stated.psd),
+        psd=None if values.psd is None else _file(folder, values.psd),
         reading=tuple(reading_options(_without_empty(options), len(scans))),
         density=checked_options(PsdOptions, options),
         numbers=numbers,
         scales=sphere_scales(checked_options(SphereOptions, options)),
         theory=checked_options(PredictionOptions, options),
-        measured=_measured(stated),
+        measured=_measured(values),
     )
 
 
-def _refuse_unknown_columns(row: Mapping[str, Any]) -> None:
+def _check_columns(row: Mapping[str, Any]) -> None:
     """Raise at a column that is not an option."""
     names = [name for record in _RECORDS for name in record.model_fields]
     for name in row:
         if name not in names:
             hint = nearest_name(name, names, "the columns are")
-            raise ValueError(f"there is no column {name!r}; {hint}")
+            raise ValueError(f"the column {name!r} is unknown; {hint}")
 
 
-def _refuse_several_surfaces(stated: SampleOptions, row: Mapping[str, Any]) -> None:
+def _check_single_surface(values: SampleOptions, row: Mapping[str, Any]) -> None:
     """Raise unless a row has exactly one of scans, density and numbers."""
     ways = {
-        "scans": bool(stated.scans),
-        "psd": stated.psd is not None,
+        "scans": bool(values.scans),
+        "psd": values.psd is not None,
         "rms": bool(named_options(SelfAffineOptions, row)),
     }
     if sum(ways.values()) != 1:
@@ -218,7 +218,7 @@ def _refuse_several_surfaces(stated: SampleOptions, row: Mapping[str, Any]) -> N
         raise ValueError(f"the surface is given by {named}; name its scans, or its psd, or its rms")
 
 
-def _refuse_without_effect(
+def _check_effect(
     record: type[Options], way: str, row: Mapping[str, Any], common: Mapping[str, Any]
 ) -> None:
     """Raise at an option of scans, or of a density, of a sample that is given in another way."""
@@ -231,12 +231,12 @@ def _without_empty(options: Mapping[str, Any]) -> dict[str, Any]:
     return {name: value for name, value in options.items() if value not in (None, ())}
 
 
-def _measured(stated: SampleOptions) -> dict[str, Estimate[float]]:
+def _measured(values: SampleOptions) -> dict[str, Estimate[float]]:
     """Measured numbers of a row; their intervals are two standard errors to both sides."""
     measured = {}
     for name in PREDICTED:
-        value = getattr(stated, f"measured_{name}", None)
-        error = getattr(stated, f"measured_{name}_error", None)
+        value = getattr(values, f"measured_{name}", None)
+        error = getattr(values, f"measured_{name}_error", None)
         if value is not None and error is not None:
             measured[name] = Estimate(value, error, value - 2 * error, value + 2 * error)
         elif value is not None:
@@ -251,7 +251,7 @@ def _files(folder: Path, name: str) -> list[Path]:
         return [path]
     files = sorted(path.parent.glob(path.name)) if "*" in name else []
     if not files:
-        raise ValueError(f"there is no file {path}; correct its name, relative to the table")
+        raise ValueError(f"{path} does not exist; correct its name, relative to the table")
     return files
 
 

@@ -10,7 +10,7 @@ from typing import Any
 from ruamel.yaml import YAML
 from ruamel.yaml.error import MarkedYAMLError
 
-from crackfront.measured.scan.scan_files import refuse_unreadable
+from crackfront.measured.scan.scan_files import check_readable
 from crackfront.measured.tables.cells import decimal_sign, is_number
 from crackfront.measured.tables.headed_table import table_of_texts
 from crackfront.measured.tables.headings import Heading, heading
@@ -49,7 +49,7 @@ def sample_rows(path: Path) -> list[tuple[int, dict[str, Any]]]:
     OSError
         If the file cannot be opened.
     """
-    refuse_unreadable(path)
+    check_readable(path)
     return list(_yaml_rows(path) if path.suffix.lower() in _YAML else _table_rows(path))
 
 
@@ -67,7 +67,7 @@ def _table_rows(path: Path) -> Iterator[tuple[int, dict[str, Any]]]:
     ]
     has_decimal_commas = table.separator != ","
     if has_decimal_commas:
-        _refuse_other_numbers(table, rows)
+        _check_decimal_signs(table, rows)
     units = dict(columns)
     for line, row in zip(table.lines, rows, strict=True):
         for name, cell in row.items():
@@ -77,7 +77,7 @@ def _table_rows(path: Path) -> Iterator[tuple[int, dict[str, Any]]]:
         yield line, row
 
 
-def _refuse_other_numbers(table: Table, rows: Sequence[dict[str, str]]) -> None:
+def _check_decimal_signs(table: Table, rows: Sequence[dict[str, str]]) -> None:
     """Raise if numbers have two decimal signs, or commas that may all separate thousands."""
     numbers = list(_numbers(table, rows))
     decimal_sign(table.path, ((line, [cell]) for line, _, cell in numbers))
@@ -129,12 +129,12 @@ def _yaml_rows(path: Path) -> Iterator[tuple[int, dict[str, Any]]]:
         where = "" if error.problem_mark is None else f", line {error.problem_mark.line + 1}"
         raise ValueError(f"{path}{where}: this is not YAML: {error.problem}; correct it") from error
     rows = content.get("samples") if isinstance(content, dict) else content
-    others = [name for name in content if name != "samples"] if isinstance(content, dict) else []
-    if rows is not None and others:
-        raise ValueError(f"{path} has {str(others[0])!r} next to samples; remove it")
+    further = [name for name in content if name != "samples"] if isinstance(content, dict) else []
+    if rows is not None and further:
+        raise ValueError(f"{path} has {str(further[0])!r} next to samples; remove it")
     if not isinstance(rows, list) or not all(isinstance(row, dict) for row in rows):
         raise ValueError(
-            f"{path} has no list of samples; write 'samples:' with '- sample: A' below"
+            f"{path} lacks a list of samples; write 'samples:' with '- sample: A' below"
         )
     for row in rows:
         where = f"{path}, line {row.lc.line + 1}"

@@ -19,7 +19,7 @@ _HEIGHTS = re.compile(
 """Names of arrays that are of heights."""
 
 _BARE_ARRAYS = {"h5", "mat", "npz", "nc"}
-"""Formats of arrays that say by their names alone what they hold."""
+"""Formats whose arrays state their quantity by their names alone."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,7 +66,7 @@ def _default(reader: Any) -> int | None:
     return int(of_heights[0].index) if len(of_heights) == 1 else None
 
 
-def chosen_channel(path: Path, reader: Any, wanted: str | None) -> tuple[Any, str]:
+def chosen_channel(path: Path, reader: Any, requested: str | None) -> tuple[Any, str]:
     """A channel of heights, the library's own choice if none is named, and what it is called."""
     channels = channels_of(path, reader)
     if not channels and _is_tiff(path):
@@ -76,28 +76,28 @@ def chosen_channel(path: Path, reader: Any, wanted: str | None) -> tuple[Any, st
         )
     if not channels:
         raise ValueError(
-            f"{path} holds no array of numbers in two dimensions; export the heights as one"
+            f"{path} lacks an array of numbers in two dimensions; export the heights as one"
         )
-    if wanted is None:
+    if requested is None:
         named = [each for each in channels if each.is_default]
     else:
-        named = [each for each in channels if each.name == wanted]
-    if wanted is None and not named:
+        named = [each for each in channels if each.name == requested]
+    if requested is None and not named:
         raise ValueError(
-            f"{path} holds {len(channels)} arrays, and their names do not say which one has the "
+            f"{path} contains {len(channels)} arrays, and their names do not say which one has the "
             f"heights; {_choice(channels)}"
         )
-    named = named or [each for each in channels if str(each.number) == wanted]
+    named = named or [each for each in channels if str(each.number) == requested]
     if len(named) != 1:
         raise ValueError(
-            f"{path} has {'several channels' if named else 'no channel'} {wanted!r}; "
+            f"{path} has {'several channels' if named else 'no channel'} {requested!r}; "
             f"{_choice(channels)}"
         )
     [chosen] = named
     if chosen.quantity != "height":
         of_heights = [each for each in channels if each.quantity == "height"]
         raise ValueError(
-            f"{path}: channel {chosen.name!r} holds {chosen.quantity}, no heights; "
+            f"{path}: channel {chosen.name!r} contains {chosen.quantity}, not heights; "
             + (_choice(of_heights) if of_heights else "export the channel of the heights")
         )
     several = f", {chosen.number} of {len(channels)}" if len(channels) > 1 else ""
@@ -112,13 +112,13 @@ def _is_tiff(path: Path) -> bool:
 
 
 def _kind(channel: Any) -> str:
-    """Quantity that a channel holds: height, phase and others."""
+    """Quantity of a channel: height, phase and others."""
     # A reader takes any quantity over lengths for heights, and has two units for it.
     return "another quantity" if isinstance(channel.unit, tuple) else str(channel.data_kind.value)
 
 
 def is_doubtful(channel: str) -> bool:
-    """Whether the name of a channel says that it holds no heights."""
+    """Whether the name of a channel says that it does not contain heights."""
     return _NO_HEIGHTS.search(channel) is not None
 
 

@@ -1,6 +1,6 @@
 """Containers of contact.engineering: the measurements of surfaces, with what a person said of each.
 
-A container is a ZIP file of data files, beside `index.json` or `meta.yml` with units and sizes.
+A container is a ZIP file of data files, with `index.json` or `meta.yml` for units and sizes.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ InstrumentLength = Literal["tip_radius", "resolution"]
 """Parameters of instruments that limit the trusted waves."""
 
 _METADATA = ("index.json", "meta.yml")
-"""Files that say what a container holds; the first of them counts."""
+"""Files that list the content of a container; the first of them counts."""
 
 _DATA = ("original", "squeezed-netcdf")
 """Data files of a measurement: as it was measured, and as contact.engineering has treated it."""
@@ -74,7 +74,7 @@ class ContainedMeasurement(_Entry):
     @property
     def file(self) -> str:
         """Name of the data file in the container."""
-        return next((one for key in _DATA if (one := self.datafile.get(key))), "")
+        return next((name for key in _DATA if (name := self.datafile.get(key))), "")
 
     @property
     def shown(self) -> str:
@@ -90,7 +90,7 @@ class ContainedSurface(_Entry):
 
 
 class _Metadata(_Entry):
-    """What a container says that it holds."""
+    """Content of a container, as it states it."""
 
     surfaces: tuple[ContainedSurface, ...] = Field(min_length=1)
 
@@ -105,20 +105,20 @@ _Constructor.add_constructor(
 
 
 def contained_surfaces(path: Path) -> tuple[ContainedSurface, ...]:
-    """Surfaces of a container; none of any other file.
+    """Surfaces of a container; empty for any other file.
 
-    ValueError, of one sentence, where it is encrypted or does not say what it holds.
+    ValueError, of one sentence, if it is encrypted or does not state its content.
     """
     if not zipfile.is_zipfile(path):
         return ()
     with _open(path) as archive:
-        names = {one.filename for one in archive.infolist()}
-        found = next((name for name in _METADATA if name in names), None)
-        if found is None:
+        names = {member.filename for member in archive.infolist()}
+        metadata = next((name for name in _METADATA if name in names), None)
+        if metadata is None:
             return ()
-        text = _content(path, archive, found).decode("utf-8", "replace")
+        text = _content(path, archive, metadata).decode("utf-8", "replace")
     try:
-        if found.endswith(".json"):
+        if metadata.endswith(".json"):
             content: Any = json.loads(text)
         else:
             yaml = YAML(typ="safe", pure=True)
@@ -129,47 +129,49 @@ def contained_surfaces(path: Path) -> tuple[ContainedSurface, ...]:
         first, *_ = error.errors(include_url=False)
         place = ".".join(map(str, first["loc"])) or "the whole"
         raise ValueError(
-            f"{path}: {found} does not say what the container holds: {place}: "
+            f"{path}: {metadata} does not state the content of the container: {place}: "
             f"{first['msg'].lower()}; download it again"
         ) from error
     except (YAMLError, ValueError) as error:
         raise ValueError(
-            f"{path}: {found} is damaged ({str(error).splitlines()[0]}); download it again"
+            f"{path}: {metadata} is damaged ({str(error).splitlines()[0]}); download it again"
         ) from error
 
 
 def surface_of(
-    path: Path, surfaces: Sequence[ContainedSurface], wanted: str | None
+    path: Path, surfaces: Sequence[ContainedSurface], requested: str | None
 ) -> ContainedSurface:
     """The surface of a name or number, or the only one of a container."""
     listed = "; ".join(
-        f"{number} {one.name!r} ({len(one.topographies)} measurements)"
-        for number, one in enumerate(surfaces)
+        f"{number} {surface.name!r} ({len(surface.topographies)} measurements)"
+        for number, surface in enumerate(surfaces)
     )
-    if wanted is None and len(surfaces) > 1:
+    if requested is None and len(surfaces) > 1:
         raise ValueError(
-            f"{path} holds {len(surfaces)} surfaces; choose one by number or name with --surface: "
-            f"{listed}"
+            f"{path} contains {len(surfaces)} surfaces; choose one by number or name with "
+            f"--surface: {listed}"
         )
-    named = [one for one in surfaces if wanted is None or one.name == wanted]
-    if not named and wanted is not None and wanted.isdecimal():
-        named = list(surfaces[int(wanted) : int(wanted) + 1])
+    named = [surface for surface in surfaces if requested is None or surface.name == requested]
+    if not named and requested is not None and requested.isdecimal():
+        named = list(surfaces[int(requested) : int(requested) + 1])
     if len(named) != 1:
         many = "several surfaces" if named else "no surface"
-        raise ValueError(f"{path} has {many} {wanted!r}; choose by number with --surface: {listed}")
+        raise ValueError(
+            f"{path} has {many} {requested!r}; choose by number with --surface: {listed}"
+        )
     return named[0]
 
 
 def stated_length(path: Path, member: ContainedMeasurement, name: InstrumentLength) -> float | None:
     """A length that a container states of an instrument, None where it states none (Units: m).
 
-    ValueError, of one sentence that begins with the path, where its value is no length.
+    ValueError, of one sentence that begins with the path, if its value is not a length.
     """
-    found = member.instrument
+    entry = member.instrument
     for key in ("parameters", name):
-        found = found.get(key) if isinstance(found, dict) else None
-    stated = found if isinstance(found, dict) else {"value": found}
-    value, unit = stated.get("value"), stated.get("unit")
+        entry = entry.get(key) if isinstance(entry, dict) else None
+    length = entry if isinstance(entry, dict) else {"value": entry}
+    value, unit = length.get("value"), length.get("unit")
     if not value:
         return None
     try:
@@ -179,7 +181,7 @@ def stated_length(path: Path, member: ContainedMeasurement, name: InstrumentLeng
     if not 0 < metres < math.inf:
         raise ValueError(
             f"{path}: its container states the {name.replace('_', ' ')} of the instrument as "
-            f"{value!r} in {unit!r}, which is no length; correct it there, and download it again"
+            f"{value!r} in {unit!r}, which is not a length; correct it there, and download it again"
         )
     return metres
 
@@ -189,10 +191,10 @@ def unpacked(path: Path, members: Sequence[ContainedMeasurement]) -> Iterator[li
     """Data files of measurements, in a folder that is removed afterwards."""
     with tempfile.TemporaryDirectory() as folder, _open(path) as archive:
         files = []
-        for number, one in enumerate(members):
-            # A name of ours, as that of the container may point anywhere.
-            file = Path(folder, f"{number}{Path(one.file).suffix}")
-            file.write_bytes(_content(path, archive, one.file))
+        for number, member in enumerate(members):
+            # A new name, as a name in the container may point anywhere.
+            file = Path(folder, f"{number}{Path(member.file).suffix}")
+            file.write_bytes(_content(path, archive, member.file))
             files.append(file)
         yield files
 
@@ -202,9 +204,9 @@ def _open(path: Path) -> Iterator[zipfile.ZipFile]:
     """A ZIP file that is not encrypted."""
     try:
         with zipfile.ZipFile(path) as archive:
-            if any(one.flag_bits & _ENCRYPTED for one in archive.infolist()):
+            if any(member.flag_bits & _ENCRYPTED for member in archive.infolist()):
                 raise ValueError(
-                    f"{path} is encrypted; unpack it with its password, and name what it holds"
+                    f"{path} is encrypted; unpack it with its password, and name the files in it"
                 )
             yield archive
     except zipfile.BadZipFile as error:
@@ -212,13 +214,11 @@ def _open(path: Path) -> Iterator[zipfile.ZipFile]:
 
 
 def _content(path: Path, archive: zipfile.ZipFile, name: str) -> bytes:
-    """Content of a file in a container, refused where it is missing, damaged or too large."""
+    """Content of a file in a container; ValueError if it is missing, damaged or too large."""
     try:
         size = archive.getinfo(name).file_size
     except KeyError as error:
-        raise ValueError(
-            f"{path} lacks {name!r}, which it says that it holds; download it again"
-        ) from error
+        raise ValueError(f"{path} lacks {name!r}, which it lists; download it again") from error
     if size > (most := LARGEST_FILE * memory_at_hand()):
         raise ValueError(
             f"{path}: {name} has {in_bytes(size)}; more than {in_bytes(most)} are not read"

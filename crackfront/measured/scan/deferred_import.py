@@ -42,10 +42,10 @@ def import_without_executing(name: str) -> None:
 
 
 def import_without_mpi() -> None:
-    """Import NuMPI with its own stub of MPI, as it imports itself where there is no mpi4py.
+    """Import NuMPI with its own stub of MPI, as NuMPI does without mpi4py.
 
     A .npy is read by all ranks of its communicator together, of which one alone would wait for
-    ever; and nodes without jobs may refuse to start MPI.
+    ever; and MPI may fail to start on nodes without jobs.
     """
     name = "NuMPI"
     if name in sys.modules or (spec := importlib.util.find_spec(name)) is None:

@@ -23,7 +23,7 @@ from crackfront.measured.scan.library import (
 )
 from crackfront.measured.scan.netcdf import netcdf_grids
 from crackfront.measured.scan.points import even_line
-from crackfront.measured.scan.scan_files import refuse_too_many_points, refuse_unreadable
+from crackfront.measured.scan.scan_files import check_points, check_readable
 from crackfront.measured.scan.sides import (
     are_possible_heights,
     is_sized,
@@ -55,10 +55,10 @@ def raw_scan(path: Path, options: ReadingOptions, height_scale: float = 1.0) -> 
     reader = _reader(path)
     channel, name = chosen_channel(path, reader, options.channel)
     if channel.nb_grid_pts is not None:
-        refuse_too_many_points(path, channel.nb_grid_pts)
-    given, sides = units_and_sides(path, reader.format(), channel, options)
+        check_points(path, channel.nb_grid_pts)
+    added, sides = units_and_sides(path, reader.format(), channel, options)
     with errors_as_sentences(path, reader.format()):
-        raw = reader.topography(channel_index=channel.index, **given)
+        raw = reader.topography(channel_index=channel.index, **added)
     if not raw.is_uniform:
         line = even_line(path, raw.positions(), raw.heights())
         raw = library_scan(line.heights, line.size, unit=raw.unit, info=raw.info)
@@ -88,8 +88,8 @@ def raw_scan(path: Path, options: ReadingOptions, height_scale: float = 1.0) -> 
 @silenced()
 def is_stated(path: Path, channel: str | None) -> tuple[bool, bool]:
     """Whether a file states the unit and the sides of a channel."""
-    stated, _ = chosen_channel(path, _reader(path), channel)
-    return stated.unit is not None, is_sized(stated)
+    chosen, _ = chosen_channel(path, _reader(path), channel)
+    return chosen.unit is not None, is_sized(chosen)
 
 
 @silenced()
@@ -104,7 +104,7 @@ def array_of(path: Path) -> np.ndarray[Any, Any]:
 
 def _reader(path: Path) -> Any:
     """Reader of a file, which is regular and not too large."""
-    refuse_unreadable(path)
+    check_readable(path)
     text = number_tables(path)
     if text is not None and is_plain_text(text):
         return text_reader(path, text)
@@ -175,7 +175,7 @@ def list_channels(path: str | PathLike[str]) -> tuple[Channel, ...]:
     OSError
         If it cannot be opened.
     """
-    refuse_unreadable(Path(path))
+    check_readable(Path(path))
     members = [
         f"{surface.name}: {measurement.shown}"
         for surface in contained_surfaces(Path(path))

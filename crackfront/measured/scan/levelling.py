@@ -37,7 +37,8 @@ def taken_off(detrend: Detrend) -> str:
 def levelled(heights: Array, fitted: PointMask, detrend: Detrend) -> Array:
     """Heights without their trend, which is fitted to some of the points; they may have any unit.
 
-    Refused if these points do not determine the trend, or the heights are it but for round-off.
+    ValueError if these points do not determine the trend, or the heights are the trend but for
+    round-off.
     """
     n_term = math.comb(order_of(detrend) + heights.ndim, heights.ndim)
     if np.count_nonzero(fitted) < 2 * n_term:
@@ -54,7 +55,7 @@ def levelled(heights: Array, fitted: PointMask, detrend: Detrend) -> Array:
     if np.ptp(level[fitted]) <= _ROUND_OFF * np.ptp(heights[fitted]):
         raise ValueError(
             f"the heights are nothing but {taken_off(detrend)} that was taken off; a smooth "
-            "surface has no spectrum"
+            "surface lacks a spectrum"
         )
     return level
 
@@ -79,8 +80,8 @@ def _plane_of_least_slope(level: Array, fitted: PointMask) -> Array:
     """Plane with the mean slope between neighbouring points, along every direction."""
     slopes = []
     for axis in range(level.ndim):
-        rows, known = np.moveaxis(level, axis, 0), np.moveaxis(fitted, axis, 0)
-        both = known[1:] & known[:-1]
+        rows, is_used = np.moveaxis(level, axis, 0), np.moveaxis(fitted, axis, 0)
+        both = is_used[1:] & is_used[:-1]
         slopes.append(np.mean(np.diff(rows, axis=0)[both]) if both.any() else math.nan)
     places = np.ogrid[tuple(map(slice, level.shape))]
     return np.asarray(sum(slope * place for slope, place in zip(slopes, places, strict=True)))

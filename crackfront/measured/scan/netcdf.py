@@ -41,7 +41,7 @@ def netcdf_grids(path: Path) -> list[Grid]:
             and variable.dimensions
             and len(variable.dimensions) < 3
             and np.issubdtype(variable.dtype, np.number)
-            and all(one in variables for one in variable.dimensions)
+            and all(dimension in variables for dimension in variable.dimensions)
             and _unit(variable) is not None
         ]
 
@@ -51,17 +51,18 @@ def _is_conventional(dataset: Any) -> bool:
     variables = dataset.variables
     if "heights" not in variables or dataset.data_model.startswith("NETCDF4"):
         return False
-    known = [variables[one] for one in ("x", "y", "heights") if one in variables]
-    units = {getattr(one, "unit", None) for one in known}
+    read = [variables[name] for name in ("x", "y", "heights") if name in variables]
+    units = {getattr(variable, "unit", None) for variable in read}
     return len(units) == 1 and not (
-        variables["heights"].dimensions == ("y", "x") or any(hasattr(one, "units") for one in known)
+        variables["heights"].dimensions == ("y", "x")
+        or any(hasattr(variable, "units") for variable in read)
     )
 
 
 def _unit(variable: Any) -> str | None:
     """Unit that a variable states."""
-    found = getattr(variable, "units", None) or getattr(variable, "unit", None)
-    return str(found).strip() or None if found is not None else None
+    unit = getattr(variable, "units", None) or getattr(variable, "unit", None)
+    return str(unit).strip() or None if unit is not None else None
 
 
 def _grid(path: Path, dataset: Any, name: str) -> Grid:
@@ -73,15 +74,15 @@ def _grid(path: Path, dataset: Any, name: str) -> Grid:
     if "mask" in dataset.variables and dataset["mask"].shape == values.shape:
         values = np.ma.masked_where(np.ma.filled(dataset["mask"][...], 1) != 0, values)
     size = []
-    for axis, one in enumerate(variable.dimensions):
-        coordinate = dataset.variables[one]
+    for axis, dimension in enumerate(variable.dimensions):
+        coordinate = dataset.variables[dimension]
         unit = _unit(coordinate)
         try:
             factor = unit_value(unit or "", "m")
         except ValueError as error:
-            stated = f"states {one} in {unit}" if unit else f"states no unit of {one}"
+            problem = f"states {dimension} in {unit}" if unit else f"states no unit of {dimension}"
             raise ValueError(
-                f"{path} {stated}, and {name} in {_unit(variable)}; write both in units of length"
+                f"{path} {problem}, and {name} in {_unit(variable)}; write both in units of length"
             ) from error
         places = np.asarray(np.ma.filled(coordinate[...], np.nan), dtype=float)
         if hasattr(coordinate, "length"):
@@ -90,7 +91,7 @@ def _grid(path: Path, dataset: Any, name: str) -> Grid:
             size.append(factor * even_line(path, places, places).size[0])
         if places[0] > places[-1]:
             values = np.flip(values, axis)
-    if [one[:1].lower() for one in variable.dimensions] == ["y", "x"]:
+    if [dimension[:1].lower() for dimension in variable.dimensions] == ["y", "x"]:
         values, size = values.T, size[::-1]
     unit = _unit(variable)
     try:

@@ -34,7 +34,7 @@ _FEWEST_ALONG = 0.5
 """Least part of the places along one direction at which there is any point."""
 
 _FEWEST_FILLED = 0.05
-"""Least part of the places of a grid that have a point; with fewer it is no grid."""
+"""Least part of the places of a grid that have a point; with fewer it is not a grid."""
 
 
 _WORDS = "( ?-?(position|coordinate|axis|height)s?)?"
@@ -59,7 +59,7 @@ class Points:
     """Heights of a map or a line, on the grid of its positions, in the units of the file."""
 
     heights: np.ndarray[Any, Any]
-    """Masked where the file has no point."""
+    """Masked where the file lacks a point."""
     size: tuple[float, ...]
 
 
@@ -73,8 +73,8 @@ def point_columns(path: Path, headings: Sequence[Heading]) -> list[int]:
         return [place for name in "xyz" for place in places[name]]
     if places["z"] and len(headings) - 1 not in places["z"]:
         raise ValueError(
-            f"{path}: its columns are {listed(headings)}; name those of the points x, y and z, "
-            "once each, or write the heights in the last one"
+            f"{path}: its columns are {listed(headings)}; name the columns of the points x, y and "
+            "z, once each, or write the heights in the last one"
         )
     return []
 
@@ -113,12 +113,14 @@ def read_points(table: Table, kind: HeadKind | None) -> Points:
     *places, last = columns
     heights = np.ma.masked_invalid(last.astype(float))
     if not heights.count():
-        raise ValueError(f"{path} has no heights: the last column has no number; export it again")
+        raise ValueError(
+            f"{path} lacks heights: the last column is without numbers; export it again"
+        )
     return Points(*_on_grid(path, places, heights))
 
 
 def even_line(path: Path, positions: Array, heights: Array) -> Points:
-    """Line of points that another reader found; refused if they are not equally spaced."""
+    """Line of points of another reader; ValueError if they are not equally spaced."""
     return Points(*_on_grid(path, [_texts(positions)], np.ma.masked_invalid(heights)))
 
 
@@ -127,7 +129,7 @@ def _texts(numbers: Array) -> Cells:
     return np.array(list(map(repr, np.asarray(numbers, dtype=float).tolist())), dtype=object)
 
 
-def refuse_positions(table: Table) -> None:
+def check_no_positions(table: Table) -> None:
     """Raise where the first column, or the first row, of a matrix has positions for heights."""
     cells = table.cells.to_numpy()
     if min(cells.shape) < 2 or len(cells) < _FEWEST_POSITIONS:
@@ -189,7 +191,7 @@ def _is_index(cells: Cells) -> bool:
 def _on_grid(
     path: Path, places: Sequence[Cells], heights: np.ma.MaskedArray[Any, Any]
 ) -> tuple[np.ma.MaskedArray[Any, Any], tuple[float, ...]]:
-    """Heights on the grid of their positions, masked where it has no point, and its sides."""
+    """Heights on the grid of their positions, masked where it lacks a point, and its sides."""
     axes = [_axis(path, name, cells) for name, cells in zip("xy", places, strict=False)]
     counts = tuple(int(index.max()) + 1 for index, _ in axes)
     if len(heights) < _FEWEST_FILLED * math.prod(counts):
@@ -225,7 +227,9 @@ def _axis(path: Path, name: str, cells: Cells) -> tuple[NDArray[np.int64], float
     inverse, texts = pandas.factorize(cells)
     values, rounding = texts.astype(float), _last_digits(texts.tolist())
     if not np.isfinite(values).all():
-        raise ValueError(f"{path}: a position along {name} is no number; export the points again")
+        raise ValueError(
+            f"{path}: a position along {name} is not a number; export the points again"
+        )
     order = np.argsort(values, kind="stable")
     positions, rounding = values[order], rounding[order]
     gaps = np.diff(positions)

@@ -1,7 +1,7 @@
 r"""Spectral densities that other programs have exported, with the convention of each.
 
-All become the isotropic density C or that of profiles C_1D, two-sided over wavevectors, of which
-the mean square of the heights is :math:`\int d^2q\,C/4\pi^2` or :math:`\int dq\,C_{1D}/2\pi`.
+All become the isotropic density C or the profile density C_1D, two-sided over wavevectors. The mean
+square of the heights is :math:`\int d^2q\,C/4\pi^2` or :math:`\int dq\,C_{1D}/2\pi`.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ import numpy as np
 from crackfront.core.arrays import Array
 from crackfront.measured.options import PsdOptions
 from crackfront.measured.scan.psd_convention import stated_convention
-from crackfront.measured.scan.scan_files import checksum, refuse_unreadable
+from crackfront.measured.scan.scan_files import check_readable, checksum
 from crackfront.measured.tables.number_tables import number_tables
 from crackfront.measured.tables.table import Table
 
@@ -75,10 +75,10 @@ def read_psd_file(path: Path, options: PsdOptions) -> Psd:
     OSError
         If the file cannot be opened.
     """
-    refuse_unreadable(path)
+    check_readable(path)
     text = number_tables(path)
     if text is None:
-        raise ValueError(f"{path} has no rows of numbers; export the density as text, as CSV")
+        raise ValueError(f"{path} lacks rows of numbers; export the density as text, as CSV")
     series = _chosen_series(path, text.tables, options.psd_series)
     convention = stated_convention(series, options)
     place, value = _positive_columns(series)
@@ -95,11 +95,11 @@ def read_psd_file(path: Path, options: PsdOptions) -> Psd:
     )
 
 
-def _chosen_series(path: Path, tables: Sequence[Table], wanted: str | None) -> Table:
+def _chosen_series(path: Path, tables: Sequence[Table], requested: str | None) -> Table:
     """The series of a name or number, or the only one."""
     names = [table.titles[-1] if table.titles else "" for table in tables]
     listed = "; ".join(f"{number} {name!r}" for number, name in enumerate(names, 1))
-    if wanted is None:
+    if requested is None:
         if len(tables) > 1:
             raise ValueError(
                 f"{path} has {len(tables)} series; choose one by number or name with "
@@ -107,14 +107,14 @@ def _chosen_series(path: Path, tables: Sequence[Table], wanted: str | None) -> T
             )
         [series] = tables
     else:
-        chosen = [table for table, name in zip(tables, names, strict=True) if name == wanted]
-        if not chosen and wanted.isdecimal() and 0 < int(wanted) <= len(tables):
-            chosen = [tables[int(wanted) - 1]]
+        chosen = [table for table, name in zip(tables, names, strict=True) if name == requested]
+        if not chosen and requested.isdecimal() and 0 < int(requested) <= len(tables):
+            chosen = [tables[int(requested) - 1]]
         if len(chosen) != 1:
-            raise ValueError(f"{path} has no series {wanted!r}; its series are {listed}")
+            raise ValueError(f"{path} lacks a series {requested!r}; its series are {listed}")
         [series] = chosen
-    others = " ".join(heading.text for heading in series.headings[2:])
-    if series.n_column < 2 or (series.n_column > 2 and not _FURTHER_COLUMN.search(others)):
+    further = " ".join(heading.text for heading in series.headings[2:])
+    if series.n_column < 2 or (series.n_column > 2 and not _FURTHER_COLUMN.search(further)):
         raise ValueError(
             f"{path}, line {series.lines[0]}: the rows have {series.n_column} columns; export one "
             "curve, of the wavevector and the density"
@@ -126,11 +126,11 @@ def _positive_columns(series: Table) -> tuple[Array, Array]:
     """Both columns, without rows that have no wave or no value."""
     place, value = series.numbers((0, 1))
     is_used = np.isfinite(value) & np.isfinite(place) & (place != 0)
-    for what, column in (("first column", place), ("density", value)):
+    for name, column in (("first column", place), ("density", value)):
         bad = np.flatnonzero(is_used & ~(column > 0))
         if bad.size:
             raise ValueError(
-                f"{series.path}, line {series.lines[bad[0]]}: the {what} is {column[bad[0]]:g}; it "
+                f"{series.path}, line {series.lines[bad[0]]}: the {name} is {column[bad[0]]:g}; it "
                 "must be positive, so leave the row out or export the density without logarithms"
             )
     return place[is_used], value[is_used]

@@ -95,7 +95,7 @@ def stated_convention(series: Table, options: PsdOptions) -> Convention:
             f"{path}: the density has the unit {written!r}, per radian, and the first column "
             f"is a {abscissa}; name both units, as in --psd-units 1/um,um^3"
         )
-    _refuse_other_norm(path, kind, abscissa, options)
+    _check_norm(path, kind, abscissa, options)
     factor, norm = _norm(words, kind, abscissa, options, is_per_radian=is_per_radian)
     assumptions: tuple[str, ...] = ()
     if kind == "1d":
@@ -135,7 +135,8 @@ def _named_units(options: PsdOptions) -> tuple[str, ...]:
     units = tuple(unit.strip() for unit in options.psd_units.split(","))
     if len(units) != 2:
         raise ValueError(
-            f"--psd-units is {options.psd_units!r}; write those of both columns, as in 1/um,um^3"
+            f"--psd-units is {options.psd_units!r}; write the units of both columns, as in "
+            "1/um,um^3"
         )
     return units
 
@@ -196,19 +197,19 @@ def _density_unit(path: Path, written: str) -> str:
 
 
 def dimension(unit: str, powers: Sequence[int]) -> int:
-    """Power of a length that a unit is, 0 if none of some powers."""
+    """Power of a length that a unit is; 0 if it is not one of `powers`."""
     return next((power for power in powers if unit and is_unit(unit, f"m^{power}")), 0)
 
 
 def _kind(path: Path, words: str, unit: str, options: PsdOptions) -> tuple[PsdKind, float]:
     """What the density is of, and its unit in SI."""
     power = dimension(unit, (3, 4))
-    stated: PsdKind | None = None
+    named: PsdKind | None = None
     if re.search(r"q\s*/\s*(π|pi)\s*[×x*]?\s*2d", words):
-        stated = "q2d"
+        named = "q2d"
     elif re.search(r"radial|\bw[_ ]?r\b", words) and power == 3:
-        stated = "radial"
-    kind = options.psd_kind or stated or ("1d" if power == 3 else "2d")
+        named = "radial"
+    kind = options.psd_kind or named or ("1d" if power == 3 else "2d")
     if (kind == "2d") != (power == 4):
         raise ValueError(
             f"{path}: a density of kind {kind} does not have the unit {unit}; name another of "
@@ -217,9 +218,7 @@ def _kind(path: Path, words: str, unit: str, options: PsdOptions) -> tuple[PsdKi
     return kind, unit_value(unit, f"m^{power}")
 
 
-def _refuse_other_norm(
-    path: Path, kind: PsdKind, abscissa: PsdAbscissa, options: PsdOptions
-) -> None:
+def _check_norm(path: Path, kind: PsdKind, abscissa: PsdAbscissa, options: PsdOptions) -> None:
     """Raise where the named norm contradicts the kind of the density or its first column."""
     norm = options.psd_norm
     if norm is not None and kind == "q2d":
@@ -261,8 +260,8 @@ def _norm(
 
 def _stated_sides(words: str) -> str | None:
     """Whether a head says that the density is one-sided or two-sided."""
-    stated = re.search(r"\b(one|single|two|double)[- ]sided", words)
-    if stated is not None:
-        return "one" if stated[1] in ("one", "single") else "two"
+    sides = re.search(r"\b(one|single|two|double)[- ]sided", words)
+    if sides is not None:
+        return "one" if sides[1] in ("one", "single") else "two"
     # Programs whose convention is known.
     return "two" if re.search(rf"1d psd along|{GWYDDION}", words) else None

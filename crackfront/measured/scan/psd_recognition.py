@@ -34,7 +34,7 @@ _FEWEST_ROWS = 8
 """Rows from which both are judged."""
 
 
-def refuse_spectrum(path: Path, text: NumberTables) -> None:
+def check_no_spectrum(path: Path, text: NumberTables) -> None:
     """Raise if a text of two columns is a spectral density and not a line of heights."""
     n_row = sum(len(table.cells) for table in text.tables)
     if n_row > _MOST_ROWS or not 2 <= text.n_column <= _MOST_COLUMNS:
@@ -50,7 +50,7 @@ def refuse_spectrum(path: Path, text: NumberTables) -> None:
             reason = "its values are positive and fall all along, as no heights do"
     if reason is not None:
         raise ValueError(
-            f"{path} holds a spectral density, no line scan: {reason}; predict from it with "
+            f"{path} contains a spectral density, not a line scan: {reason}; predict from it with "
             f"--psd {path}, or name the columns x and z in its head if they are a line"
         )
 

@@ -36,7 +36,7 @@ from crackfront.measured.scan.library import (
     surface_library,
 )
 from crackfront.measured.scan.outliers import outliers
-from crackfront.measured.scan.scan_files import checksum, refuse_unreadable
+from crackfront.measured.scan.scan_files import check_readable, checksum
 from crackfront.measured.scan.sides import are_possible_heights, shown_sides
 from crackfront.surfaces.written_units import prefixed
 
@@ -93,7 +93,7 @@ class Measurement:
     """Radius of the tip, and wavelength below which it shapes what it records; 0 where there is
     none. (Units: m)"""
     tip_is_assumed: bool = False
-    """Whether its radius is that of a tip of which nothing is known."""
+    """Whether the radius of the tip is assumed, because nothing is known of it."""
     channel: str = ""
     """Name of the channel in the file, and which of how many of heights it is."""
     levelling: str = ""
@@ -127,7 +127,7 @@ class Measurement:
         """Ln of the largest e_el over the recorded one, as the tip does not reach into valleys."""
         deviation = self.heights - np.mean(self.heights)
         skewness = np.mean(deviation**3) / np.mean(deviation**2) ** 1.5
-        shapes = self.tip_wavelength > 2 * max(self.pixels)  # waves that the pixels would hold
+        shapes = self.tip_wavelength > 2 * max(self.pixels)  # waves that the pixels resolve
         return _HIDDEN if shapes and skewness < _DEEP else 0.0
 
 
@@ -147,46 +147,46 @@ def read_measurements(
     if options is None or isinstance(options, ReadingOptions):
         options = [options or ReadingOptions()] * len(paths)
     pairs = zip(paths, options, strict=True)
-    found = tuple(one for path, given in pairs for one in _measurements(path, given))
-    spreads = [float(np.std(one.heights)) for one in found]
-    for (first, one), (second, other) in itertools.combinations(
-        zip(found, spreads, strict=True), 2
+    measurements = tuple(item for path, record in pairs for item in _measurements(path, record))
+    spreads = [float(np.std(item.heights)) for item in measurements]
+    for (first, spread), (second, second_spread) in itertools.combinations(
+        zip(measurements, spreads, strict=True), 2
     ):
         is_alike = first.heights.shape == second.heights.shape
-        is_alike = is_alike and abs(one - other) <= _ROUNDING * one
+        is_alike = is_alike and abs(spread - second_spread) <= _ROUNDING * spread
         is_copy = (first.checksum, first.channel) == (second.checksum, second.channel)
-        if is_copy or (is_alike and np.std(second.heights - first.heights) <= _ROUNDING * one):
+        if is_copy or (is_alike and np.std(second.heights - first.heights) <= _ROUNDING * spread):
             raise ValueError(
-                f"{second.path} holds the heights of {first.path}; a measurement counts once"
+                f"{second.path} has the heights of {first.path}; a measurement counts once"
             )
-    return found
+    return measurements
 
 
 def _measurements(path: Path, options: ReadingOptions) -> Iterator[Measurement]:
-    """Measurement of one file, or those of a surface in a container that can be used."""
-    refuse_unreadable(path)
+    """Measurement of one file, or usable measurements of a surface in a container."""
+    check_readable(path)
     surfaces = contained_surfaces(path)
     if not surfaces:
         if options.surface is not None:
-            raise ValueError(f"{path} is no container of surfaces; leave --surface out")
+            raise ValueError(f"{path} is not a container of surfaces; leave --surface out")
         yield _measurement(path, options)
         return
     members = surface_of(path, surfaces, options.surface).topographies
-    found: list[Measurement] = []
+    usable: list[Measurement] = []
     unusable: list[str] = []
     with unpacked(path, members) as files:
         for member, file in zip(members, files, strict=True):
             shown = path / member.shown
             try:
-                one = _measurement(file, _member_options(file, member, options), member)
+                measurement = _measurement(file, _member_options(file, member, options), member)
             except ValueError as error:
                 unusable.append(str(error).replace(str(file), str(shown)))
             else:
-                found.append(replace(one, path=shown))
-    if not found:
+                usable.append(replace(measurement, path=shown))
+    if not usable:
         raise ValueError(unusable[0])
-    yield replace(found[0], unusable=tuple(unusable))
-    yield from found[1:]
+    yield replace(usable[0], unusable=tuple(unusable))
+    yield from usable[1:]
 
 
 def _member_options(
@@ -279,7 +279,8 @@ def _used_part(
                 f"{path}: the crop leaves fewer than {_FEWEST_POINTS} points along a side; widen it"
             )
     size = tuple(
-        side * kept / count for side, kept, count in zip(size, heights.shape, counts, strict=True)
+        side * part_count / count
+        for side, part_count, count in zip(size, heights.shape, counts, strict=True)
     )
     impossible, sentences = outliers(heights)
     heights = np.ma.array(np.ma.getdata(heights), mask=np.ma.getmaskarray(heights) | impossible)
@@ -292,11 +293,11 @@ def _used_part(
             f"{_MOST_MISSING:.0%} are too many to interpolate, so use a part with "
             "--crop, or measure again"
         )
-    known = np.ma.compressed(heights)
-    rms, span = float(np.std(known)), float(np.ptp(known))
+    present = np.ma.compressed(heights)
+    rms, span = float(np.std(present)), float(np.ptp(present))
     if not span > 0:
-        raise ValueError(f"{path}: all heights are equal; a smooth surface has no spectrum")
-    if not are_possible_heights(known, size):
+        raise ValueError(f"{path}: all heights are equal; a smooth surface lacks a spectrum")
+    if not are_possible_heights(present, size):
         raise ValueError(
             f"{path}: the heights vary by {prefixed('m', rms)} rms and span {prefixed('m', span)} "
             f"on {shown_sides(size)}, which cannot be; their unit is wrong, so name the right "
@@ -311,9 +312,9 @@ def _tip(
     """Radius of the tip of a scan, 0 where it has none, and whether it is assumed (Units: m)."""
     if options.tip_radius is not None:
         return options.tip_radius, False
-    stated = _instrument_length(path, scan.topography, "tip_radius", member)
-    if stated is not None:
-        return stated, False
+    radius = _instrument_length(path, scan.topography, "tip_radius", member)
+    if radius is not None:
+        return radius, False
     is_assumed = scan.format in _SCANNING_PROBES
     return (_TIP if is_assumed else 0.0), is_assumed
 
@@ -322,16 +323,16 @@ def _instrument_length(
     path: Path, raw: Any, name: InstrumentLength, member: ContainedMeasurement | None
 ) -> float | None:
     """A length that a file states of its instrument, or else its container (Units: m)."""
-    found = raw.info.get("instrument", {}).get("parameters", {}).get(name)
-    if found:
-        return in_metres(found["unit"], found["value"])[0]
+    length = raw.info.get("instrument", {}).get("parameters", {}).get(name)
+    if length:
+        return in_metres(length["unit"], length["value"])[0]
     return None if member is None else stated_length(path, member, name)
 
 
 def _trusted_wavelengths(
     path: Path, level: Any, size: tuple[float, ...], resolution: float
 ) -> tuple[float, float]:
-    """Wavelengths that points, resolution and sides allow to trust, refused where they are few."""
+    """Wavelengths that points, resolution and sides allow to trust; ValueError if they are few."""
     shortest = _PIXELS_PER_WAVE * max(np.divide(size, level.nb_grid_pts).tolist())
     shortest = max(shortest, resolution)
     longest = min(size) / _WAVES_PER_SIDE
@@ -348,35 +349,35 @@ def _masked(
     path: Path, options: ReadingOptions, counts: tuple[int, ...], size: tuple[float, ...]
 ) -> PointMask:
     """Points that the levelling leaves out."""
-    found = np.zeros(counts, dtype=bool)
+    is_masked = np.zeros(counts, dtype=bool)
     for mask in options.mask:
         if not isinstance(mask, Path):
-            found[_slices(path, "mask", mask, counts, size)] = True
+            is_masked[_slices(path, "mask", mask, counts, size)] = True
             continue
         numbers = array_of(mask)
         if numbers.shape != counts:
-            given, needed = (" x ".join(map(str, shape)) for shape in (numbers.shape, counts))
+            mask_points, needed = (" x ".join(map(str, shape)) for shape in (numbers.shape, counts))
             raise ValueError(
-                f"mask {mask} has {given} points and {path} {needed}; a mask has a number for each "
-                "point, not zero where the levelling leaves it out"
+                f"mask {mask} has {mask_points} points and {path} {needed}; a mask has a number "
+                "for each point, not zero where the levelling leaves it out"
             )
-        found |= numbers != 0
-    return found
+        is_masked |= numbers != 0
+    return is_masked
 
 
 def _slices(
-    path: Path, what: str, region: Region, counts: tuple[int, ...], size: tuple[float, ...]
+    path: Path, option: str, region: Region, counts: tuple[int, ...], size: tuple[float, ...]
 ) -> tuple[slice, ...]:
     """Slices of the points within a region of a scan."""
     if len(region) != len(counts):
         raise ValueError(
-            f"{path} has {counted(len(counts), 'dimension')} and the {what} "
+            f"{path} has {counted(len(counts), 'dimension')} and the {option} "
             f"{len(region)}; name both ends along each, as in 2um:8um,0um:5um"
         )
     for (_, high), side in zip(region, size, strict=True):
         if high > side * (1 + 1e-9):
             raise ValueError(
-                f"{path} ends at {prefixed('m', side)} and the {what} at {prefixed('m', high)}; "
+                f"{path} ends at {prefixed('m', side)} and the {option} at {prefixed('m', high)}; "
                 "name ends within the scan"
             )
     return tuple(

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from crackfront.core.arguments import regular_file
-from crackfront.core.resources import memory_at_hand, refuse_beyond_memory
+from crackfront.core.resources import check_memory, memory_at_hand
 
 _BYTES_PER_POINT = 100
 """Memory that the analysis of a map takes for a point: heights, transforms, wavevectors."""
@@ -17,15 +17,15 @@ LARGEST_FILE = 0.125
 """Largest file in parts of the memory: its points need several times what they take there."""
 
 
-def refuse_unreadable(path: Path) -> None:
-    """Raise where a path is no regular file, or one that is empty or larger than the memory."""
+def check_readable(path: Path) -> None:
+    """Raise if a path is not a regular file, or the file is empty or larger than the memory."""
     if not regular_file(path, LARGEST_FILE * memory_at_hand()).stat().st_size:
         raise ValueError(f"{path} is empty; export it from the instrument again")
 
 
-def refuse_too_many_points(path: Path, counts: Sequence[int]) -> None:
-    """Raise where a map has more points than the memory holds, before any of them is read."""
-    refuse_beyond_memory(
+def check_points(path: Path, counts: Sequence[int]) -> None:
+    """Raise if a map has more points than fit in memory, before any of them is read."""
+    check_memory(
         f"{path}, which claims {' x '.join(map(str, counts))} points,",
         _BYTES_PER_POINT * math.prod(map(float, counts)),
         "export a part of the map, or with fewer points",

@@ -30,18 +30,18 @@ _MOST_HEIGHT = 10.0
 def units_and_sides(
     path: Path, name: str, channel: Any, options: ReadingOptions
 ) -> tuple[dict[str, Any], tuple[float, ...] | None]:
-    """Unit and sides that options add to a file; sides in metres if those of the file are wrong."""
+    """Unit and sides that options add to a file; sides in metres if the file states wrong ones."""
     unit, size = channel.unit, channel.physical_sizes
     has_sides = is_sized(channel)
-    if unit is not None and has_sides and not _are_possible(stated := in_metres(unit, *size)):
+    if unit is not None and has_sides and not _are_possible(stated_sides := in_metres(unit, *size)):
         if options.size is None or options.unit is None:
             raise ValueError(
-                f"{path} states sides of {shown_sides(stated)}, which no instrument measures; its "
-                "unit is wrong, so name the sides, as in --size "
-                f"{','.join(f'{side:g}' for side in stated)} --unit um"
+                f"{path} states sides of {shown_sides(stated_sides)}, which no instrument "
+                "measures; its unit is wrong, so name the sides, as in --size "
+                f"{','.join(f'{side:g}' for side in stated_sides)} --unit um"
             )
         named = length_unit("--unit", options.unit)
-        return {}, _named_sides(path, _sides(path, options.size, len(stated)), named)
+        return {}, _named_sides(path, _sides(path, options.size, len(stated_sides)), named)
     added: dict[str, Any] = {}
     if unit is None:
         if options.unit is None:
@@ -77,18 +77,18 @@ def _sides_with_one(
 
     ValueError, of one sentence, where no sides are named, or others than the one that is stated.
     """
-    stated, *others = channel.physical_sizes
-    if others:
+    side, *further = channel.physical_sizes
+    if further:
         raise ValueError(
-            f"{path} holds a line and states the sides of a map; write one side in its head"
+            f"{path} contains a line and states the sides of a map; write one side in its head"
         )
-    problem = f"{path} states one side of its map, {stated:g} {unit}"
-    advice = f"name both in {unit}, as in --size {stated:g},{stated:g}"
+    problem = f"{path} states one side of its map, {side:g} {unit}"
+    advice = f"name both in {unit}, as in --size {side:g},{side:g}"
     if options.size is None:
         raise ValueError(f"{problem}, and not the other; {advice}")
     named = _sides(path, options.size, channel.dim)
-    is_same = math.isclose(named[0], stated, rel_tol=_SAME_SIDE)
-    if not is_same and _are_possible(in_metres(unit, stated)):
+    is_same = math.isclose(named[0], side, rel_tol=_SAME_SIDE)
+    if not is_same and _are_possible(in_metres(unit, side)):
         raise ValueError(f"{problem}, and --size names {named[0]:g} {unit} for it; {advice}")
     return _named_sides(path, named, unit)
 
@@ -103,24 +103,24 @@ def length_unit(option: str, unit: str) -> str:
         for name, value in units.items():
             if math.isclose(value, metres, rel_tol=1e-9) and not unit.strip()[0].isdigit():
                 return str(name)
-    raise ValueError(f"{option} {unit} is no unit of length; name one, as in um")
+    raise ValueError(f"{option} {unit} is not a unit of length; name one, as in um")
 
 
 def _sides(path: Path, named: tuple[float, ...], n_side: int) -> tuple[float, ...]:
     """Sides of a scan that are named, one number for a square."""
-    found = named * n_side if len(named) == 1 else named
-    if len(found) != n_side:
+    sides = named * n_side if len(named) == 1 else named
+    if len(sides) != n_side:
         raise ValueError(
             f"{path} has {counted(n_side, 'dimension')} and the size that is named "
             f"{len(named)}; name one length for each, as in --size 50,40, or one for a square"
         )
-    return found
+    return sides
 
 
 def are_possible_heights(heights: np.ndarray[Any, Any], sides: tuple[float, ...]) -> bool:
     """Whether an instrument measures heights on such sides, all in metres."""
-    known = np.ma.compressed(np.ma.masked_invalid(heights))
-    return bool(np.std(known) >= _LEAST_HEIGHT and np.ptp(known) <= _MOST_HEIGHT * max(sides))
+    present = np.ma.compressed(np.ma.masked_invalid(heights))
+    return bool(np.std(present) >= _LEAST_HEIGHT and np.ptp(present) <= _MOST_HEIGHT * max(sides))
 
 
 def _are_possible(sides: tuple[float, ...]) -> bool:
@@ -129,14 +129,14 @@ def _are_possible(sides: tuple[float, ...]) -> bool:
 
 
 def _named_sides(path: Path, sides: tuple[float, ...], unit: str) -> tuple[float, ...]:
-    """Sides in metres, refused where no instrument measures them."""
-    found = in_metres(unit, *sides)
-    if not _are_possible(found):
+    """Sides in metres; ValueError if no instrument measures them."""
+    lengths = in_metres(unit, *sides)
+    if not _are_possible(lengths):
         raise ValueError(
-            f"{path} cannot have sides of {shown_sides(found)}: instruments measure from "
+            f"{path} cannot have sides of {shown_sides(lengths)}: instruments measure from "
             f"{shown_sides(_SIDES[:1])} to {shown_sides(_SIDES[1:])}; check --size and --unit"
         )
-    return found
+    return lengths
 
 
 def shown_sides(sides: tuple[float, ...]) -> str:

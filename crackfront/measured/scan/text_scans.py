@@ -13,11 +13,11 @@ from crackfront.measured.scan.points import (
     HeadKind,
     Points,
     are_points,
+    check_no_positions,
     point_columns,
     read_points,
-    refuse_positions,
 )
-from crackfront.measured.scan.psd_recognition import refuse_spectrum
+from crackfront.measured.scan.psd_recognition import check_no_spectrum
 from crackfront.measured.scan.sides import length_unit
 from crackfront.measured.tables.headings import Heading
 from crackfront.measured.tables.number_tables import NumberTables
@@ -47,22 +47,22 @@ def text_reader(path: Path, text: NumberTables) -> Any:
     kind = next((name for begin, name in _HEADS.items() if first_line.startswith(begin)), None)
     headings: tuple[Heading, ...] = ()
     if kind in (None, "comments"):
-        refuse_spectrum(path, text)
+        check_no_spectrum(path, text)
         if places := point_columns(path, table.headings):
             table = table.with_columns(places)
         headings = table.headings
     if kind == "dektak" or are_points(table):
-        stated = _stated_head(path, text, kind)
-        if stated is not None:
-            text.refuse_several()
-            unit, factor, info = stated
+        head = _stated_head(path, text, kind)
+        if head is not None:
+            text.check_single_table()
+            unit, factor, info = head
             if unit is None:
                 unit, factor = _stated_units(path, headings)
             points = read_points(table, kind)
             grid = Grid("default", Points(points.heights * (factor or 1.0), points.size))
             return GridsReader("xyz", [grid], unit, info)
     for each in text.tables:
-        refuse_positions(each)
+        check_no_positions(each)
     with errors_as_sentences(path, "text"):
         return library_part("IO").AscReader(io.StringIO(text.plain_text))
 
@@ -102,9 +102,9 @@ def _stated_units(path: Path, headings: Sequence[Heading]) -> tuple[str | None, 
             for heading in headings
         )
         raise ValueError(
-            f"{path}: its columns are {shown}; name those of the points x, y and z, each with its "
-            "unit of length and x and y in the same, as in x (um),y (um),z (nm), which options do "
-            "not replace"
+            f"{path}: its columns are {shown}; name the columns of the points x, y and z, each "
+            "with its unit of length and x and y in the same, as in x (um),y (um),z (nm), which "
+            "options do not replace"
         )
     place, height = units[0], units[-1]
     return place, in_metres(height, 1.0)[0] / in_metres(place, 1.0)[0]

@@ -15,7 +15,7 @@ _NUMBER = re.compile(r"[-+]?(?:\d+[.,]?\d*|[.,]\d+)(?:[eE][-+]?\d+)?")
 """A number with a decimal point or comma."""
 
 _WITHOUT_VALUE = re.compile(r"(?:nan|n/?a|null|bad|infinite|[-+]?inf(?:inity)?|-+)?", re.IGNORECASE)
-"""A cell that says that there is no value."""
+"""A cell that says that the value is missing."""
 
 _ROW = re.compile(r'(?:[\s\d.,;+\-eE"]++|\b(?:nan|bad|inf(?:inite|inity)?)\b)*+', re.IGNORECASE)
 """A line of nothing but numbers, separators and missing values; possessive, so of linear cost."""
@@ -35,7 +35,7 @@ def is_number(cell: str) -> bool:
 
 
 def is_without_value(cell: str) -> bool:
-    """Whether a cell is empty, or says that there is no value, as nan or -."""
+    """Whether a cell is empty, or says that the value is missing, as nan or -."""
     return _WITHOUT_VALUE.fullmatch(cell) is not None
 
 

@@ -52,8 +52,8 @@ def decoded(path: Path) -> str | None:
         content = start + file.read()
     if not (marked or wide) and len(content.translate(None, _BINARY)) < len(content):
         return None
-    text, stated = None, marked or wide
-    for name in (stated,) if stated else ("utf-8", "cp1252", "latin-1"):
+    text, encoding = None, marked or wide
+    for name in (encoding,) if encoding else ("utf-8", "cp1252", "latin-1"):
         with suppress(UnicodeDecodeError):
             text = content.decode(name)
             break
@@ -72,7 +72,7 @@ def decoded(path: Path) -> str | None:
 def _encoding_of_nulls(start: bytes) -> str | None:
     """UTF-16 without a mark, by zeros in every second byte and nowhere else."""
     even, odd = start[::2], start[1::2]
-    for zeros, others, name in ((odd, even, "utf-16-le"), (even, odd, "utf-16-be")):
-        if len(start) > 3 and not others.count(0) and zeros.count(0) > 0.9 * len(zeros):
+    for zeros, letters, name in ((odd, even, "utf-16-le"), (even, odd, "utf-16-be")):
+        if len(start) > 3 and not letters.count(0) and zeros.count(0) > 0.9 * len(zeros):
             return name
     return None

@@ -48,7 +48,7 @@ def table_of_numbers(path: Path) -> Table:
     Raises
     ------
     ValueError
-        If the file is not a text or has no such row, or a row has more cells than headings.
+        If the file is not a text or lacks such a row, or a row has more cells than headings.
     OSError
         If the file cannot be opened.
     """
@@ -160,7 +160,7 @@ def _layout(path: Path, lines: Sequence[str]) -> tuple[str | None, int]:
                 return separator, place
             break
     raise ValueError(
-        f"{path} has no line with two numbers or more below a line of headings; write one heading "
+        f"{path} lacks a line with two numbers or more below a line of headings; write one heading "
         "for each column, as in Force (uN),Contact radius (um), and semicolons between cells with "
         "decimal commas"
     )

@@ -71,7 +71,7 @@ def _name_and_unit(text: str) -> tuple[str, str]:
 
 def is_measured(unit: str) -> bool:
     """Whether a text is a unit of a quantity that tables have."""
-    return unit not in _WITHOUT_UNIT and any(is_unit(unit, one) for one in _DIMENSIONS)
+    return unit not in _WITHOUT_UNIT and any(is_unit(unit, dimension) for dimension in _DIMENSIONS)
 
 
 def headings_above(

@@ -39,7 +39,7 @@ _FEWEST_ROWS = 8
 _MOST_COLUMNS = 8
 """Columns of the widest table whose headings are read; wider ones are maps."""
 
-_ADVICE = "export the scan again, or write nan where there is no value"
+_ADVICE = "export the scan again, or write nan where a value is missing"
 
 _Rows = list[tuple[int, list[str]]]
 """Rows of numbers: their lines, from 0, and their cells."""
@@ -79,7 +79,7 @@ class NumberTables:
         """The whole text with blanks between cells, points as decimals, and nan for no value."""
         return "\n".join([*_plain_lines(self.tables), *self.below, ""])
 
-    def refuse_several(self) -> None:
+    def check_single_table(self) -> None:
         """Raise if another table follows the main one."""
         place = self.tables.index(self.main_table) + 1
         for table in self.tables[place : place + 1]:
@@ -111,7 +111,7 @@ def number_tables(path: Path) -> NumberTables | None:
     Returns
     -------
     NumberTables or None
-        None if the file is not a text, or has no row of numbers.
+        None if the file is not a text, or lacks a row of numbers.
 
     Raises
     ------
@@ -131,7 +131,7 @@ def number_tables(path: Path) -> NumberTables | None:
         return None
     numbers = ((place + 1, cells) for place, cells in enumerate(table) if is_row[place])
     sign = decimal_sign(path, numbers)
-    _refuse_damaged_rows(path, lines, table, is_row)
+    _check_rows(path, lines, table, is_row)
     tables, start = [], 0
     for rows in _blocks(lines, table, is_row):
         first, last = rows[0][0], rows[-1][0]
@@ -224,7 +224,7 @@ def _with_point(path: Path, place: int, line: str, sign: str | None) -> str:
     )
 
 
-def _refuse_damaged_rows(
+def _check_rows(
     path: Path, lines: Sequence[str], table: Sequence[Sequence[str]], is_row: Sequence[bool]
 ) -> None:
     """Raise at the first line that is meant as a row of numbers and is not one."""

@@ -29,7 +29,7 @@ from crackfront.core.field.fields import TileField, first_place, last_place
 from crackfront.core.geometry.base import Geometry
 from crackfront.core.geometry.line import Line, line_field
 from crackfront.core.outcome import Direction, Status
-from crackfront.core.resources import refuse_beyond_memory
+from crackfront.core.resources import check_memory
 from crackfront.core.solver.relax import Solver
 from crackfront.core.spectrum import Spectrum
 from crackfront.core.units import WORK_OF_ADHESION
@@ -56,13 +56,13 @@ if TYPE_CHECKING:
     from crackfront.simulate.simulation import Simulation
 
 _BEHIND = 1.3
-"""Pinning force of the first front over that of second-order theory; none is larger."""
+"""Largest pinning force of a first front, relative to second-order theory."""
 
 
 SpringUnit = Literal["correlation_length", "larkin_length"]
 
 LAW_LENGTH = 10.0
-"""Length of a front over that of its springs on which the law of k was measured.
+"""Length of the fronts on which the law of k was measured, relative to their springs.
 
 On a shorter front k is larger: the front is pinned as a whole.
 """
@@ -72,7 +72,7 @@ _DEPTH, _ROUGHNESS = 1.43, 0.4
 over all spectra, amplitudes and springs of `config/line.yaml`, within a fifth."""
 
 _LEAD_IN = 3.0
-"""Correlation lengths after which a front has forgotten its start, beside multiples of its rms."""
+"""Correlation lengths after which a front has forgotten its start, in addition to its roughness."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,8 +100,10 @@ class LineSchedule(Schedule, OnSprings):
     def __post_init__(self) -> None:
         for name in ("spring", "length", "period", "lead_in", "step"):
             if not 0 < getattr(self, name) < math.inf:
-                what = name.replace("_", "-")
-                raise ValueError(f"{what} is {getattr(self, name)}; it must be positive and finite")
+                option = name.replace("_", "-")
+                raise ValueError(
+                    f"{option} is {getattr(self, name)}; it must be positive and finite"
+                )
 
     @property
     def n_period(self) -> int:
@@ -170,9 +172,9 @@ class LineSchedule(Schedule, OnSprings):
         directions: tuple[Direction, Direction] = (1, -1)
         loads: list[Load] = []
         for direction in directions:
-            first, *others = self.loads[::direction].tolist()
+            first, *further = self.loads[::direction].tolist()
             start = np.full(field.geometry.n_site, first - direction * behind)
-            loads += [Load(first, direction, start), *(Load(place, direction) for place in others)]
+            loads += [Load(first, direction, start), *(Load(place, direction) for place in further)]
         recorder.run(field, np.full(field.geometry.n_site, -behind), loads, solver)
         return recorder.record(Status.STEADY if recorder.status is Status.CONVERGED else None)
 
@@ -255,7 +257,7 @@ class LineLoad(SurfaceLoads):
             uncorrelated=self.uncorrelated,
         )
 
-    def refuse_unresolved(self, simulation: Simulation) -> None:
+    def check_resolved(self, simulation: Simulation) -> None:
         """Raise ValueError if a Larkin length has few sites, or a period few states."""
         sizes, schedule = simulation.resolution, simulation.schedule
         name, energy = simulation.spectrum_name, simulation.elastic_energy
@@ -280,7 +282,7 @@ def front_rms(force_correlation_length: float, size: float) -> float:
 
 
 def _points(least: float) -> int:
-    """Points of a side, an even product of small primes; refused where no machine holds them."""
+    """Points of a side, an even product of small primes; TooLargeError above any memory."""
     remedy = "lower length, period, springs or pixels_per_cutoff"
-    refuse_beyond_memory(f"sides of {least:.2g} points", 32.0 * least, remedy, anywhere=True)
+    check_memory(f"sides of {least:.2g} points", 32.0 * least, remedy, anywhere=True)
     return 2 * int(next_fast_len(math.ceil(least / 2 * (1 - 1e-12)), real=True))

@@ -85,9 +85,9 @@ class SphereSchedule(Schedule, Pressed):
         """Sizes of the circles of the steady window."""
         low, high = steady.lowest_radius, steady.highest_radius
         cutoffs = math.pi * (low + high) / short_cutoff
-        apart = 1 + (high - low) / correlation_length
+        n_independent = 1 + (high - low) / correlation_length
         counts = steady.n_approach, steady.n_retraction
-        approach, retraction = (cutoffs * min(count, apart) for count in counts)
+        approach, retraction = (cutoffs * min(count, n_independent) for count in counts)
         return approach, retraction, 2 * math.pi * high
 
 
@@ -95,7 +95,7 @@ class SphereSchedule(Schedule, Pressed):
 class FullCycle(SphereSchedule, LoadSchedule):
     """A sphere from first contact to its largest penetration, and back to pull-off.
 
-    Parameters and refusals are those of :class:`crackfront.core.cycle.load_schedule.LoadSchedule`.
+    Parameters and errors are as in :class:`crackfront.core.cycle.load_schedule.LoadSchedule`.
     """
 
     load_name = "full cycle"

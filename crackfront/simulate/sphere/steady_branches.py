@@ -19,7 +19,7 @@ from crackfront.core.adhesion import FieldKind
 from crackfront.core.arrays import Array
 from crackfront.core.cycle.follow import Load
 from crackfront.core.cycle.record import CycleRecord, Recorder, columns
-from crackfront.core.cycle.touch import first_touch, refuse_outgrown
+from crackfront.core.cycle.touch import check_field_size, first_touch
 from crackfront.core.field.fields import Field, first_place, last_place
 from crackfront.core.field.rays import front_adhesion
 from crackfront.core.geometry.sphere import ContactState
@@ -77,8 +77,8 @@ class SteadySchedule(SphereSchedule):
     def __post_init__(self) -> None:
         for name in ("travel", "standard_error"):
             if not 0 < getattr(self, name) < math.inf:
-                what = f"steady {name.replace('_', ' ')}"
-                raise ValueError(f"{what} is {getattr(self, name)}; it must be positive")
+                option = f"steady {name.replace('_', ' ')}"
+                raise ValueError(f"{option} is {getattr(self, name)}; it must be positive")
         if not 0 <= self.start < self.max_penetration < math.inf:
             raise ValueError(
                 f"steady start is {self.start}; it must be 0 or more, and below the largest "
@@ -92,10 +92,10 @@ class SteadySchedule(SphereSchedule):
         requested standard error or the largest penetration is reached; the retraction from about
         its largest radius until it has left the radii over which the approach was steady, which a
         branch is once every site has travelled a correlation length. The status is `STEADY` where
-        both branches were measured. The energy that the first step of a branch dissipates has no
-        meaning and is NaN. ValueError if a smooth sphere would outgrow the field.
+        both branches were measured. The energy that the first step of a branch dissipates is
+        meaningless and NaN. ValueError if a smooth sphere would outgrow the field.
         """
-        refuse_outgrown(problem.field, self.max_penetration)
+        check_field_size(problem.field, self.max_penetration)
         loads = self._loads(problem, recorder)
         recorder.run(problem.field, first_touch(problem.field), loads, solver)
         return recorder.record(Status.STEADY if recorder.status is Status.CONVERGED else None)
@@ -116,11 +116,13 @@ class SteadySchedule(SphereSchedule):
                 continue
             steady.append(recorder.states[-1])
             shared.append(_circle_adhesion(field, recorder.states[-1].mean_radius))
-            known = columns(steady, ContactState)
-            own = own_part(known.apparent_work_of_adhesion, np.array(shared))
-            spread = standard_error(own, known.mean_radius, known.rms_radius, correlation_length)
-            wanted = self.standard_error * problem.elastic_energy
-            if len(steady) >= _FEWEST_TO_TURN and spread / math.sqrt(2) <= wanted:
+            states = columns(steady, ContactState)
+            front_part = own_part(states.apparent_work_of_adhesion, np.array(shared))
+            spread = standard_error(
+                front_part, states.mean_radius, states.rms_radius, correlation_length
+            )
+            requested = self.standard_error * problem.elastic_energy
+            if len(steady) >= _FEWEST_TO_TURN and spread / math.sqrt(2) <= requested:
                 break
         lowest = min((item.mean_radius for item in steady), default=math.inf)
         last = recorder.states[-1]
@@ -156,10 +158,10 @@ class SteadySchedule(SphereSchedule):
 
 
 def integral_breadth(kind: FieldKind, spectrum: Spectrum) -> float:
-    """Mean of q times mean of 1/q in the variance of w_loc, relative to those of a flat surface.
+    """Mean of q times mean of 1/q in the variance of w_loc, relative to a flat spectrum.
 
-    The mean of w_loc along a front varies by its longest waves, the mean of 1/q, and the
-    correlation length is that of the mean of q.
+    The longest waves, and thus the mean of 1/q, decide how the mean of w_loc along a front varies;
+    the mean of q decides the correlation length.
     """
     order = 0.5 if kind == "roughness" else 0.0
     flat = SelfAffineSpectrum(1.0, 1.0, hurst=1.0)

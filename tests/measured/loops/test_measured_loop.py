@@ -25,7 +25,7 @@ def test_arrays_and_their_table_are_the_same_loop(tmp_path):
     [
         ({"force": np.zeros(50), "displacement": np.linspace(0, 1e-6, 50)}, "no row is in contact"),
         ({"force": np.zeros(50), "radius": np.zeros(50)}, "no row is in contact"),
-        ({"force": np.full(50, np.nan), "radius": np.ones(50)}, "force has no finite value"),
+        ({"force": np.full(50, np.nan), "radius": np.ones(50)}, "force lacks finite values"),
         ({"force": np.zeros(50)}, "needs two of"),
         ({"force": np.zeros(50), "radius": np.ones(49)}, "not of one length"),
     ],

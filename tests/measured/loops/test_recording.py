@@ -104,7 +104,7 @@ def test_columns_are_named_and_units_given_by_options(tmp_path):
 @pytest.mark.parametrize(
     ("content", "sentence"),
     [
-        (table(head=("Force", "Radius (um)")), "'Force' has no unit.*--force-unit mN"),
+        (table(head=("Force", "Radius (um)")), "'Force' lacks a unit.*--force-unit mN"),
         (table(head=("Kanal 1", "Kanal 2")), "has 0; its headings are 'Kanal 1', 'Kanal 2'"),
         (table(head=("Force (mN)", "Load (mN)")), "2 columns of force"),
         (table().replace("60.5", "60.x"), "line 3: '60.x' in column 2"),

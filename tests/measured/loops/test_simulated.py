@@ -131,7 +131,7 @@ def test_a_sphere_is_not_named_twice(path):
 def test_cycles_without_works_of_adhesion_are_refused_with_what_to_do(cycle):
     with pytest.raises(ValueError, match="states neither a correlation length nor the spectrum"):
         measured_loop(cycle.drop_vars("correlation_length"))
-    with pytest.raises(ValueError, match=r"no works of adhesion: .*penetrate deeper"):
+    with pytest.raises(ValueError, match=r"lacks works of adhesion: .*penetrate deeper"):
         measured_loop(cycle.isel(step=slice(0, 8)))
     surface = cf.random_surface(elastic_energy=0.03, seed=3, **FLAT)
     straight = cf.run_loop(cf.straight_front(surface, spring=2.0), loads=[0, 2, 0], step=0.5)

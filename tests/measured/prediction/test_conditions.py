@@ -75,7 +75,7 @@ def test_what_would_meet_a_failing_condition_meets_it(surface, scales, reach, fa
         for word, name in changes.items():
             if word in part and "roughness" not in part:
                 number = part.split("above " if "above" in part else "below ")[1].split(", not")[0]
-                value = si_value(number, units[word], what=word)
+                value = si_value(number, units[word], name=word)
                 wanted = value * (1.02 if "above" in part else 0.98)
                 other = conditions(surface, replace(scales, **{name: wanted}), reach)[failing]
                 assert other.severity != "fails", part

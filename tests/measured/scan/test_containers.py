@@ -178,10 +178,10 @@ def test_options_hold_where_the_container_says_nothing(tmp_path, rng):
 
 
 def test_what_is_no_container_or_a_damaged_one_is_refused_with_a_sentence(tmp_path, rng, scan):
-    with pytest.raises(ValueError, match="no container of surfaces; leave --surface out"):
+    with pytest.raises(ValueError, match="not a container of surfaces; leave --surface out"):
         read_measurements([scan], ReadingOptions(surface="0"))
     lacking = container(tmp_path / "lacking.zip", {"film": [entry("a")]}, {})
-    with pytest.raises(ValueError, match=r"lacks 'a.txt', which it says that it holds"):
+    with pytest.raises(ValueError, match=r"lacks 'a.txt', which it lists"):
         read_measurements([lacking])
     empty = container(tmp_path / "empty.zip", {"film": []}, {})
     with pytest.raises(ValueError, match=r"meta.yml does not say .*: surfaces.0.topographies"):

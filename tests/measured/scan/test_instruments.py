@@ -90,16 +90,16 @@ def test_several_arrays_of_which_none_or_two_are_named_as_heights_are_refused(
     else:
         np.savez(path, **arrays)
     message = refusal(path, **PLAIN)
-    assert "holds 2 arrays, and their names do not say which one has the heights" in message
+    assert "contains 2 arrays, and their names do not say which one has the heights" in message
     assert all(f"'{name}'" in message for name in names)
     assert read(path, channel=names[1], **PLAIN).channel == f"'{names[1]}', 1 of 2"
     assert not any(one.is_default for one in cf.list_channels(path))
     masked = write_arrays(tmp_path / "scan.h5", surface=1e6 * noise)
-    assert "holds 2 arrays" in refusal(masked, mask=path, **PLAIN)
+    assert "contains 2 arrays" in refusal(masked, mask=path, **PLAIN)
 
 
 def test_a_file_without_a_map_is_refused(tmp_path, noise):
-    assert "holds no array" in refusal(write_arrays(tmp_path / "a.h5", x=noise[0]), **PLAIN)
+    assert "lacks an array" in refusal(write_arrays(tmp_path / "a.h5", x=noise[0]), **PLAIN)
 
 
 @pytest.mark.parametrize("mode", ["F", "I;16"])
@@ -141,11 +141,11 @@ def test_channels_are_listed_and_those_of_other_quantities_refused(monkeypatch, 
         "0 'Default' (height), 128 x 128 points, default"
     ]
     monkeypatch.setattr(module.ChannelInfo, "unit", property(lambda channel: ("nm", None)))
-    assert "channel 'Default' holds another quantity, no heights; export" in refusal(scan)
+    assert "channel 'Default' contains another quantity, not heights; export" in refusal(scan)
     kind = property(lambda channel: module.DataKind.PHASE)
     monkeypatch.setattr(module.ChannelInfo, "data_kind", kind)
     monkeypatch.setattr(module.ChannelInfo, "unit", "m")
-    assert "channel 'Default' holds phase, no heights" in refusal(scan)
+    assert "channel 'Default' contains phase, not heights" in refusal(scan)
 
 
 @pytest.mark.usefixtures("few_draws")
@@ -172,7 +172,9 @@ def test_heights_have_a_unit_of_their_own_where_none_is_stated_or_it_cannot_be(t
         assert one.size == pytest.approx((20e-6, 20e-6))
         np.testing.assert_allclose(one.heights, found[0].heights, rtol=1e-9)
     assert np.std(found[0].heights) == pytest.approx(np.std(noise), rel=0.1)
-    assert "--height-unit kg is no unit of length" in refusal(nanometres, height_unit="kg", **PLAIN)
+    assert "--height-unit kg is not a unit of length" in refusal(
+        nanometres, height_unit="kg", **PLAIN
+    )
     path.write_text(path.read_text().replace("units: µm", "units: nm"))
     assert "states heights in nm, which are possible; leave" in refusal(path, height_unit="um")
 
@@ -188,7 +190,7 @@ def test_units_and_sizes_that_a_file_lacks_must_be_named(tmp_path, heights, scan
     np.savetxt(path, 1e6 * heights)
     assert "read as asc, states no unit of length; name it, as in --unit um" in refusal(path)
     assert "states no size" in refusal(path, unit="um")
-    assert "--unit kg is no unit of length" in refusal(path, unit="kg", size=(20.0, 20.0))
+    assert "--unit kg is not a unit of length" in refusal(path, unit="kg", size=(20.0, 20.0))
     assert "2 dimensions" in refusal(path, unit="um", size=(20.0, 20.0, 20.0))
     [given] = read_measurements([path], ReadingOptions(**PLAIN))
     assert given.size == pytest.approx((20e-6, 20e-6))
@@ -211,7 +213,7 @@ def test_a_map_of_which_one_side_is_stated_needs_both_by_name(tmp_path, heights,
         message = "20 um, and --size names 0.02 um for it; name both in um, as in --size 20,20"
         assert message in refusal(path, size="0.02")
     path.write_text("# Width: 20 um\n# Height: 20 um\n# Value units: um\n" + "1\n2\n4\n3\n" * 99)
-    assert "holds a line and states the sides of a map; write one side" in refusal(path)
+    assert "contains a line and states the sides of a map; write one side" in refusal(path)
 
 
 def test_units_and_sizes_that_a_file_states_are_not_overruled(scan):

@@ -72,7 +72,7 @@ def test_fill_values_are_missing_and_descending_coordinates_turned(tmp_path, noi
 def test_a_quantity_that_is_no_length_is_no_height(tmp_path, noise):
     both = {"a": (noise, "V"), "b": (1e6 * noise, "um")}
     assert read(modern(tmp_path / "scan.nc", both)).channel == "'b', 1 of 2"
-    assert "channel 'a' holds voltage" in refusal(tmp_path / "scan.nc", channel="a")
+    assert "channel 'a' contains voltage" in refusal(tmp_path / "scan.nc", channel="a")
     two = {"a": (noise, "um"), "b": (1e6 * noise, "um")}
     assert "do not say which one has the heights" in refusal(modern(tmp_path / "scan.nc", two))
     degrees = modern(tmp_path / "scan.nc", {"height": (noise, "m")}, "degrees_east")

@@ -174,7 +174,7 @@ def test_heads_without_any_unit_need_one(tmp_path, line):
     path = tmp_path / "line.csv"
     path.write_text("z,x\n" + "".join(f"{1e6 * z:.9f},{0.1 * i:.4f}\n" for i, z in enumerate(line)))
     assert "states no unit of length; name it, as in --unit um" in refusal(path)
-    assert "--unit 1um is no unit of length" in refusal(path, unit="1um")
+    assert "--unit 1um is not a unit of length" in refusal(path, unit="1um")
     found = read(path, unit="um", detrend="center")
     np.testing.assert_allclose(found.heights, line - line.mean(), atol=1e-14)
 

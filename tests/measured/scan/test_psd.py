@@ -256,7 +256,7 @@ def test_what_is_no_density_is_refused_with_a_sentence(tmp_path, text, options, 
 def test_a_density_is_never_taken_for_a_line_scan(tmp_path, text):
     path = tmp_path / "psd.csv"
     path.write_text(text, encoding="utf-8")
-    with pytest.raises(ValueError, match=r"holds a spectral density, no line scan: .* --psd"):
+    with pytest.raises(ValueError, match=r"contains a spectral density, not a line scan: .* --psd"):
         read(path, unit="um")
 
 

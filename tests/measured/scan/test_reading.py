@@ -86,8 +86,8 @@ def test_a_measurement_counts_once_under_any_name_in_any_unit(tmp_path, noise):
     np.savetxt(nanometres, 1e9 * noise.T, fmt="%.1f")
     nanometres.write_text(HEAD.replace("units: um", "units: nm") + nanometres.read_text())
     for other in (copy, nanometres):
-        assert f"{other} holds the heights of {path}; a measurement counts" in refusal(path, other)
-    with pytest.raises(ValueError, match=r"copy.txt holds the heights of .*scan.txt"):
+        assert f"{other} has the heights of {path}; a measurement counts" in refusal(path, other)
+    with pytest.raises(ValueError, match=r"copy.txt has the heights of .*scan.txt"):
         read_measurements([path, copy], [ReadingOptions(), ReadingOptions(detrend="center")])
     assert len(read_measurements([path, write_text(mirrored, noise[::-1])])) == 2
 

@@ -170,7 +170,7 @@ def test_a_head_that_contradicts_the_rows_is_refused_by_both_numbers(tmp_path, p
     path.write_text(head + plain[1].removeprefix(HEAD))
     assert "it has 48 rows, and its head says 64" in refusal(path)
     path.write_text(plain[1].replace("units: um", "units: V"))
-    assert "none of its channels has a unit of length" in refusal(path)
+    assert "all of its channels lack a unit of length" in refusal(path)
 
 
 def test_a_column_of_positions_alone_is_read_as_heights(tmp_path):

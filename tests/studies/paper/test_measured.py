@@ -62,7 +62,7 @@ def test_a_wrong_file_is_refused_with_its_line(tmp_path, text, sentence):
 
 
 def test_a_file_that_is_no_text_or_missing_is_refused(tmp_path):
-    with pytest.raises(PydanticCustomError, match="is no UTF-8 text; save it as UTF-8"):
+    with pytest.raises(PydanticCustomError, match="is not a text in UTF-8; save it as UTF-8"):
         read_measured(written(tmp_path, "length (µm)\n1\n", encoding="latin-1"), (LENGTH,))
     with pytest.raises(PydanticCustomError, match="cannot be read: No such file"):
         read_measured(tmp_path / "none.csv", (LENGTH,))
