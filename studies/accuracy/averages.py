@@ -86,8 +86,8 @@ class Coverage:
         """Half width of the interval of the total error, that of the truth included."""
         share = (1 + LEVEL) / 2
         statistical = stats.t.ppf(share, np.maximum(self.n_state - 1, 1)) * self.run_statistical
-        known = np.hypot(self.run_numerical, self.truth_error)
-        return np.hypot(statistical, stats.norm.ppf(share) * known)
+        systematic = np.hypot(self.run_numerical, self.truth_error)
+        return np.hypot(statistical, stats.norm.ppf(share) * systematic)
 
 
 def sampling_errors(
@@ -159,25 +159,27 @@ def held_out_coverage(
     numbers = range(HELD_OUT, HELD_OUT + n_realisation)
     exact = [measured_branches(scene, scene.reference, number) for number in numbers]
     truth = np.array([_steady(scene.simulation(scene.reference, number))[0] for number in numbers])
-    others = [np.delete(truth, row, axis=0) for row in range(n_realisation)]
-    of_others = np.array([rows.mean(axis=0) for rows in others])
-    scatter = np.array([rows.std(axis=0, ddof=1) for rows in others])
+    other_truths = [np.delete(truth, row, axis=0) for row in range(n_realisation)]
+    expected = np.array([rows.mean(axis=0) for rows in other_truths])
+    scatter = np.array([rows.std(axis=0, ddof=1) for rows in other_truths])
     # Cutoffs along the front, summed over its states.
     circumference = 2 * np.pi * float(exact[0].radius.mean())
     size = scene.penetrations.size * circumference / scene.spectrum.short_cutoff
-    found = []
+    coverages = []
     for error in requested:
         settings = scene.chosen_settings(error)
         simulations = [scene.simulation(settings, number) for number in numbers]
         branches = [measured_branches(scene, settings, number) for number in numbers]
         pairs = zip(branches, exact, strict=True)
         runs = np.array([_steady(simulation) for simulation in simulations])
-        found.append(
+        coverages.append(
             Coverage(
                 requested=error,
-                numerical=np.array([one.adhesion - other.adhesion for one, other in pairs]),
+                numerical=np.array(
+                    [branch.adhesion - reference.adhesion for branch, reference in pairs]
+                ),
                 numerical_stated=np.array(numerical_error(simulations[0], size)),
-                total=runs[:, 0] - of_others,
+                total=runs[:, 0] - expected,
                 run_numerical=runs[:, 1],
                 run_statistical=runs[:, 2],
                 n_state=runs[:, 3],
@@ -185,7 +187,7 @@ def held_out_coverage(
             )
         )
         progress(f"requested {error:g}: {n_realisation} surfaces")
-    return tuple(found)
+    return tuple(coverages)
 
 
 def _steady(simulation: Simulation) -> list[tuple[float, float]]:

@@ -248,8 +248,8 @@ def found_scan(kind: Kind, number: int) -> Found:
     key = _key(kind, number)
     rng = np.random.default_rng(np.random.SeedSequence(SEED, spawn_key=key))
     surface = (_lines if kind.is_line else _map)(kind, rng)
-    found = surface.half_derivative
-    return Found(found.each(lambda number: number / MEAN_SQUARE), surface)
+    half_derivative = surface.half_derivative
+    return Found(half_derivative.each(lambda number: number / MEAN_SQUARE), surface)
 
 
 def _key(kind: Kind, number: int) -> tuple[int, ...]:
@@ -266,8 +266,10 @@ def _map(kind: Kind, rng: np.random.Generator) -> MeasuredSurface:
     heights = gaussian_field(kind.truth(rng), whole, kind.tile * SIDE, rng)[::_FINER, ::_FINER]
     if kind.shaped:
         shaped = kind.shaped(heights / heights.std())
-        asked, found = (rough_adhesion(1e-9 * one, SIDE).e_el for one in (heights, shaped))
-        heights = shaped * math.sqrt(asked / found)
+        undistorted, distorted = (
+            rough_adhesion(1e-9 * values, SIDE).e_el for values in (heights, shaped)
+        )
+        heights = shaped * math.sqrt(undistorted / distorted)
     if kind.distortion in (_bow, _form, _holes):
         heights = heights[:N_POINT, :N_POINT]
     if kind.tip_radius:
@@ -292,25 +294,26 @@ def _lines(kind: Kind, rng: np.random.Generator) -> MeasuredSurface:
         return measured_surface(read_measurements(paths, ReadingOptions(unit="um")))
 
 
-def energy_table(found: Mapping[Kind, Sequence[Found]]) -> str:
+def energy_table(energies: Mapping[Kind, Sequence[Found]]) -> str:
     """e_el of all scans relative to the true one, and how often the intervals hold that."""
     rows = []
-    for kind, scans in found.items():
-        ratios = np.array([one.ratio.value for one in scans])
-        shares = [one.surface.joint.shares.measured for one in scans]
+    for kind, scans in energies.items():
+        ratios = np.array([scan.ratio.value for scan in scans])
+        covered = np.mean([scan.covers for scan in scans])
+        shares = [scan.surface.joint.shares.measured for scan in scans]
         rows.append(
             f"{kind.name} | {'yes' if kind.resolved else 'no'} | {np.median(ratios):.2f} | "
-            f"{np.median(np.abs(ratios - 1)):.0%} | {np.mean([one.covers for one in scans]):.0%} | "
-            f"{np.median([one.factor for one in scans]):.2f} | {np.median(shares):.0%}"
+            f"{np.median(np.abs(ratios - 1)):.0%} | {covered:.0%} | "
+            f"{np.median([scan.factor for scan in scans]):.2f} | {np.median(shares):.0%}"
         )
     table = markdown_table(
         "scans | resolved | e_el found / true | median error | intervals that hold it | "
         "their factor | e_el measured",
         rows,
     )
-    every = [one for scans in found.values() for one in scans]
-    ratios = np.array([one.ratio.value for one in every])
-    covered = np.mean([one.covers for one in every])
+    every = [scan for scans in energies.values() for scan in scans]
+    ratios = np.array([scan.ratio.value for scan in every])
+    covered = np.mean([scan.covers for scan in every])
     error = np.median(np.abs(ratios - 1))
     return (
         f"{table}\n\n{len(every)} scans: median error {error:.0%}, geometric mean of "
@@ -319,11 +322,11 @@ def energy_table(found: Mapping[Kind, Sequence[Found]]) -> str:
     )
 
 
-def hardest_coverage(found: Mapping[Kind, Sequence[Found]]) -> Number:
+def hardest_coverage(energies: Mapping[Kind, Sequence[Found]]) -> Number:
     """Share of the intervals that contain the truth, of the scans that show their roll-off least.
 
     The error is half of the 95% interval of the binomial distribution, taken as normal.
     """
-    (scans,) = (scans for kind, scans in found.items() if kind.name == _HARDEST)
+    (scans,) = (scans for kind, scans in energies.items() if kind.name == _HARDEST)
     share = float(np.mean([scan.covers for scan in scans]))
     return Number(share, REACH * math.sqrt(share * (1 - share) / len(scans)))

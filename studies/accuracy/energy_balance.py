@@ -55,10 +55,10 @@ def energy_table() -> str:
     """Energies of all amplitudes and steps; errors are rms, against the finest two steps."""
     rows = []
     for amplitude in (0.1, 0.4, 0.84):
-        found = [
+        balances = [
             [energies(cycle(amplitude, seed, step)) for seed in range(N_SURFACE)] for step in STEPS
         ]
-        lost, work, trapezoid = np.moveaxis(np.array(found), 2, 0)
+        lost, work, trapezoid = np.moveaxis(np.array(balances), 2, 0)
         # A value from each step and the next finer one.
         extrapolated = 2 * lost[1:] - lost[:-1]
         percents = [

@@ -53,8 +53,8 @@ def _averages(scene: Scene, n_realisation: int, progress: Progress) -> xr.Datase
 
 def _coverage(scene: Scene, n_realisation: int, progress: Progress) -> xr.Dataset:
     """True errors beside the stated ones."""
-    found = averages.held_out_coverage(scene, _COVERED, n_realisation, progress)
-    return records_dataset("true and stated errors", scene, found)
+    coverages = averages.held_out_coverage(scene, _COVERED, n_realisation, progress)
+    return records_dataset("true and stated errors", scene, coverages)
 
 
 STUDIES = {

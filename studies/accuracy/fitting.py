@@ -58,10 +58,10 @@ def _avalanche(study: SceneErrors) -> float:
     deviations = np.concatenate([setting_errors(study, setting)[1] for setting in SETTINGS])
     deviations -= deviations.mean(axis=1, keepdims=True)
     few = np.mean(deviations**2, axis=1, keepdims=True) < _FEW**2
-    kept = np.where(few, deviations, 0.0)
-    total = float(np.sum(kept**2))
+    counted = np.where(few, deviations, 0.0)
+    total = float(np.sum(counted**2))
     # Of rare avalanches the ratio of the fourth moment to the second is the square of their size.
-    return float(np.sqrt(np.sum(kept**4) / total)) if total > 0 else 0.0
+    return float(np.sqrt(np.sum(counted**4) / total)) if total > 0 else 0.0
 
 
 def setting_errors(study: SceneErrors, setting: SettingName) -> tuple[Array, Array]:

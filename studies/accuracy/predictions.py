@@ -56,7 +56,7 @@ class Comparison:
 
     film: Film
     prediction: Prediction
-    found: Simulated
+    simulations: Simulated
 
 
 def comparisons() -> Iterator[Comparison]:
@@ -80,7 +80,9 @@ def _scanned(film: Film, rng: np.random.Generator) -> MeasuredSurface:
 def comparison_table(items: Iterable[Comparison]) -> str:
     """Numbers of the front, predicted and simulated, in Markdown, a film a row."""
     rows = []
-    for film, law, found in ((item.film, item.prediction, item.found) for item in items):
+    for film, law, simulations in (
+        (item.film, item.prediction, item.simulations) for item in items
+    ):
         rows.append(
             (
                 f"{film.hurst:g}",
@@ -88,9 +90,9 @@ def comparison_table(items: Iterable[Comparison]) -> str:
                 f"{law.e_el.value / law.work_of_adhesion:.3f}",
                 f"{law.correlation_length / law.contact_radius:.4f}",
                 with_interval(law.factors.both),
-                with_interval(found.k),
+                with_interval(simulations.k),
                 with_interval(law.front_hysteresis.each(lambda work: 1e3 * work)),
-                with_interval(found.hysteresis.each(lambda work: 1e3 * work)),
+                with_interval(simulations.hysteresis.each(lambda work: 1e3 * work)),
             )
         )
     return markdown_table(
