@@ -158,8 +158,8 @@ class Case:
     @property
     def stem(self) -> str:
         """Name of its file, which changes with anything that determines the result."""
-        known = asdict(self) | {"loads": self.loads.model_dump()}
-        text = json.dumps([known, VERSION], sort_keys=True, allow_nan=False)
+        identity = asdict(self) | {"loads": self.loads.model_dump()}
+        text = json.dumps([identity, VERSION], sort_keys=True, allow_nan=False)
         return f"{self.label}-{hashlib.sha256(text.encode()).hexdigest()[:12]}"
 
     def heights(self) -> Array:

@@ -75,18 +75,18 @@ def boundary_cycle(
     load step. A ValueError says if a state does not come to rest.
     """
     contact, so_far = case.contact(), resume or _no_states(case.n_point)
-    known, side = so_far.penetration.size, case.n_point
-    loads = islice(case.loads.loads(case.interaction_range), known, None)
+    n_finished, side = so_far.penetration.size, case.n_point
+    loads = islice(case.loads.loads(case.interaction_range), n_finished, None)
     displacement = contact.elastic_displacement(np.pad(so_far.pressure, (0, side)))
     for penetration, direction, _ in loads:
         if so_far.status != RUNNING:
             return so_far
         started = time.process_time()
         radius = max(so_far.trust_radius, _LEAST_RADIUS)
-        found = equilibrium(
+        balanced = equilibrium(
             contact, displacement, penetration, tolerance=case.tolerance, radius=radius
         )
-        displacement = found.displacement
+        displacement = balanced.displacement
         pressure = contact.elastic_pressure(displacement)[:side, :side]
         gap, edge = contact.gap(displacement, penetration), EDGE * case.interaction_range
         shown = so_far.shown_pressure
@@ -101,16 +101,16 @@ def boundary_cycle(
             "force": float(np.sum(pressure)) * area,
             "radius": perimeter(gap, case.pixel, edge),
             "seconds": time.process_time() - started,
-            "energy": found.energy * area,
-            "released": found.released * area,
-            **{name: getattr(found, name) for name in _COUNTED},
+            "energy": balanced.energy * area,
+            "released": balanced.released * area,
+            **{name: getattr(balanced, name) for name in _COUNTED},
         }
         so_far = replace(
             so_far,
             status=LOST_CONTACT if lost else RUNNING,
             shown_pressure=shown,
             pressure=pressure,
-            trust_radius=found.radius,
+            trust_radius=balanced.radius,
             **{
                 name: np.append(getattr(so_far, name), np.asarray(value)[None], axis=0)
                 for name, value in state.items()

@@ -67,6 +67,6 @@ def edge_forces(case: Case, boundary: BoundaryCycle, front: FrontCycle) -> EdgeF
         pinning=rms(pinning),
         left=rms(needed - line),
         share=float(np.sum(line * needed) / np.sum(line**2)),
-        line=np.array([np.mean(line[one]) for one in classes]),
-        needed=np.array([np.mean(needed[one]) for one in classes]),
+        line=np.array([np.mean(line[places]) for places in classes]),
+        needed=np.array([np.mean(needed[places]) for places in classes]),
     )

@@ -112,11 +112,11 @@ def apparent_adhesion(force: Array, penetration: Array) -> Array:
     return jkr.apparent_work_of_adhesion(radius, penetration)
 
 
-def _branches(name: str, states: States, kept: NDArray[np.int64]) -> dict[str, float]:
+def _branches(name: str, states: States, compared: NDArray[np.int64]) -> dict[str, float]:
     """Works of adhesion of a model."""
     works = []
     for sign in (1, -1):
-        branch = kept[states.direction[kept] == sign]
+        branch = compared[states.direction[compared] == sign]
         adhesion = apparent_adhesion(states.force[branch], states.penetration[branch])
         works.append(float(np.mean(adhesion)))
     return {f"{name}_approach": works[0], f"{name}_retraction": works[1]}

@@ -129,24 +129,24 @@ def load_validation(path: Path) -> ValidationParameters:
 def validation_cases(parameters: ValidationParameters) -> tuple[Case, ...]:
     """Cases in the order in which they are run: smooth spheres, then surface after surface."""
     listed = []
-    for given in parameters.cases:
-        for energy in given.elastic_energies:
-            count = (given.surfaces if energy else None) or 1
-            for surface in range(given.skipped, given.skipped + count):
+    for group in parameters.cases:
+        for energy in group.elastic_energies:
+            count = (group.surfaces if energy else None) or 1
+            for surface in range(group.skipped, group.skipped + count):
                 seeds = np.random.SeedSequence(parameters.seed, spawn_key=(surface,))
                 drawn = int(seeds.generate_state(1)[0])
                 case = Case(
-                    seed=parameters.seed if given.surfaces is None else drawn,
+                    seed=parameters.seed if group.surfaces is None else drawn,
                     short_cutoff=parameters.short_cutoff,
-                    roll_off=given.roll_off or parameters.short_cutoff,
-                    hurst=given.hurst,
+                    roll_off=group.roll_off or parameters.short_cutoff,
+                    hurst=group.hurst,
                     side=parameters.side,
-                    n_point=given.n_point,
-                    interaction_range=given.interaction_range,
+                    n_point=group.n_point,
+                    interaction_range=group.interaction_range,
                     elastic_energy=energy,
                     tolerance=parameters.tolerance,
-                    loads=parameters.case_loads(given),
+                    loads=parameters.case_loads(group),
                 )
                 listed.append((surface, energy > 0, case))
-    listed.sort(key=lambda one: one[:2])
+    listed.sort(key=lambda entry: entry[:2])
     return tuple(dict.fromkeys(case for *_, case in listed))
