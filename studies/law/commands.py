@@ -89,11 +89,11 @@ def fit(configurations: tuple[Path, ...], output: Path) -> None:
     cells.sort(key=lambda cell: (cell.spectrum, cell.disorder, cell.size))
     text = csv_text(cells or measured_cells())
     # The fit is that of the rows as they are written, to five digits.
-    known = csv_rows(text, LawCell)
-    law = fitted_law(known)
+    rounded = csv_rows(text, LawCell)
+    law = fitted_law(rounded)
     write_text(output / "cells.csv", text)
     write_text(output / "law.json", json.dumps(asdict(law), indent=1) + "\n")
-    click.echo(f"{len(known)} rows; rms {law.rms:.1%}, worst {law.worst:.1%} for g above 1")
+    click.echo(f"{len(rounded)} rows; rms {law.rms:.1%}, worst {law.worst:.1%} for g above 1")
     click.echo(f"law: {output / 'law.json'}")
 
 
