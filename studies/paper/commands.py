@@ -102,22 +102,22 @@ def check_figures(output: Path) -> None:
             lines += ["", f"## {shown.title} ({scale})", "", *checks_table(checks)]
             failed += [
                 f"FAIL: {shown.title} ({scale}): {check.claim}: {check.expected} expected, "
-                f"{check.found} found"
+                f"{check.computed} found"
                 for check in checks
                 if check.result == "FAIL"
             ]
     if not counts:
         raise _no_data(output)
     agree, predicted, fail = (counts[result] for result in get_args(Result))
-    told = (
+    summary = (
         f"{agree} of {counts.total()} agree, {predicted} differ from the paper as the law of k "
         f"says (docs/law.md), {fail} fail"
     )
-    listed = ["", *(f"- {one}" for one in failed)] if failed else []
-    lines = ["# Checks of the figures", "", f"{told}.", *listed, *lines, ""]
+    listed = ["", *(f"- {failure}" for failure in failed)] if failed else []
+    lines = ["# Checks of the figures", "", f"{summary}.", *listed, *lines, ""]
     forget_sums(output)
     write_text(output / "checks.md", "\n".join(lines))
-    for line in (f"checks: {output / 'checks.md'}, {told}", *failed):
+    for line in (f"checks: {output / 'checks.md'}, {summary}", *failed):
         click.echo(line)
 
 
@@ -131,18 +131,18 @@ def gallery(output: Path, pictures: Path) -> None:
 
     Of each figure the paper's scale is kept if it is there; an animation is that of the results.
     """
-    known = {path.stem: path for scale in SCALES for path in _data_of_figures(output / scale)}
-    if not known:
+    paths = {path.stem: path for scale in SCALES for path in _data_of_figures(output / scale)}
+    if not paths:
         raise _no_data(output)
     pictures.mkdir(parents=True, exist_ok=True)
-    for name in filter(known.__contains__, FIGURES):
-        shown, record = _figure_and_record(known[name])
+    for name in filter(paths.__contains__, FIGURES):
+        shown, record = _figure_and_record(paths[name])
         picture = pictures / f"{name}.{'gif' if shown.animate else 'png'}"
         if shown.animate:
-            shutil.copyfile(known[name].with_suffix(".gif"), picture)
+            shutil.copyfile(paths[name].with_suffix(".gif"), picture)
         else:
             save_picture(shown.draw(record), picture)
-        data = read_attributes(known[name])
+        data = read_attributes(paths[name])
         parts = [
             f"## {shown.title}",
             f"![{shown.title}](figures/{picture.name})",

@@ -77,8 +77,8 @@ def depth_slope(record: EventRecord) -> Slope:
 
 def _slope(abscissa: Array, ordinate: Array, error: Array | None = None) -> Slope:
     """Line of least squares; without errors they follow from the scatter."""
-    known = {"cov": True} if error is None else {"w": 1 / error, "cov": "unscaled"}
-    (slope, level), covariance = np.polyfit(abscissa, ordinate, 1, **known)
+    weights = {"cov": True} if error is None else {"w": 1 / error, "cov": "unscaled"}
+    (slope, level), covariance = np.polyfit(abscissa, ordinate, 1, **weights)
     return Slope(float(slope), float(_NORMAL * math.sqrt(covariance[0, 0])), float(level))
 
 
@@ -155,7 +155,7 @@ def _law_checks(record: EventRecord) -> Iterator[Check]:
 
 
 def _exponent_check(
-    claim: str, found: float, expected: float, remark: str, scatter: float, shift: float = 0.0
+    claim: str, measured: float, expected: float, remark: str, scatter: float, shift: float = 0.0
 ) -> Check:
     """An exponent against that of the theory, within a tolerance or its own interval."""
     reach = math.hypot(scatter, shift)
@@ -168,8 +168,8 @@ def _exponent_check(
     return Check(
         f"whole events of a straight front: {claim}",
         with_error(expected, max(reach, _TOLERANCE)),
-        with_error(found, reach),
-        abs(found - expected) <= max(reach, _TOLERANCE),
+        with_error(measured, reach),
+        abs(measured - expected) <= max(reach, _TOLERANCE),
         f"{of_what}; {remark}",
     )
 
@@ -220,7 +220,7 @@ def draw_depths(axes: Axes, record: EventRecord) -> None:
         edges = logarithmic_edges(extent[chosen])
         place = np.digitize(extent[chosen], edges)
         means = [
-            [np.exp(np.mean(np.log(one[chosen][place == bin]))) for one in (extent, depth)]
+            [np.exp(np.mean(np.log(values[chosen][place == bin]))) for values in (extent, depth)]
             for bin in np.unique(place)
             if np.sum(place == bin) >= _FEWEST_IN_A_BIN
         ]

@@ -95,6 +95,6 @@ def binned_spectrum(record: RoughnessRecord, index: int) -> tuple[Array, Array, 
     wavevector, power = stiffness_wavevector(record, index), record.power[index]
     place = np.floor(_BINS_A_DECADE * np.log10(wavevector)).astype(int)
     bins = [place == value for value in np.unique(place)]
-    means = np.array([power[:, one].mean(axis=1) for one in bins])
-    middle = np.array([np.exp(np.log(wavevector[one]).mean()) for one in bins])
+    means = np.array([power[:, inside].mean(axis=1) for inside in bins])
+    middle = np.array([np.exp(np.log(wavevector[inside]).mean()) for inside in bins])
     return middle, means.mean(axis=1), means.std(axis=1, ddof=1) / np.sqrt(power.shape[0])

@@ -55,14 +55,14 @@ def read_measured(
     names = [name for name, _ in header]
     for name in (*(item.name for item in quantities), *words):
         if names.count(name) != 1:
-            what = "stands twice; remove one" if name in names else "is missing"
-            raise refusal(f"{top}: column {name} {what}; the header has {', '.join(names)}")
+            problem = "stands twice; remove one" if name in names else "is missing"
+            raise refusal(f"{top}: column {name} {problem}; the header has {', '.join(names)}")
     units = dict(header)
-    for name, known, _ in quantities:
-        if (unit := units[name]) not in known:
-            what = f"is in {unit}" if unit else "has no unit"
+    for name, allowed, _ in quantities:
+        if (unit := units[name]) not in allowed:
+            problem = f"is in {unit}" if unit else "has no unit"
             raise refusal(
-                f"{top}: {name} {what}; write {name} (unit) with one of {', '.join(known)}"
+                f"{top}: {name} {problem}; write {name} (unit) with one of {', '.join(allowed)}"
             )
     if len(rows) == 1:
         raise refusal(f"{path} has a header but no rows; add the points")
@@ -71,11 +71,14 @@ def read_measured(
         where = f"{path}, line {line}"
         if len(row) != len(header):
             raise refusal(f"{where} has {len(row)} values for {len(header)} columns; complete it")
-        given = dict(zip(names, row, strict=True))
+        texts_by_name = dict(zip(names, row, strict=True))
         numbers.append(
-            [_number(where, given[item.name], item, units[item.name]) for item in quantities]
+            [
+                _number(where, texts_by_name[item.name], item, units[item.name])
+                for item in quantities
+            ]
         )
-        texts.append([given[name].strip() for name in words])
+        texts.append([texts_by_name[name].strip() for name in words])
         lines.append(line)
     return MeasuredTable(np.array(lines), np.array(numbers).T, np.array(texts, dtype=str).T)
 
@@ -209,10 +212,10 @@ def adhesion_from_forces(radius: Array, force: Array) -> Estimate:
             f"{radius.size} points are too few for a work of adhesion with its interval; give "
             f"{_FEWEST_POINTS} or more"
         )
-    found, covariance = curve_fit(
+    solution, covariance = curve_fit(
         jkr.equilibrium_force, radius, force, p0=[1.0], bounds=(0.0, np.inf), xtol=1e-14, ftol=1e-14
     )
-    return student_estimate(found[0], np.sqrt(covariance[0, 0]), radius.size - 1)
+    return student_estimate(solution[0], np.sqrt(covariance[0, 0]), radius.size - 1)
 
 
 def fitted_adhesion(

@@ -90,10 +90,10 @@ class Perimeters:
             return
         self.follow(front)
         if self._count % self._every == 1 % self._every:
-            kept = slice(None, None, -(-front.size // _MOST_SITES))
-            self.angle = (2 * np.pi * np.arange(front.size) / front.size)[kept]
+            sites = slice(None, None, -(-front.size // _MOST_SITES))
+            self.angle = (2 * np.pi * np.arange(front.size) / front.size)[sites]
             self.states.append(state)
-            self.lines.append(front[kept])
+            self.lines.append(front[sites])
 
     def follow(self, front: Array) -> None:
         """Compare the front of the next state, (n_angle,) radii, with earlier ones."""
@@ -101,9 +101,9 @@ class Perimeters:
             if self._count % stride:
                 continue
             if before is not None:
-                found = advances(before, front, self._passed)
-                self.extents[stride] += [part.extent for part in found]
-                candidates = [self.widest[stride], *found]
+                moved = advances(before, front, self._passed)
+                self.extents[stride] += [part.extent for part in moved]
+                candidates = [self.widest[stride], *moved]
                 self.widest[stride] = max(candidates, key=lambda part: part.extent)
             self._before[stride] = front
         self._count += 1

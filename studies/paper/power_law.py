@@ -60,8 +60,8 @@ def truncated_power_law(values: Array, smallest: float, rng: np.random.Generator
             f"{used.size} values lie above {smallest:g}; a power law needs {_FEWEST}, so lower the "
             "smallest or take more surfaces"
         )
-    exponent, cutoff = found = _most_likely(used)
-    again = [_most_likely(rng.choice(used, used.size), found)[0] for _ in range(_N_BOOTSTRAP)]
+    exponent, cutoff = best = _most_likely(used)
+    again = [_most_likely(rng.choice(used, used.size), best)[0] for _ in range(_N_BOOTSTRAP)]
     low, high = _interval(exponent, again)
     return PowerLaw(exponent, low, high, cutoff * smallest, smallest, int(used.size))
 
@@ -85,14 +85,14 @@ def _most_likely(scaled: Array, start: tuple[float, float] | None = None) -> tup
         rate = float(np.exp(-point[1]))
         return point[0] * mean_log + rate * mean + _log_norm(float(point[0]), rate)
 
-    found = minimize(
+    solution = minimize(
         surprise,
         [exponent, np.log(cutoff)],
         method="Nelder-Mead",
         bounds=[(0.0, 5.0), (0.0, np.log(1e4 * np.max(scaled)))],
         options={"xatol": 1e-4, "fatol": 1e-9},
     )
-    return float(found.x[0]), float(np.exp(found.x[1]))
+    return float(solution.x[0]), float(np.exp(solution.x[1]))
 
 
 def _log_norm(exponent: float, rate: float) -> float:

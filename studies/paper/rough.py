@@ -71,9 +71,10 @@ class RoughParameters(Section):
         simulation = simulation_of(
             "roughness", spectrum, elastic_energy, schedule, numerics, seed=self.seed
         )
-        if left := missed_error(simulation, self.error):
+        if least_error := missed_error(simulation, self.error):
             raise refusal(
-                f"error is {self.error:g}, but the finest numerics leave {left:.2g}; ask for that"
+                f"error is {self.error:g}, but the finest numerics leave {least_error:.2g}; "
+                "ask for that"
             )
         return simulation
 
@@ -195,7 +196,7 @@ class RoughContact:
 def surface_means(kinds: Sequence[Sequence[object]], *names: str) -> dict[str, Any]:
     """Means over the surfaces of each kind of what was measured on each surface, by its name."""
     return {
-        name: np.array([np.mean([getattr(one, name) for one in kind]) for kind in kinds])
+        name: np.array([np.mean([getattr(surface, name) for surface in kind]) for kind in kinds])
         for name in names
     }
 
