@@ -119,8 +119,8 @@ def slowness() -> float:
     energy = sweep.elastic_energies[-1]
     runs = [sweep.simulation(item, energy, 0) for item in sweep.spectra]
     run_simulation(runs[0])  # compiles, and loads what is compiled
-    measured = sum(run_simulation(one).measures.cpu_seconds for one in runs)
-    return measured / sum(expected_cost(one).seconds for one in runs)
+    measured = sum(run_simulation(simulation).measures.cpu_seconds for simulation in runs)
+    return measured / sum(expected_cost(simulation).seconds for simulation in runs)
 
 
 def million(
@@ -239,8 +239,8 @@ def _finished(sweep: Sweep, item: NamedSpectrum, origin: Provenance) -> list[Fin
     """The first simulation of each amplitude of a spectrum."""
     results = map(run_simulation, sweep.one_per_amplitude(item))
     return [
-        FinishedSimulation(one.simulation, sweep_row(one), one.record, origin.arithmetic)
-        for one in results
+        FinishedSimulation(result.simulation, sweep_row(result), result.record, origin.arithmetic)
+        for result in results
     ]
 
 
