@@ -23,13 +23,14 @@ Value = Callable[[Hysteresis], float]
 _DIFFERENCE = attrgetter("boundary_difference")
 
 ORDER = 3
-ORDERS = (2, ORDER, 4)
-"""Power of the range with which the hysteresis of boundary elements nears that of no range, between
-two whose difference is the error of the extrapolation.
+"""Power of the range by which the hysteresis of boundary elements is extrapolated to no range.
 
-Measured, docs/experiments/boundary-elements.md: where a range was halved twice, the second changed
-the hysteresis by a third of the first. The length of the cohesive zone would suggest its square.
+Measured, docs/experiments/boundary-elements.md: where a range was halved twice, the second halving
+changed the hysteresis by a third of the first. The length of the cohesive zone would suggest 2.
 """
+
+ORDERS = (2, ORDER, 4)
+"""Powers that are compared; results of the outer two differ by the error of the extrapolation."""
 
 ZONE = 0.26
 """Length of the cohesive zone over the square of the range."""
@@ -53,9 +54,10 @@ class Setting:
         return self._estimate(lambda mean: mean, value)
 
     def excess(self, smooth: float) -> Estimate:
-        """Logarithm of the front's w_retr - w_appr over that of boundary elements.
+        """Logarithm of the ratio of hystereses, front over boundary elements.
 
-        These have lost what they lose on the smooth sphere: that is taken off. (Units: w_int)
+        `smooth` is what boundary elements lose on the smooth sphere; it is subtracted from theirs.
+        (Units: w_int)
         """
         models = attrgetter("front_difference"), attrgetter("boundary_difference")
 
@@ -71,7 +73,7 @@ class Setting:
         Its degrees of freedom are Welch's and Satterthwaite's, of surfaces with and without a
         shorter range.
         """
-        # Extrapolated: the mean of the longer range over all surfaces, and that of what changes.
+        # Extrapolated: mean of the longer range over all surfaces, plus the mean of the change.
         fine, coarse = (
             {row.seed: np.array([value(row) for value in values]) for row in rows}
             for rows in (self.rows, self.coarse)
@@ -125,7 +127,7 @@ def limit_settings(rows: Sequence[Hysteresis], order: float = ORDER) -> tuple[Se
 def range_limits(rows: Iterable[Hysteresis], order: float = ORDER) -> list[Hysteresis]:
     """Works of adhesion and hysteresis at a vanishing range, from the two shortest of a surface.
 
-    They near it with a power of the range. Everything else is that of the shorter range.
+    They approach it with a power of the range. Everything else is copied from the shorter range.
     """
 
     def surface(row: Hysteresis) -> tuple[float, ...]:
@@ -211,7 +213,7 @@ def _smooth_loss(rows: Iterable[Hysteresis]) -> float:
 def _validity_row(
     setting: Setting, logarithm: Estimate, order_error: float, short_cutoff: float
 ) -> ValidityRow:
-    """Both models of a setting; its interval is that of Student's t, its error half of a normal."""
+    """Both models of a setting; the error is half of Student's interval, as of a normal number."""
     row, energy = setting.rows[0], float(setting.mean(attrgetter("elastic_energy")).value)
     reach = float(logarithm.high - logarithm.value)
     spectrum = SelfAffineSpectrum(short_cutoff, row.roll_off, row.hurst)

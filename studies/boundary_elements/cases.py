@@ -87,7 +87,7 @@ class Loads(Section):
             )
         return self
 
-    def refuse_step(self) -> None:
+    def check_step(self) -> None:
         """Raise if the step is too large, or leads past penetrations that are compared."""
         steady = self.steady.model_dump() if self.steady else {}
         if self.steady is None and self.step > self.max_penetration / 3 * (1 + 1e-9):
@@ -98,12 +98,12 @@ class Loads(Section):
         for name, value in {"shown_penetration": self.shown_penetration, **steady}.items():
             if abs(value / self.step - round(value / self.step)) > 1e-9:
                 raise ValueError(
-                    f"{name} {value:g} is no multiple of the step {self.step:g}; take a step that "
-                    "leads to it"
+                    f"{name} {value:g} is not a multiple of the step {self.step:g}; take a step "
+                    "that leads to it"
                 )
 
     def loads(self, interaction_range: float) -> Iterator[Load]:
-        """Penetrations in their order; those of a whole loop have no end."""
+        """Penetrations in their order; a whole loop has infinitely many."""
         if self.steady is None:
             for count in range(math.ceil(interaction_range / self.step), 0, -1):
                 yield Load(-count * self.step, 1)

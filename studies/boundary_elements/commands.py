@@ -45,7 +45,7 @@ def validate(configuration: Path, output: Path | None) -> None:
 
     parameters = load_validation(configuration)
     folder = output or results_folder(configuration)
-    study.refuse_missing_libraries()
+    study.check_libraries()
     refuse_unwritable(folder)
     refuse_other_configuration(configuration, folder)
     write_source(configuration, folder)

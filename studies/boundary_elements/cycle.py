@@ -50,7 +50,7 @@ class BoundaryCycle:
     products: Array = variable("conjugate-gradient products", "1", STEP)
     residual: Array = variable("pressure out of balance", "largest tension", STEP)
     seconds: Array = variable("processor time of the load step", "s", STEP)
-    energy: Array = variable("energy above that of surfaces far apart", ENERGY, STEP)
+    energy: Array = variable("energy relative to surfaces far apart", ENERGY, STEP)
     released: Array = variable("how far the energy fell at the penetration", ENERGY, STEP)
     barriers: Array = variable("steps that were shortened before a barrier", "1", STEP)
     saddles: Array = variable("unstable states without forces that were left", "1", STEP)
@@ -134,7 +134,7 @@ def _no_states(side: int) -> BoundaryCycle:
 
 
 def perimeter(gap: Array, pixel: float, edge: float) -> Array:
-    """Outermost distance from the apex at which the gap is below that of the edge, ray by ray.
+    """Outermost distance from the apex at which the gap is below the gap at the edge, on every ray.
 
     The gap is (n_point, n_point), the distance (N_ANGLE,) and 0 where a ray has no contact.
     (Units: reduced vertical length, reduced lateral length)

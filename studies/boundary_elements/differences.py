@@ -17,8 +17,11 @@ from studies.boundary_elements.cases import Case
 from studies.boundary_elements.cycle import BoundaryCycle
 from studies.boundary_elements.front import FrontCycle, shared_states, shown_states
 
-_SAME_PLACE, _SAME_LOAD = 1.0, 0.1
-"""Largest distance of matched jumps along the front, in short cutoffs, and in penetration."""
+_SAME_PLACE = 1.0
+"""Largest distance of matched jumps along the front, in short cutoffs."""
+
+_SAME_LOAD = 0.1
+"""Largest distance of matched jumps in penetration. (Units: reduced vertical length)"""
 
 
 @dataclass(frozen=True, slots=True)

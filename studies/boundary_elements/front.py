@@ -90,8 +90,8 @@ def shown_states(case: Case, states: States) -> list[int]:
         at = np.isclose(states.penetration, shown, atol=1e-9) & (states.direction == direction)
         if not np.any(at):
             raise ValueError(
-                f"{case.label}: there is no contact at penetration {shown:g} in {branch}; raise "
-                "shown_penetration"
+                f"{case.label}: the sphere is not in contact at penetration {shown:g} in {branch}; "
+                "raise shown_penetration"
             )
         indices.append(int(np.argmax(at)))
     return indices

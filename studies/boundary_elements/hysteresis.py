@@ -57,7 +57,7 @@ class Hysteresis:
     @property
     def setting(self) -> tuple[float, ...]:
         """What surfaces share that are averaged: grid, range, load step, spectrum, amplitude."""
-        # Where there is no range no grid is told.
+        # An extrapolation to no range stands for all grids.
         grid = self.n_point if self.interaction_range else 0
         return grid, self.interaction_range, self.step, *self.scene
 

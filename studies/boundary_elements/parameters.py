@@ -20,7 +20,7 @@ from crackfront.sweep.section import (
     yaml_mapping,
 )
 from studies.boundary_elements.cases import Case, Loads
-from studies.boundary_elements.contact import refuse_unresolved
+from studies.boundary_elements.contact import check_resolution
 
 _POINT_BYTES = 500.0
 """Memory of a point of a grid, twice as wide in both directions, with some fifteen arrays."""
@@ -52,16 +52,16 @@ class CaseSection(Section):
     elastic_energies: Annotated[
         tuple[Annotated[float, Field(ge=0, lt=1)], ...], Field(min_length=1)
     ]  # amplitudes, 0 for a smooth sphere (w_int)
-    step: Positive | None = None  # by default that of all cases (reduced vertical length)
+    step: Positive | None = None  # by default the step of `loads` (reduced vertical length)
     roll_off: Positive | None = None
     hurst: Annotated[float, Field(gt=0, le=1)] = 1.0
-    # Their seeds are drawn from that of the file; by default one surface with that seed.
+    # Their seeds are drawn from the seed of the file; by default one surface with this seed.
     surfaces: Count | None = None
     skipped: Annotated[int, Field(ge=0)] = 0  # surfaces before the first
 
 
 class ValidationParameters(Section):
-    """The whole file; cutoff, side, tolerance and loads are those of all cases."""
+    """The whole file; all cases share cutoff, side, tolerance and loads."""
 
     seed: Seed
     short_cutoff: Positive
@@ -81,18 +81,18 @@ class ValidationParameters(Section):
             )
         if self.loads.steady is None and self.loads.shown_penetration < 0:
             raise refusal(
-                f"loads: shown_penetration {self.loads.shown_penetration:g} has no contact in "
+                f"loads: shown_penetration {self.loads.shown_penetration:g} is before contact in "
                 "approach; take 0 or more"
             )
         for number, case in enumerate(self.cases):
             try:
-                self._refuse(case)
+                self._check_case(case)
             except ValueError as error:
                 raise refusal(f"cases[{number}]: {error}") from error
         return self
 
-    def _refuse(self, case: CaseSection) -> None:
-        """Raise if a case does not hold or resolve roughness and attraction, or is too large."""
+    def _check_case(self, case: CaseSection) -> None:
+        """Raise if a case is too small, too large, or too coarse for roughness and attraction."""
         n_point, pixel, cutoff = case.n_point, self.side / case.n_point, self.short_cutoff
         if case.roll_off is not None and case.roll_off < cutoff:
             raise ValueError(
@@ -110,8 +110,8 @@ class ValidationParameters(Section):
             )
         memory = _POINT_BYTES * float(n_point) ** 2
         refuse_beyond_memory(f"a grid of {n_point} x {n_point} points", memory, "lower n_point")
-        refuse_unresolved(pixel, n_point, case.interaction_range, self.loads.max_penetration)
-        self.case_loads(case).refuse_step()
+        check_resolution(pixel, n_point, case.interaction_range, self.loads.max_penetration)
+        self.case_loads(case).check_step()
 
     def case_loads(self, case: CaseSection) -> Loads:
         """Loads of all cases, in the steps of this one."""

@@ -37,8 +37,11 @@ from studies.boundary_elements.front import FrontCycle, shown_states
 from studies.boundary_elements.hysteresis import Hysteresis
 from studies.paper.drawing import draw_jump
 
-_MOST_POINTS, _MARGIN = 320, 0.15
-"""Points along a side of the part that is kept, and its margin around the contact."""
+_MOST_POINTS = 320
+"""Points along a side of the part that is stored; more are thinned out."""
+
+_MARGIN = 0.15
+"""Margin of this part around the contact. (Units: reduced lateral length)"""
 
 _RELIEF = "0.78", "1.0"
 """Pale greys of the roughness, so that the tension on it is the darkest."""
@@ -196,10 +199,10 @@ def _draw_contact(axes: Axes, picture: ValidationPicture) -> None:
         vmax=float(tension.max()) / 2,
         interpolation="nearest",
     )
-    # Where both branches have one contact, that of the approach is seen on both sides of the other.
+    # Where both branches have one contact, the approach is seen on both sides of the retraction.
     for line, ((_, _, colour), width) in enumerate(zip(_BRANCHES, (2.0, 0.8), strict=True)):
         for radius, style in ((picture.front_radius, _DASHES), (picture.fixed_radius, _DOTS)):
-            # Dashes are in widths of the line: those of both branches have one length.
+            # Dashes are in widths of the line; both branches get dashes of one length.
             dashes = [part / width for part in style]
             curve = closed_front(picture.angle, radius[line])
             axes.plot(*curve, color=colour, linewidth=width, dashes=dashes)
@@ -278,7 +281,7 @@ def _draw_estimates(
     aside: float = 0.0,
     **style: Any,
 ) -> None:
-    """Values against e_el with their standard errors, which those of one surface lack."""
+    """Values against e_el with their standard errors, if there is more than one surface."""
     axes.errorbar(
         [
             float(setting.mean(attrgetter("elastic_energy")).value) + aside

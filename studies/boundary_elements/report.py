@@ -41,7 +41,7 @@ def loop_tables(loops: Sequence[Differences]) -> dict[str, str]:
 
 
 def _table(text: str, header: str, lines: Iterable[str]) -> str:
-    """A paragraph and its table, or nothing where the table has no lines."""
+    """A paragraph and its table, or nothing if the table is empty."""
     rows = list(lines)
     return f"{text}\n\n{markdown_table(header, rows)}" if rows else ""
 
@@ -131,7 +131,7 @@ def size_table(tables: Sequence[Mapping[tuple[float, ...], ValidityRow]]) -> str
 
 
 def _interval(row: ValidityRow) -> str:
-    """Interval of 68% of a ratio, none of a single surface."""
+    """Interval of 68% of a ratio; empty for a single surface."""
     if not math.isfinite(row.error):
         return ""
     return f"{row.ratio * math.exp(-row.error):.2f} to {row.ratio * math.exp(row.error):.2f}"

@@ -32,7 +32,7 @@ Progress = Callable[[str], None]
 _LIBRARIES = ("ContactMechanics", "Adhesion", "SurfaceTopography", "finufft")
 
 
-def refuse_missing_libraries() -> None:
+def check_libraries() -> None:
     """Raise before anything is computed if a library is missing that a validation needs."""
     for name in _LIBRARIES:
         try:
