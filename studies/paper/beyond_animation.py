@@ -1,4 +1,4 @@
-"""A whole cycle as it is seen: every front over the field, beside the loop that it draws."""
+"""A whole cycle as it is seen: every front over the field, and the loop that it draws."""
 
 from __future__ import annotations
 
@@ -132,7 +132,7 @@ def motion_figure(shown: AnimatedCycle) -> Drawing:
 
 
 def motion_animation(shown: AnimatedCycle) -> Animation:
-    """The front over the field beside the loop: one frame a state, and some without contact."""
+    """The front over the field, and the loop: one frame a state, and some without contact."""
     with house_style():
         figure = blank_figure(PAGE, 0.49 * PAGE)
         map_axes, loop_axes = figure.subplots(1, 2)

@@ -24,7 +24,7 @@ from studies.paper.rough import (
 )
 
 _TOLERANCE = 0.1
-"""Largest deviation of that of a sphere."""
+"""Largest deviation of the exponent of a sphere."""
 
 
 def size_law(record: AvalancheRecord, index: int) -> PowerLaw:

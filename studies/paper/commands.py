@@ -34,7 +34,11 @@ commands = click.Group()
 
 _output = output_option(default=Path("results/figures"), help="Folder of all figures.")
 
-_PICTURES, _REFERENCE = Path("docs/experiments/figures"), Path("docs/reference")
+_PICTURES = Path("docs/experiments/figures")
+"""Pictures of the gallery."""
+
+_REFERENCE = Path("docs/reference")
+"""Data that other pages use."""
 
 
 @commands.command(
@@ -47,7 +51,7 @@ _PICTURES, _REFERENCE = Path("docs/experiments/figures"), Path("docs/reference")
     type=click.Choice(SCALES),
     default="quick",
     show_default=True,
-    help="Coarser lengths, which take minutes on two cores, or those of the paper.",
+    help="Coarser lengths, which take minutes on two cores, or the lengths of the paper.",
 )
 @_output
 def compute_figure(configuration: Path, scale: str, output: Path) -> None:
@@ -129,7 +133,7 @@ def check_figures(output: Path) -> None:
 def gallery(output: Path, pictures: Path) -> None:
     """Store all figures and their checks for the pages.
 
-    Of each figure the paper's scale is kept if it is there; an animation is that of the results.
+    Each figure is stored at the paper's scale if it was computed, with its animation.
     """
     paths = {path.stem: path for scale in SCALES for path in _data_of_figures(output / scale)}
     if not paths:
@@ -168,21 +172,21 @@ def experiment(output: Path, keep: bool) -> None:
 
 
 def _data_of_figures(folder: Path) -> list[Path]:
-    """Files of a folder that hold data of figures."""
+    """Files of a folder with data of figures."""
     paths = [folder / f"{name}.nc" for name in FIGURES]
     return [path for path in paths if path.exists()]
 
 
 def _no_data(output: Path) -> ValueError:
-    """Refusal of a folder without data of figures."""
-    return ValueError(f"{output} has no data of figures; run python -m studies paper figure")
+    """Error about a folder without data of figures."""
+    return ValueError(f"{output} contains no data of figures; run python -m studies paper figure")
 
 
 def _figure_and_record(path: Path) -> tuple[Figure, Any]:
     """Figure that data are of, and the data."""
     if path.stem not in FIGURES:
         raise ValueError(
-            f"{path} is no data of a figure; their files are named {', '.join(FIGURES)}"
+            f"{path} does not contain data of a figure; their files are named {', '.join(FIGURES)}"
         )
     shown = figure(path.stem)
     return shown, read_record(path, shown.record)

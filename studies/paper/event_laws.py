@@ -22,8 +22,8 @@ _ROUGHNESS = 0.388
 025101), from which all others follow."""
 
 SIZE_EXPONENT = 2 - 1 / (1 + _ROUGHNESS)
-"""That of the areas of whole events, tau; their patches have 2 tau - 1 (Laurson, Santucci, Zapperi,
-Phys. Rev. E 81, 046116)."""
+"""Exponent tau of the areas of whole events; their patches have 2 tau - 1 (Laurson, Santucci and
+Zapperi, Phys. Rev. E 81, 046116)."""
 
 _TOLERANCE = 0.03
 """Largest deviation of an exponent of whole events, if its own interval is not wider."""
@@ -82,7 +82,11 @@ def _slope(abscissa: Array, ordinate: Array, error: Array | None = None) -> Slop
     return Slope(float(slope), float(_NORMAL * math.sqrt(covariance[0, 0])), float(level))
 
 
-_N_BOOTSTRAP, _NORMAL = 200, 1.96
+_N_BOOTSTRAP = 200
+"""Samples of a bootstrap, enough for a standard error within 5%."""
+
+_NORMAL = 1.96
+"""Half of the 95% interval of a normal distribution, in standard errors."""
 
 
 def event_checks(record: EventRecord) -> Iterator[Check]:
@@ -157,7 +161,7 @@ def _law_checks(record: EventRecord) -> Iterator[Check]:
 def _exponent_check(
     claim: str, measured: float, expected: float, remark: str, scatter: float, shift: float = 0.0
 ) -> Check:
-    """An exponent against that of the theory, within a tolerance or its own interval."""
+    """An exponent against the exponent of the theory, within a tolerance or its own interval."""
     reach = math.hypot(scatter, shift)
     of_what = f"95% interval: ± {scatter:.2g} by the scatter of the events"
     if shift:
@@ -238,7 +242,7 @@ _FEWEST_IN_A_BIN = 10
 
 
 def logarithmic_edges(values: Array) -> Array:
-    """Edges of logarithmic bins that hold all values."""
+    """Edges of logarithmic bins that contain all values."""
     low, high = np.log10(values.min()), np.log10(values.max())
     edges = np.logspace(low, high, max(int((high - low) * _BINS_A_DECADE), 4) + 1)
     edges[-1] *= 1 + 1e-9
@@ -246,7 +250,7 @@ def logarithmic_edges(values: Array) -> Array:
 
 
 def binned_density(values: Array, edges: Array) -> tuple[Array, Array, Integers]:
-    """Geometric middles of the bins that hold values, the density there, and counts."""
+    """Geometric middles of the bins that contain values, the density there, and counts."""
     counts, _ = np.histogram(values, edges)
     density, middle = counts / np.diff(edges) / values.size, np.sqrt(edges[1:] * edges[:-1])
     return middle[counts > 0], density[counts > 0], counts[counts > 0]

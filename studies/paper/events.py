@@ -47,7 +47,7 @@ class EventRecord:
     smallest_event: float = variable("area where the power law begins", _AREA)
     spring: Array = variable("length of the springs, L_kappa", _EXTENT, _SPRING)
     swept_area: Array = variable(
-        "area that the fronts sweep, over that of the way of their load", "1", _SPRING
+        "area that the fronts sweep, over the area that their load sweeps", "1", _SPRING
     )
     smooth_event_area: Array = variable("share of that left in smooth steps", "1", _SPRING)
     event_spring: Integers = variable("which spring", "1", _EVENT)

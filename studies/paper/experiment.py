@@ -1,4 +1,4 @@
-"""The measured hysteresis on nanodiamond, beside the paper, the front and boundary elements."""
+"""The measured hysteresis on nanodiamond against the paper, the front and boundary elements."""
 
 from __future__ import annotations
 

@@ -37,18 +37,18 @@ Progress = Callable[[str], None]
 
 @dataclass(frozen=True, slots=True)
 class Check:
-    """One claim and whether it holds."""
+    """One claim and whether the data agree with it."""
 
     claim: str  # what the paper states, or what must be true
     expected: str  # its number, with the tolerance
     computed: str  # what the data of the figure say
     passed: bool
     remark: str = ""  # where the difference comes from, or what the number rests on
-    law: str = ""  # number of the law of k, where what was found agrees with it
+    law: str = ""  # number of the law of k, if the computed one agrees with it
 
     @property
     def result(self) -> Result:
-        """How the check ends; a difference that the law of k predicts is no failure."""
+        """How the check ends; a difference that the law of k predicts does not fail."""
         if self.passed:
             return "agrees"
         return "differs as the law of k says" if self.law else "FAIL"
@@ -113,7 +113,7 @@ class Figure:
 
     @property
     def parameters(self) -> type[Section]:
-        """What its configuration fills; refuses what cannot be computed."""
+        """Type of its configuration, which raises if the figure cannot be computed."""
         return cast(type[Section], get_type_hints(self.compute)["parameters"])
 
     @property
@@ -134,7 +134,7 @@ FIGURES = tuple(
     for group in ("main", "si", "beyond")
     for path in sorted(Path(__file__).parent.glob(f"{group}_*.py"))
 )
-"""Names of all figures, those of the main text first."""
+"""Names of all figures, the main text first."""
 
 
 def figure(name: str) -> Figure:
@@ -165,12 +165,12 @@ SCALES = ("quick", "paper")
 def load_figure(path: Path, scale: str) -> Section:
     """Parameters of a figure at a scale, from the YAML file that bears its name.
 
-    The file has the mappings `parameters` (what holds for all scales), `quick` and `paper`. A
+    The file has the mappings `parameters` (what all scales share), `quick` and `paper`. A
     ConfigurationError says what is unknown, missing or out of range.
     """
     if path.stem not in FIGURES:
         raise ConfigurationError(
-            f"there is no figure {path.stem!r}; the names of the files are {', '.join(FIGURES)}"
+            f"{path.stem!r} is not a figure; the names of the files are {', '.join(FIGURES)}"
         )
     content = yaml_mapping(path)
     sections = ("parameters", *SCALES)

@@ -48,7 +48,7 @@ class SmoothLoopParameters(Section):
 
 @dataclass(frozen=True, slots=True)
 class SmoothLoop:
-    """States of both branches, as the file of the figure holds them."""
+    """States of both branches, as they are stored in the file of the figure."""
 
     approach: float = variable("work of adhesion in approach", ADHESION)
     retraction: float = variable("work of adhesion in retraction", ADHESION)

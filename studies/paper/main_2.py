@@ -353,7 +353,7 @@ def _draw_forces(axes: Axes, loops: RingLoops) -> None:
 def _draw_state(
     axes: Axes, direction: int, place: tuple[float, float], aside: tuple[float, float]
 ) -> None:
-    """State at b = 0 of the long rings, with its letter beside it."""
+    """State at b = 0 of the long rings, with its letter."""
     colour = _COLOURS[0][direction]
     axes.plot(*place, "o", color=colour, markersize=3, zorder=5)
     letter, middle = "A" if direction > 0 else "B", {"ha": "center", "va": "center"}
@@ -380,7 +380,7 @@ def _draw_branch(
     if direction < 0:
         jumps.append((radius[-1], 0.0, penetration[-1]))
     for before, after, load in jumps:
-        # A radius of zero itself has no energy release rate.
+        # The energy release rate is not defined at radius zero.
         path = np.linspace(max(before, 1e-6), max(after, 1e-6), 40)
         axes.plot(path, value(path, load), color=colour, linewidth=0.7)
         if index == 0:

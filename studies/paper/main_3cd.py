@@ -227,7 +227,7 @@ def _front_checks(loop: PinnedLoop) -> tuple[Check, ...]:
 
 
 def pinned_loop_figure(loop: PinnedLoop) -> Drawing:
-    """The loop beside the fronts of both branches at b = 0."""
+    """The loop, and the fronts of both branches at b = 0."""
     with house_style():
         figure = blank_figure(PAGE, 0.46 * PAGE)
         loop_axes, front_axes = figure.subplots(1, 2)

@@ -60,7 +60,7 @@ class MappingParameters(Section):
 
     @model_validator(mode="after")
     def _usable(self) -> MappingParameters:
-        _ = self.spectrum  # refuses a roll-off below the cutoff
+        _ = self.spectrum  # raises if the roll-off is below the cutoff
         if not 4 * self.short_cutoff <= self.patch <= self.side:
             raise refusal(
                 f"patch is {self.patch:g}; it must have at least four short cutoffs "

@@ -31,8 +31,11 @@ from studies.paper.nanodiamond import EVERY_WAVELENGTH, NanodiamondContact, Nano
 from studies.paper.perimeters import STRIDES, Perimeters
 from studies.paper.rough import ONE_DIGIT, expected_seconds, recorded
 
-_SYNTHETIC_POINTS, _SYNTHETIC_NOISE = 40, 0.02
-"""Points of a synthetic measurement, and the noise of its forces relative to the largest."""
+_SYNTHETIC_POINTS = 40
+"""Points of a synthetic measurement."""
+
+_SYNTHETIC_NOISE = 0.02
+"""Noise of its forces, relative to the largest."""
 
 
 def nanodiamond_contact(
@@ -50,7 +53,7 @@ def nanodiamond_contact(
     if not np.any(record.states.direction < 0):
         raise ValueError(f"the largest force was not reached: {record.status.value}")
     if not perimeters.lines:
-        raise ValueError("the contact has no state between jump-in and shown_force; raise that")
+        raise ValueError("no state lies between jump-in and shown_force; raise shown_force")
     progress(f"retraction: {record.status.value}")
     steady = steady_adhesion(record, passed)
     if steady.sentence:
@@ -180,7 +183,8 @@ def _hysteresis_checks(contact: NanodiamondContact) -> tuple[Check, ...]:
     remark = (
         f"w_appr = {1e3 * contact.approach[0]:.1f} and w_retr = {1e3 * contact.retraction[0]:.1f}, "
         f"± {error:.1f} on their difference: k = {hysteresis / (2 * energy):.2f}; k falls with "
-        f"disorder, here w_rms = {2 * math.sqrt(energy / surface):.2f} w_int; tolerance: one digit of k"
+        f"disorder, here w_rms = {2 * math.sqrt(energy / surface):.2f} w_int; tolerance: one "
+        "digit of k"
     )
     return (
         _near("w_appr that k = 3 predicts", surface - (1 + PAPER_FACTOR) * whole, 18.4, 0.1),
@@ -268,11 +272,15 @@ def _fit_checks(contact: NanodiamondContact) -> tuple[Check, ...]:
     return tuple(checks)
 
 
-_MICRO, _MILLI = 1e6, 1e3
+_MICRO = 1e6
+"""Micrometres in a metre."""
+
+_MILLI = 1e3
+"""Millijoules in a joule."""
 
 
 def nanodiamond_figure(contact: NanodiamondContact) -> Drawing:
-    """Perimeters of the approach beside the loop."""
+    """Perimeters of the approach, and the loop."""
     with house_style():
         figure = blank_figure(PAGE, 0.54 * PAGE)
         perimeter_axes, force_axes = figure.subplots(1, 2)
@@ -309,7 +317,7 @@ def _draw_perimeters(axes: Axes, contact: NanodiamondContact) -> None:
 
 
 def _draw_loop(axes: Axes, contact: NanodiamondContact) -> None:
-    """Force against radius: simulation, its JKR curves, those of k = 3, and measured points."""
+    """Force against radius: simulation, JKR curves by it and by k = 3, measured points."""
     surface, energy, scales = contact.work_of_adhesion, contact.elastic_energy, contact.scales
     shown = np.linspace(0, 1.08 * contact.radius.max(), 300)
     radius, force = contact.radius * _MICRO, contact.force * _MILLI

@@ -1,4 +1,4 @@
-"""Measured points from CSV files, read whole or refused with the number of the line; their fits.
+"""Measured points from CSV files, whose errors name the line, and their fits.
 
 Two kinds of file are known: forces with contact radii, and spectral densities of profiles.
 """
@@ -45,10 +45,10 @@ class MeasuredTable(NamedTuple):
 def read_measured(
     path: Path, quantities: Sequence[Quantity], words: Sequence[str] = ()
 ) -> MeasuredTable:
-    """Columns of a CSV file; empty lines, those that begin with # and other columns are left out.
+    """Columns of a CSV file, without empty lines, comments (#) and other columns.
 
-    A refusal says if the file cannot be read, a column is missing or stands twice, a unit or a
-    value is missing or not understood, or there is no row.
+    A pydantic error says if the file cannot be read or has no rows, if a column is missing or
+    stands twice, or if a unit or a value is missing or not understood.
     """
     rows = _rows(path)
     top, header = f"{path}, line {rows[0][0]}", [_name_and_unit(title) for title in rows[0][1]]
@@ -60,7 +60,7 @@ def read_measured(
     units = dict(header)
     for name, allowed, _ in quantities:
         if (unit := units[name]) not in allowed:
-            problem = f"is in {unit}" if unit else "has no unit"
+            problem = f"is in {unit}" if unit else "lacks a unit"
             raise refusal(
                 f"{top}: {name} {problem}; write {name} (unit) with one of {', '.join(allowed)}"
             )
@@ -90,7 +90,7 @@ def _rows(path: Path) -> list[tuple[int, list[str]]]:
     except OSError as error:
         raise refusal(f"{path} cannot be read: {error.strerror}") from error
     except UnicodeDecodeError as error:
-        raise refusal(f"{path} is no UTF-8 text; save it as UTF-8") from error
+        raise refusal(f"{path} is not UTF-8 text; save it as UTF-8") from error
     lines = ("" if line.lstrip().startswith("#") else line for line in text.splitlines())
     reader = csv.reader(lines, strict=True)
     try:
@@ -138,8 +138,8 @@ def read_force_radius(path: Path | None) -> ForceRadius:
     """Points from a CSV file with the columns force (mN), radius (um) and branch, as measured.
 
     The units are N, mN or uN, and m, mm, um or nm; the branch is approach or retraction. Without a
-    file there are no points. Refused are other branches, an approach after a retraction, of less
-    than three points, or that ends at no larger force than it begins.
+    file there are no points. Other branches are errors, and so is an approach after a
+    retraction, of less than three points, or whose force does not grow.
     """
     if path is None:
         return ForceRadius(np.empty(0), np.empty(0), np.empty(0, dtype=np.int64))
@@ -183,8 +183,8 @@ def read_profile_density(path: Path | None) -> ProfileDensity:
     """Profile density from a CSV file with the columns q (1/m) and C1D (m^3).
 
     The units are 1/m, 1/um or 1/nm, and m^3, um^3 or nm^3. The mean square height is the integral
-    of C1D over q > 0, divided by pi. Without a file there are no points. Refused are a single row
-    and wavevectors that do not increase.
+    of C1D over q > 0, divided by pi. Without a file there are no points. A single row
+    is an error, and so are wavevectors that do not increase.
     """
     if path is None:
         return ProfileDensity(np.empty(0), np.empty(0))

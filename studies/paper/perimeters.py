@@ -12,7 +12,7 @@ from crackfront.core.cycle.record import Recorder
 from crackfront.core.geometry.sphere import ContactState
 
 STRIDES = (1, 2, 4)
-"""Load steps, in those of the approach, at which the widest instability is looked for."""
+"""Strides, in load steps of the approach, over which the widest instability is looked for."""
 
 _MOST_SITES = 4096
 """Sites of a perimeter that are kept for drawing."""

@@ -19,7 +19,11 @@ _FEWEST = 20
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(100)
 """Gauss rule of the integral that normalises the density."""
 
-_N_BOOTSTRAP, _N_JOINT_BOOTSTRAP = 400, 200
+_N_BOOTSTRAP = 400
+"""Samples of a bootstrap."""
+
+_N_JOINT_BOOTSTRAP = 200
+"""Samples of a bootstrap of the joint law, whose fits take longer."""
 
 Samples = Sequence[tuple[Array, Integers]]
 """Values and their counts, of each sample."""
@@ -67,9 +71,9 @@ def truncated_power_law(values: Array, smallest: float, rng: np.random.Generator
 
 
 def _interval(exponent: float, again: Sequence[float]) -> tuple[float, float]:
-    """95% interval of an exponent, from those of the samples of a bootstrap.
+    """95% interval of an exponent, from the exponents of bootstrap samples.
 
-    It is that of a normal distribution: quantiles of some hundred samples scatter twice as much.
+    It assumes a normal distribution: quantiles of some hundred samples scatter twice as much.
     """
     reach = REACH * float(np.std(again, ddof=1))
     return exponent - reach, exponent + reach
@@ -250,8 +254,11 @@ def _natural_parameters(
     return value, natural
 
 
-_N_NEWTON, _GAIN = 100, 1e-8
-"""Limit on Newton steps, and the fall of the surprise below which they end."""
+_N_NEWTON = 100
+"""Limit on Newton steps."""
+
+_GAIN = 1e-8
+"""Fall of the surprise in a Newton step below which they end."""
 
 _FURTHEST = 1e3
 """End of the integral that normalises the joint law, over the scale."""

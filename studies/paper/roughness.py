@@ -23,9 +23,11 @@ _N_LAG = 60
 SPHERE, STRONG_LINE, WEAK_LINE = (STRONG, WEAK), 2, 3
 """Places of the fronts in a record."""
 
-_PRECISION, _WAY = 1e-3, 0.5
-"""Load that the solver may cost a straight front, in correlation lengths of the force, and the
-share of a tile's period over which its fronts are taken."""
+_PRECISION = 1e-3
+"""Load that the solver may cost a straight front, in correlation lengths of the force."""
+
+_WAY = 0.5
+"""Share of a tile's period over which its fronts are taken."""
 
 
 class LineParameters(StraightParameters):

@@ -48,7 +48,7 @@ class ParametricStudy:
     short_cutoff: Array = variable("shortest wavelength lambda_s", LATERAL, _spectrum)
     roll_off: Array = variable("roll-off wavelength lambda_r", LATERAL, _spectrum)
     hurst: Array = variable("Hurst exponent", "1", _spectrum)
-    correlation_length: Array = variable("that of w_loc", LATERAL, _spectrum)
+    correlation_length: Array = variable("correlation length of w_loc", LATERAL, _spectrum)
     e_el_requested: Array = variable("requested e_el", ADHESION, _amplitude)
     e_el: Array = variable("energy of full conformity of the tile", ADHESION, *_cell)
     w_rms: Array = variable("rms of w_loc on the tile", ADHESION, *_cell)
@@ -69,7 +69,7 @@ class ParametricStudy:
 
     @property
     def table(self) -> SweepTable:
-        """The table of the sweep; without contact radii there is no k by the law."""
+        """The table of the sweep; k by the law needs contact radii."""
         names = {field.name for field in fields(SweepTable)} & {
             field.name for field in fields(self)
         }
@@ -176,7 +176,7 @@ def _by_law(fit: SweepFit) -> _ByLaw:
         return _ByLaw(*[(math.nan, math.nan)] * 4)
     strength = np.log(fit.cells.w_rms[:, fit.in_range])
     along, weight = slope(strength, np.log(k))
-    # Errors of one amplitude of one spectrum count as independent of those of others.
+    # Errors of different amplitudes and spectra count as independent.
     relative = float(np.mean(error / k))
     mean = np.mean(k, axis=1)
     return _ByLaw(
@@ -215,7 +215,7 @@ def _ordered_pairs(length: Array, onset: Array, is_bound: NDArray[np.bool_]) -> 
     in_order = comparable = 0
     for first, second in itertools.combinations(np.argsort(length), 2):
         low, high = sorted((first, second), key=lambda place: onset[place])
-        # The higher onset says which is higher only if it is no bound.
+        # The higher onset says which is higher only if it is not a bound.
         if length[first] < length[second] and not is_bound[high]:
             comparable, in_order = comparable + 1, in_order + int(length[low] < length[high])
     return in_order, comparable
@@ -246,7 +246,7 @@ def parametric_study_figure(study: ParametricStudy) -> Drawing:
         for name in ("b", "c"):
             set_factor_limits(panels[name], fit)
         panels["c"].set_ylabel("mean $k$")
-        # One legend for all panels: that of b has the pooled k besides.
+        # The legend of panel b serves for all panels: it also contains the pooled k.
         figure.legend(*legend_entries(panels["b"]), loc="outside upper center", ncols=4)
         texts = [
             *points_explained(fit),

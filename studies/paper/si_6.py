@@ -85,7 +85,7 @@ class SyntheticFilm(FilmDensities):
     synthetic: Array = variable("profile density of the surfaces, mean over all lines", "m3", _MODE)
     included: Array = variable("profile density of the included scales", "m3", _MODE)
     film_energy: float = variable("energy of full conformity of the film", "J m-2")
-    tile_energy: float = variable("that of the surfaces, measured from their maps", "J m-2")
+    tile_energy: float = variable("e_el of the surfaces, measured from their maps", "J m-2")
     mode_energy: float = variable("expected energy of the modes of a tile", "J m-2")
     energy_error: float = variable("standard error of the mean of all surfaces", "J m-2")
     height_square: float = variable("mean square height of the lines about their means", "m2")
