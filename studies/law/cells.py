@@ -75,7 +75,7 @@ def measured_cells() -> tuple[LawCell, ...]:
 def csv_rows(text: str, kind: type[Row]) -> tuple[Row, ...]:
     """Records of texts, whole numbers and numbers from comma-separated values.
 
-    ValueError if there is no row, or a column is missing.
+    ValueError if all rows or a column are missing.
     """
     record: Any = kind
     numbers = {"int": int, "float": float}

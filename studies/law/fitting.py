@@ -102,9 +102,9 @@ def _departures(cells: Sequence[LawCell], coefficients: Array) -> tuple[Departur
 
 
 def _pooled_error(size: Array, error: Array) -> Array:
-    """Standard errors of cells, each by the median square of those of cells of about its size.
+    """Standard errors of cells, each from the median square over cells of about its size.
 
-    Cells of a single tile have none of their own; where no other is near, the next one counts.
+    A cell of a single tile lacks its own error; if no cell is near, the nearest one counts.
     """
     has_error = np.isfinite(error)
     distance = np.abs(np.log(size[:, None] / size[has_error]))

@@ -84,7 +84,7 @@ def _steady(start: float, reach: float = 1.0, travel: float = 1.5) -> SteadySche
 
 @dataclass(frozen=True, slots=True)
 class Scene:
-    """A sphere that has no part in any fit."""
+    """A sphere that is not part of any fit."""
 
     name: str
     kind: FieldKind
