@@ -70,10 +70,12 @@ def _simulations() -> list[Simulation]:
 def shares() -> list[Share]:
     """Shares of the parts of a simulation, the largest first.
 
-    RuntimeError where there is no perf, or it may not sample this user's processes.
+    RuntimeError if perf is missing, or may not sample this user's processes.
     """
     if shutil.which("perf") is None:
-        raise RuntimeError("there is no perf on this machine; install linux-perf or linux-tools")
+        raise RuntimeError(
+            "perf is not installed on this machine; install linux-perf or linux-tools"
+        )
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         samples, control, answer = (
@@ -139,7 +141,7 @@ def run(control: str, answer: str) -> None:
     dataset, and the file of the names of kernels.
     """
     objects, simulations = _loaded_objects(), _simulations()
-    # The first run loads kernels, which is no part of a simulation.
+    # The first run loads kernels, which does not belong to a simulation.
     _timed(simulations[0], lambda _: None)
     runs = [
         _timed(simulation, lambda word: _tell(control, answer, word))
@@ -209,8 +211,8 @@ def _map_lines(objects: list[bytes]) -> Iterator[str]:
     engine = cpu_target.target_context.codegen()._engine._ee
     for content in objects:
         functions = list(_functions(content))
-        # Where each section was loaded, by the first function in it that the engine knows: that of
-        # the object itself. Those that it shares with others may be used from another object.
+        # Where each section was loaded, by the first function in it that the engine knows: the
+        # object's own one. Functions in several objects may be used from another object.
         bases: dict[int, int] = {}
         for function in functions:
             if function.section not in bases and (
