@@ -103,7 +103,9 @@ def chosen_canaries(studies: Collection[str]) -> dict[tuple[str, str], Canary]:
     for study in studies:
         if study not in STUDIES:
             names = ", ".join(STUDIES)
-            raise ValueError(f"{study} has no canaries; the studies with canaries are {names}")
+            raise ValueError(
+                f"{study} does not have canaries; the studies with canaries are {names}"
+            )
     return {name: canary for name, canary in canaries().items() if name[0] in (studies or STUDIES)}
 
 

@@ -59,7 +59,7 @@ class Stored:
 
 
 def stored(study: str) -> Stored:
-    """What is stored of a study; nothing if it has no file."""
+    """What is stored of a study; empty if its file does not exist."""
     path = STORED / f"{study}.json"
     if not path.exists():
         return Stored()

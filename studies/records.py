@@ -48,7 +48,7 @@ def _column(variable: Variable, rows: Sequence[Any]) -> NDArray[Any]:
 def read_record(path: Path, kind: type[Record]) -> Record:
     """Record of a kind that :func:`write_record` wrote; fields left out of it are None.
 
-    UnreadableFileError if the file is missing, truncated, or holds no such record.
+    UnreadableFileError if the file is missing, truncated, or of another kind of record.
     """
     columns = _columns(path, read_dataset(path), kind)
     return kind(**{name: values if values.ndim else values.item() for name, values in columns})
@@ -75,7 +75,7 @@ def _columns(
     wrong = [item.name for item in present if dims.get(item.name) != item.dims]
     if wrong:
         raise UnreadableFileError(
-            f"{path} holds no {kind.__name__}: {', '.join(wrong)} is missing or of other "
+            f"{path} does not contain a {kind.__name__}: {', '.join(wrong)} is missing or of other "
             "dimensions; compute it again"
         )
     return [(item.name, np.asarray(dataset[item.name])) for item in present]

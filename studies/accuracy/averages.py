@@ -24,8 +24,17 @@ _RUN, _BRANCH = "realisation", "branch"
 _NUMERICAL_ERROR = 0.03
 """Error of k that the numerics leave where schedules vary; it is the same surface by surface."""
 
-_START, _DEEPEST, _TRAVEL = 0.3, 1.0, 1.5
+_START = 0.3
+"""Penetration at which steady branches begin. (Units: reduced vertical length)"""
+
+_DEEPEST = 1.0
+"""Largest penetration. (Units: reduced vertical length)"""
+
+_TRAVEL = 1.5
+"""Travel while the step or the tile varies, in the unit of `SteadySchedule`."""
+
 _NO_STOP = 1e-9
+"""Standard error that no run reaches, so that all end at the largest penetration."""
 
 _TRIED: dict[str, tuple[float, ...]] = {
     "travel": (0.25, 0.5, 1.0, 1.5, 2.0, 3.0),
@@ -59,9 +68,9 @@ class Sample:
 class Coverage:
     """True and stated errors of w_appr and w_retr where the laws chose the numerics.
 
-    The numerical error is that against the reference on the same surface at the same loads, the
-    total one that of a steady run from the mean of the reference's runs on the other surfaces,
-    whose own standard error is that of the truth.
+    The numerical error compares with the reference on the same surface at the same loads. The
+    total error compares a steady run with the truth: the mean of the reference's runs on the
+    other surfaces, which has a standard error itself.
     """
 
     requested: float = variable("standard error that was requested", "e_el")
@@ -83,7 +92,7 @@ class Coverage:
 
     @property
     def total_interval(self) -> Array:
-        """Half width of the interval of the total error, that of the truth included."""
+        """Half width of the interval of the total error, including the error of the truth."""
         share = (1 + LEVEL) / 2
         statistical = stats.t.ppf(share, np.maximum(self.n_state - 1, 1)) * self.run_statistical
         systematic = np.hypot(self.run_numerical, self.truth_error)
@@ -95,7 +104,7 @@ def sampling_errors(
 ) -> tuple[Sample, ...]:
     """Hysteresis of a scene with other schedules and tiles.
 
-    By path independence the states of a coarse schedule are among those of a fine one, so that
+    By path independence the states of a coarse schedule are also states of a fine one, so that
     travel and step change the mean alone; another tile is another surface.
     """
     samples = []

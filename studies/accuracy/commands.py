@@ -54,7 +54,7 @@ _output = output_option(default=Path("results/accuracy"), help="Folder of the re
     default="settings",
     show_default=True,
     help="Errors of single settings; of numerics that the laws choose; of these on surfaces that "
-    "have no part in the laws; of schedules and tiles; true errors beside the stated ones.",
+    "have no part in the laws; of schedules and tiles; true and stated errors.",
 )
 @click.option(
     "--realisations", type=whole(Range(2, 1e6)), default=8, show_default=True, help="Surfaces."
@@ -62,7 +62,7 @@ _output = output_option(default=Path("results/accuracy"), help="Folder of the re
 def scene(scene: str, output: Path, study: str, realisations: int) -> None:
     """Measure the errors of one scene."""
     if scene not in SCENES:
-        raise click.BadParameter(f"there is no scene {scene!r}; {nearest_name(scene, SCENES)}")
+        raise click.BadParameter(f"{scene!r} is not a scene; {nearest_name(scene, SCENES)}")
     refuse_unwritable(output)
     announce_cost(realisations * STUDIES[study].seconds(SCENES[scene]))
     announce_compilation()
@@ -114,7 +114,7 @@ def predictions(keep: bool) -> None:
 )
 @keep_option
 def energies(scans: int, keep: bool) -> None:
-    """Compare e_el of synthetic scans with that of their spectra; print a table."""
+    """Compare e_el of synthetic scans with their spectra; print a table."""
     tables = {
         "Scans": synthetic.KINDS,
         "Roll-offs": synthetic.ROLL_OFFS,

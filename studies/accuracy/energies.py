@@ -1,4 +1,4 @@
-"""Hold e_el of synthetic scans, as instruments distort them, against that of their known spectra.
+"""Compare e_el of synthetic scans, as instruments distort them, with their known spectra.
 
 Every scan is cut from a larger surface, distorted, written as the file of an instrument, and read
 as `crackfront predict` reads it.
@@ -30,18 +30,34 @@ from studies.pages import markdown_table
 Distortion = Callable[[Array, np.random.Generator], Array]
 
 SEED = 20240229
-N_POINT, PIXEL = 192, 0.1e-6
-SIDE = N_POINT * PIXEL
-MEAN_SQUARE = 1e-9
-"""Points and side of a scan, and mean square half-derivative of its surface. (Units: m)"""
+"""Seed of all scans."""
 
-_LINE_POINTS, _LINES = 600, 3
+N_POINT = 192
+"""Points along a side of a scan."""
+
+PIXEL = 0.1e-6
+"""Distance of the points. (Units: m)"""
+
+SIDE = N_POINT * PIXEL
+"""Side of a scan. (Units: m)"""
+
+MEAN_SQUARE = 1e-9
+"""Mean square half-derivative of the scanned surface. (Units: m)"""
+
+_LINE_POINTS = 600
+"""Points of a line scan."""
+
+_LINES = 3
+"""Line scans of a surface."""
 
 ANYWHERE = 1e-3 * PIXEL
 """Short cutoff that stands for an end at any of many wavelengths."""
 
-_ENDS, _FINER = (1.0, 4.0), 2
-"""Points in the shortest waves, and points of a surface for one of its scan, which holds them."""
+_ENDS = (1.0, 4.0)
+"""Points in the shortest waves of a scan, between which they are drawn."""
+
+_FINER = 2
+"""Points of a surface for one point of its scan."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,7 +65,7 @@ class Kind:
     """Scans of one spectrum, in m, that are distorted in one way.
 
     The tile is the number of sides of the scan in the surface that it is cut from. A scan is
-    resolved where it holds the scales that matter to e_el; of an oblong one every other column is
+    resolved if it contains the scales that matter to e_el; of an oblong one every other column is
     left out, and of one of lines all but some of them. Heights in their standard deviation may be
     shaped into a surface that is not Gaussian, of the same e_el.
     """
@@ -85,7 +101,7 @@ class Found:
 
     @property
     def covers(self) -> bool:
-        """Whether the interval holds the truth."""
+        """Whether the interval contains the truth."""
         return self.ratio.low <= 1 <= self.ratio.high
 
     @property
@@ -295,7 +311,7 @@ def _lines(kind: Kind, rng: np.random.Generator) -> MeasuredSurface:
 
 
 def energy_table(energies: Mapping[Kind, Sequence[Found]]) -> str:
-    """e_el of all scans relative to the true one, and how often the intervals hold that."""
+    """e_el of all scans relative to the true one, and how often the intervals contain it."""
     rows = []
     for kind, scans in energies.items():
         ratios = np.array([scan.ratio.value for scan in scans])

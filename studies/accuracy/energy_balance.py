@@ -22,7 +22,15 @@ from studies.accuracy.study import rms
 from studies.pages import markdown_table
 
 CUTOFF = 0.08
-N_POINT, N_ANGLE, N_SURFACE = 128, 340, 4
+N_POINT = 128
+"""Points along a side of a tile."""
+
+N_ANGLE = 340
+"""Sites of a front."""
+
+N_SURFACE = 4
+"""Surfaces of each amplitude."""
+
 STEPS = DEFAULT_STEP * 2.0 ** np.arange(5, -2, -1)
 
 

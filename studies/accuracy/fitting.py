@@ -43,8 +43,8 @@ _NO_BIAS = (-99.0, 0.0)
 def fit_laws(studies: Iterable[SceneErrors]) -> Iterator[ErrorLaw]:
     """Law of every setting, amplitude and branch, fitted to the errors of scenes.
 
-    A bias counts where it is twice its standard error; elsewhere only scatter is seen, that of
-    both branches together. The mean of measured over fitted mean squares is one: few surfaces have
+    A bias counts if it is twice its standard error; else only scatter is seen, of both branches
+    together. The mean of measured over fitted mean squares is one: few surfaces have
     an avalanche that changes, and logarithms would count those without one as much.
     """
     for study in studies:

@@ -114,7 +114,7 @@ RECORDED = ((SHALLOW, INSTRUMENTS), (DEEP, DEEP_INSTRUMENTS))
 
 @dataclass(frozen=True, slots=True)
 class Coverage:
-    """How the intervals of an instrument hold the truth, a loop a row."""
+    """Errors and intervals of an instrument, a loop a row."""
 
     inside: Array
     """Whether w_appr, w_retr and hysteresis lie in their intervals. Shape (n_loop, 3)."""
@@ -122,7 +122,7 @@ class Coverage:
     """Found minus true work, over the true hysteresis. Shape (n_loop, 3)."""
     reach: Array
     """Half of each interval over the true hysteresis. Shape (n_loop, 3)."""
-    refused: int = 0
+    too_short: int = 0
     """Loops of too few rows for any number."""
 
 
@@ -225,15 +225,15 @@ def _coverage(loops: list[tuple[Array, Array]], too_short: int) -> Coverage:
 
 
 def coverage_table(coverages: Mapping[str, Coverage]) -> str:
-    """Shares of intervals that hold the truth, in Markdown, an instrument a row, and of all."""
+    """Shares of intervals that contain the truth, in Markdown, an instrument a row, and of all."""
     rows = []
     for name, rig in coverages.items():
         shares = [f"{share:.0%}" for share in (*np.mean(rig.inside, axis=0), np.mean(rig.inside))]
         error = f"{np.sqrt(np.mean(rig.offset[:, 2] ** 2)):.0%}"
         half = f"{np.median(rig.reach[:, 2]):.0%}"
-        rows.append((name, str(len(rig.inside)), str(rig.refused), *shares, error, half))
+        rows.append((name, str(len(rig.inside)), str(rig.too_short), *shares, error, half))
     inside = np.concatenate([rig.inside for rig in coverages.values()])
-    too_short = sum(rig.refused for rig in coverages.values())
+    too_short = sum(rig.too_short for rig in coverages.values())
     shares = [f"{share:.0%}" for share in (*np.mean(inside, axis=0), np.mean(inside))]
     rows.append(("**all**", str(len(inside)), str(too_short), *shares, "", ""))
     return markdown_table(

@@ -1,7 +1,7 @@
-"""Hold predictions against simulations of surfaces that the law of k was not fitted to.
+"""Compare predictions with simulations of surfaces that the law of k was not fitted to.
 
 Every surface is scanned: a map is cut from a larger one, written as a file of an instrument, read
-and fitted. Beside the k that is predicted for the fit stands that of simulations of it.
+and fitted. The k that is predicted for the fit is compared with simulations of the fit.
 """
 
 from __future__ import annotations
@@ -27,8 +27,17 @@ from studies.accuracy.scans import scanned
 from studies.pages import markdown_table
 
 SCENE = Scales(radius=1e-3, work_of_adhesion=60e-3, contact_modulus=0.7e6 / 0.75)
-REALISATIONS, SEED, N_POINT = 5, 20240229, 128
+REALISATIONS = 5
+"""Simulated surfaces of a film."""
+
+SEED = 20240229
+"""Seed of all films."""
+
+N_POINT = 128
+"""Points along a side of a scan."""
+
 _PIXELS_PER_CUTOFF = 2.5
+"""Pixels of a scan in the short cutoff of its surface."""
 
 
 @dataclass(frozen=True, slots=True)

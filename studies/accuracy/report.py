@@ -25,7 +25,7 @@ _TARGETS = (0.1, 0.03, 0.01, 0.003)
 
 @dataclass(frozen=True, slots=True)
 class Measured:
-    """What a folder holds: every study by the names of its scenes."""
+    """Contents of a folder: every study by the names of its scenes."""
 
     settings: dict[str, SceneErrors]
     requested: dict[str, SceneErrors]
@@ -50,14 +50,14 @@ class Measured:
 
 
 def measured(folder: Path) -> Measured:
-    """All studies that a folder holds; a ValueError says if it holds none."""
+    """All studies in a folder; ValueError if it is without any."""
     single, requested, unseen = (
         _stored(folder, study, read_errors) for study in ("settings", "requested", "unseen")
     )
     samples = _stored(folder, "averages", lambda path: read_study(path, Sample))
     coverages = _stored(folder, "coverage", lambda path: read_study(path, Coverage))
     if not (single or requested or unseen or samples or coverages):
-        raise ValueError(f"{folder} holds no errors; run python -m studies accuracy scene")
+        raise ValueError(f"{folder} contains no errors; run python -m studies accuracy scene")
     return Measured(single, requested, unseen, samples, coverages)
 
 
@@ -97,7 +97,7 @@ def compared_numbers(study_errors: Measured) -> dict[str, Number]:
 
 
 def _stored(folder: Path, study: str, read: Callable[[Path], Found]) -> dict[str, Found]:
-    """What a folder holds of a study, by the names of its scenes."""
+    """Files of a study in a folder, read, by the names of its scenes."""
     paths = {name: folder / f"{study}-{name}.nc" for name in SCENES}
     return {name: read(path) for name, path in paths.items() if path.exists()}
 

@@ -82,7 +82,7 @@ def test_offsets_and_intervals_are_told_in_parts_of_the_true_hysteresis(cycle):
     found = coverage([cycle], measured_loops.INSTRUMENTS)
     assert found.keys() == measured_loops.INSTRUMENTS.keys()
     truth = simulated_loop(cycle)
-    assert found["usual"].refused == 0
+    assert found["usual"].too_short == 0
     for one in found.values():
         assert np.array_equal(one.inside, np.abs(one.offset) <= one.reach)
         appr, retr, hysteresis = one.offset[0] * truth.hysteresis.value
