@@ -45,7 +45,9 @@ class _Studies(Commands):
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """Write the names of the studies without importing them."""
         with formatter.section("Studies"):
-            about = {name: one.get_short_help_str(120) for name, one in self.commands.items()}
+            about = {
+                name: command.get_short_help_str(120) for name, command in self.commands.items()
+            }
             formatter.write_dl([*STUDIES.items(), *about.items()])
 
 

@@ -73,16 +73,16 @@ class Result:
 
     def comparisons(self) -> Iterator[Comparison]:
         """Comparisons with the stored numbers; ValueError if there are none."""
-        known = stored(self.study).canaries
-        for name in known:
+        expected = stored(self.study).canaries
+        for name in expected:
             if name.startswith(f"{self.name}, ") and name not in self.numbers:
                 raise ValueError(f"{name!r} of {self.study} is stored, but not measured any more")
         for name, number in self.numbers.items():
-            if name not in known:
+            if name not in expected:
                 raise ValueError(
                     f"{name!r} of {self.study} is not stored; run python -m studies canaries --keep"
                 )
-            yield Comparison(f"{self.study}: {name}", known[name], number)
+            yield Comparison(f"{self.study}: {name}", expected[name], number)
 
 
 def canaries() -> dict[tuple[str, str], Canary]:
@@ -102,8 +102,10 @@ def chosen_canaries(studies: Collection[str]) -> dict[tuple[str, str], Canary]:
     """Canaries of some studies, or of all if none is named; ValueError for one without canaries."""
     for study in studies:
         if study not in STUDIES:
-            known = ", ".join(STUDIES)
-            raise ValueError(f"{study} has no canaries; the studies with canaries are {known}")
+            names = ", ".join(STUDIES)
+            raise ValueError(
+                f"{study} does not have canaries; the studies with canaries are {names}"
+            )
     return {name: canary for name, canary in canaries().items() if name[0] in (studies or STUDIES)}
 
 

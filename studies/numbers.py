@@ -59,7 +59,7 @@ class Stored:
 
 
 def stored(study: str) -> Stored:
-    """What is stored of a study; nothing if it has no file."""
+    """What is stored of a study; empty if its file does not exist."""
     path = STORED / f"{study}.json"
     if not path.exists():
         return Stored()
@@ -84,13 +84,13 @@ def store(
     The attributes of a file of data say where they were measured, if that is not here.
     """
     origin = _origin(data if data is not None else asdict(provenance()) | {"date": utc_now()})
-    known = stored(study)
-    for section, measured in ((known.numbers, numbers), (known.canaries, canaries)):
+    record = stored(study)
+    for section, measured in ((record.numbers, numbers), (record.canaries, canaries)):
         for name, number in (measured or {}).items():
             section[name] = replace(number, **asdict(origin))
     for name, text in (tables or {}).items():
-        known.tables[name] = Table(text, **asdict(origin))
-    text = json.dumps(asdict(known), indent=1, ensure_ascii=False, sort_keys=True)
+        record.tables[name] = Table(text, **asdict(origin))
+    text = json.dumps(asdict(record), indent=1, ensure_ascii=False, sort_keys=True)
     write_text(STORED / f"{study}.json", text + "\n")
 
 

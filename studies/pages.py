@@ -73,20 +73,20 @@ def renewed(page: str, studies: Mapping[str, Stored]) -> str:
     """
     used: list[Origin] = []
 
-    def block(found: re.Match[str]) -> str:
-        study, (name, *place) = found["study"], found["name"].split(" / ")
-        known = studies.get(study, Stored())
-        if table := known.tables.get(name):
+    def block(match: re.Match[str]) -> str:
+        study, (name, *place) = match["study"], match["name"].split(" / ")
+        record = studies.get(study, Stored())
+        if table := record.tables.get(name):
             used.append(table)
             text = _cell(table.text, *place) if place else table.text
-        elif number := known.numbers.get(name):
+        elif number := record.numbers.get(name):
             used.append(number)
             text = _number_text(number)
         else:
             raise ValueError(f"the study {study} has not measured {name!r}; run it with --keep")
-        if "\n" in found["text"]:
+        if "\n" in match["text"]:
             text = f"\n\n{text}\n\n"
-        return f"<!-- {study}: {found['name']} -->{text}<!-- end -->"
+        return f"<!-- {study}: {match['name']} -->{text}<!-- end -->"
 
     text = _BLOCK.sub(block, _ORIGINS.sub("\n", page))
     return f"{text}\n{_measured_line(used)}" if used else page

@@ -36,8 +36,8 @@ def write_records(
 
 def stacked(rows: Sequence[Any], along: str) -> dict[str, tuple[Any, ...]]:
     """Variables of one record or more of one kind, along a dimension that counts them."""
-    known = variables(type(rows[0]), along)
-    return {item.name: labelled(item, _column(item, rows)) for item in known}
+    items = variables(type(rows[0]), along)
+    return {item.name: labelled(item, _column(item, rows)) for item in items}
 
 
 def _column(variable: Variable, rows: Sequence[Any]) -> NDArray[Any]:
@@ -48,7 +48,7 @@ def _column(variable: Variable, rows: Sequence[Any]) -> NDArray[Any]:
 def read_record(path: Path, kind: type[Record]) -> Record:
     """Record of a kind that :func:`write_record` wrote; fields left out of it are None.
 
-    UnreadableFileError if the file is missing, truncated, or holds no such record.
+    UnreadableFileError if the file is missing, truncated, or of another kind of record.
     """
     columns = _columns(path, read_dataset(path), kind)
     return kind(**{name: values if values.ndim else values.item() for name, values in columns})
@@ -58,9 +58,9 @@ def read_records(path: Path, kind: type[Record], along: str) -> tuple[Record, ..
     """Records that :func:`write_records` wrote along a dimension; as :func:`read_record`."""
     dataset = read_dataset(path)
     columns = _columns(path, dataset, kind, along)
-    values = {name: one.tolist() if one.ndim == 1 else one for name, one in columns}
+    values = {name: column.tolist() if column.ndim == 1 else column for name, column in columns}
     return tuple(
-        kind(**{name: one[row] for name, one in values.items()})
+        kind(**{name: column[row] for name, column in values.items()})
         for row in range(dataset.sizes[along])
     )
 
@@ -71,11 +71,11 @@ def _columns(
     """Values of all variables of records of a kind."""
     dims = {name: values.dims for name, values in dataset.variables.items()}
     absent = {item.name for item in fields(kind) if item.default is None} - dims.keys()
-    known = [item for item in variables(kind, *along) if item.name not in absent]
-    wrong = [item.name for item in known if dims.get(item.name) != item.dims]
+    present = [item for item in variables(kind, *along) if item.name not in absent]
+    wrong = [item.name for item in present if dims.get(item.name) != item.dims]
     if wrong:
         raise UnreadableFileError(
-            f"{path} holds no {kind.__name__}: {', '.join(wrong)} is missing or of other "
+            f"{path} does not contain a {kind.__name__}: {', '.join(wrong)} is missing or of other "
             "dimensions; compute it again"
         )
-    return [(item.name, np.asarray(dataset[item.name])) for item in known]
+    return [(item.name, np.asarray(dataset[item.name])) for item in present]

@@ -220,7 +220,7 @@ class SurfaceLoads(ABC):
         """Loads on the surfaces of one spectrum, amplitude and spring of the sweep."""
 
     @abstractmethod
-    def check_resolved(self, simulation: Simulation) -> None:
+    def check_resolution(self, simulation: Simulation) -> None:
         """Raise ValueError if the numerics are too coarse for loads that this rule made."""
 
 

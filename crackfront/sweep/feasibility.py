@@ -49,7 +49,7 @@ def check_feasible(sweep: Sweep, path: Path) -> None:
         for item in sweep.spectra:
             for simulation in sweep.one_per_amplitude(item):
                 if isinstance(sweep.schedule, SurfaceLoads):
-                    sweep.schedule.check_resolved(simulation)
+                    sweep.schedule.check_resolution(simulation)
                 _check_resolution(simulation)
                 _check_tolerance_and_error(simulation, sweep.numerics.settings)
     except ValueError as error:

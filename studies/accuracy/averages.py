@@ -24,8 +24,17 @@ _RUN, _BRANCH = "realisation", "branch"
 _NUMERICAL_ERROR = 0.03
 """Error of k that the numerics leave where schedules vary; it is the same surface by surface."""
 
-_START, _DEEPEST, _TRAVEL = 0.3, 1.0, 1.5
+_START = 0.3
+"""Penetration at which steady branches begin. (Units: reduced vertical length)"""
+
+_DEEPEST = 1.0
+"""Largest penetration. (Units: reduced vertical length)"""
+
+_TRAVEL = 1.5
+"""Travel while the step or the tile varies, in the unit of `SteadySchedule`."""
+
 _NO_STOP = 1e-9
+"""Standard error that no run reaches, so that all end at the largest penetration."""
 
 _TRIED: dict[str, tuple[float, ...]] = {
     "travel": (0.25, 0.5, 1.0, 1.5, 2.0, 3.0),
@@ -59,9 +68,9 @@ class Sample:
 class Coverage:
     """True and stated errors of w_appr and w_retr where the laws chose the numerics.
 
-    The numerical error is that against the reference on the same surface at the same loads, the
-    total one that of a steady run from the mean of the reference's runs on the other surfaces,
-    whose own standard error is that of the truth.
+    The numerical error compares with the reference on the same surface at the same loads. The
+    total error compares a steady run with the truth: the mean of the reference's runs on the
+    other surfaces, which has a standard error itself.
     """
 
     requested: float = variable("standard error that was requested", "e_el")
@@ -83,11 +92,11 @@ class Coverage:
 
     @property
     def total_interval(self) -> Array:
-        """Half width of the interval of the total error, that of the truth included."""
+        """Half width of the interval of the total error, including the error of the truth."""
         share = (1 + LEVEL) / 2
         statistical = stats.t.ppf(share, np.maximum(self.n_state - 1, 1)) * self.run_statistical
-        known = np.hypot(self.run_numerical, self.truth_error)
-        return np.hypot(statistical, stats.norm.ppf(share) * known)
+        systematic = np.hypot(self.run_numerical, self.truth_error)
+        return np.hypot(statistical, stats.norm.ppf(share) * systematic)
 
 
 def sampling_errors(
@@ -95,7 +104,7 @@ def sampling_errors(
 ) -> tuple[Sample, ...]:
     """Hysteresis of a scene with other schedules and tiles.
 
-    By path independence the states of a coarse schedule are among those of a fine one, so that
+    By path independence the states of a coarse schedule are also states of a fine one, so that
     travel and step change the mean alone; another tile is another surface.
     """
     samples = []
@@ -159,25 +168,27 @@ def held_out_coverage(
     numbers = range(HELD_OUT, HELD_OUT + n_realisation)
     exact = [measured_branches(scene, scene.reference, number) for number in numbers]
     truth = np.array([_steady(scene.simulation(scene.reference, number))[0] for number in numbers])
-    others = [np.delete(truth, row, axis=0) for row in range(n_realisation)]
-    of_others = np.array([rows.mean(axis=0) for rows in others])
-    scatter = np.array([rows.std(axis=0, ddof=1) for rows in others])
+    other_truths = [np.delete(truth, row, axis=0) for row in range(n_realisation)]
+    expected = np.array([rows.mean(axis=0) for rows in other_truths])
+    scatter = np.array([rows.std(axis=0, ddof=1) for rows in other_truths])
     # Cutoffs along the front, summed over its states.
     circumference = 2 * np.pi * float(exact[0].radius.mean())
     size = scene.penetrations.size * circumference / scene.spectrum.short_cutoff
-    found = []
+    coverages = []
     for error in requested:
         settings = scene.chosen_settings(error)
         simulations = [scene.simulation(settings, number) for number in numbers]
         branches = [measured_branches(scene, settings, number) for number in numbers]
         pairs = zip(branches, exact, strict=True)
         runs = np.array([_steady(simulation) for simulation in simulations])
-        found.append(
+        coverages.append(
             Coverage(
                 requested=error,
-                numerical=np.array([one.adhesion - other.adhesion for one, other in pairs]),
+                numerical=np.array(
+                    [branch.adhesion - reference.adhesion for branch, reference in pairs]
+                ),
                 numerical_stated=np.array(numerical_error(simulations[0], size)),
-                total=runs[:, 0] - of_others,
+                total=runs[:, 0] - expected,
                 run_numerical=runs[:, 1],
                 run_statistical=runs[:, 2],
                 n_state=runs[:, 3],
@@ -185,7 +196,7 @@ def held_out_coverage(
             )
         )
         progress(f"requested {error:g}: {n_realisation} surfaces")
-    return tuple(found)
+    return tuple(coverages)
 
 
 def _steady(simulation: Simulation) -> list[tuple[float, float]]:

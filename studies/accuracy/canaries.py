@@ -69,10 +69,10 @@ def _averages() -> Mapping[str, Number]:
 
 def _coverage() -> Mapping[str, Number]:
     """Stated and true error of steady runs."""
-    (found,) = held_out_coverage(_SCENE, (0.03,), 3)
+    (coverage,) = held_out_coverage(_SCENE, (0.03,), 3)
     return {
-        "true numerical error": _rms_number(found.numerical, "w_int"),
-        "true total error": _rms_number(found.total, "w_int"),
+        "true numerical error": _rms_number(coverage.numerical, "w_int"),
+        "true total error": _rms_number(coverage.total, "w_int"),
     }
 
 
@@ -101,13 +101,13 @@ def _scans() -> Mapping[str, Number]:
 
 def _movement() -> Mapping[str, Number]:
     """Largest movement of an interval with seeds, digits and draws."""
-    found = movement([scan.measurement for scan in found_scan(KINDS[0], 0).surface.scans])
+    moved = movement([scan.measurement for scan in found_scan(KINDS[0], 0).surface.scans])
     return {
         name: Number(100 * float(ends.max()), error, "% of the interval", reason)
         for name, ends, error, reason in (
-            ("seeds", found.seeds, 1.0, "as much as other seeds change"),
-            ("digits", found.digits, 0.05, "last digit on the page"),
-            ("draws", found.size, 1.0, "as much as other seeds change"),
+            ("seeds", moved.seeds, 1.0, "as much as other seeds change"),
+            ("digits", moved.digits, 0.05, "last digit on the page"),
+            ("draws", moved.size, 1.0, "as much as other seeds change"),
         )
     }
 
@@ -115,11 +115,11 @@ def _movement() -> Mapping[str, Number]:
 def _measured_loop() -> Mapping[str, Number]:
     """Hysteresis of one loop, as the usual rig records it."""
     usual = {"usual": measured_loops.INSTRUMENTS["usual"]}
-    found = measured_loops.coverage(measured_loops.cycles(1), usual)["usual"]
+    coverage = measured_loops.coverage(measured_loops.cycles(1), usual)["usual"]
     unit, reason = "% of the true hysteresis", "last digit on the page"
     return {
-        "error of the hysteresis": Number(100 * float(found.offset[0, 2]), 0.5, unit, reason),
-        "half of its interval": Number(100 * float(found.reach[0, 2]), 0.5, unit, reason),
+        "error of the hysteresis": Number(100 * float(coverage.offset[0, 2]), 0.5, unit, reason),
+        "half of its interval": Number(100 * float(coverage.reach[0, 2]), 0.5, unit, reason),
     }
 
 
@@ -128,7 +128,7 @@ def _prediction() -> Mapping[str, Number]:
     film = next(comparisons())
     return {
         "k predicted": interval_number(film.prediction.factors.both),
-        "k simulated": interval_number(film.found.k),
+        "k simulated": interval_number(film.simulations.k),
     }
 
 

@@ -54,7 +54,7 @@ _output = output_option(default=Path("results/accuracy"), help="Folder of the re
     default="settings",
     show_default=True,
     help="Errors of single settings; of numerics that the laws choose; of these on surfaces that "
-    "have no part in the laws; of schedules and tiles; true errors beside the stated ones.",
+    "have no part in the laws; of schedules and tiles; true and stated errors.",
 )
 @click.option(
     "--realisations", type=whole(Range(2, 1e6)), default=8, show_default=True, help="Surfaces."
@@ -62,15 +62,15 @@ _output = output_option(default=Path("results/accuracy"), help="Folder of the re
 def scene(scene: str, output: Path, study: str, realisations: int) -> None:
     """Measure the errors of one scene."""
     if scene not in SCENES:
-        raise click.BadParameter(f"there is no scene {scene!r}; {nearest_name(scene, SCENES)}")
+        raise click.BadParameter(f"{scene!r} is not a scene; {nearest_name(scene, SCENES)}")
     check_writable(output)
     announce_cost(realisations * STUDIES[study].seconds(SCENES[scene]))
     announce_compilation()
     compile_solver("newton", FullCycle)
-    found = STUDIES[study].measured(SCENES[scene], realisations, click.echo)
+    errors = STUDIES[study].measured(SCENES[scene], realisations, click.echo)
     path = output / f"{study}-{scene}.nc"
     forget_sums(output)
-    write_dataset(path, found, provenance())
+    write_dataset(path, errors, provenance())
     click.echo(f"errors: {path}")
 
 
@@ -80,15 +80,15 @@ def scene(scene: str, output: Path, study: str, realisations: int) -> None:
 def report(output: Path, keep: bool) -> None:
     """Fit the laws, write the tables, and draw the figures of what was measured."""
     forget_sums(output)
-    found = measured(output)
-    tables = error_tables(found)
+    study_errors = measured(output)
+    tables = error_tables(study_errors)
     parts = [f"## {name}\n\n{table}\n" for name, table in tables.items()]
     write_text(output / "accuracy.md", "\n".join(["# Measured errors\n", *parts]))
     click.echo(f"tables: {output / 'accuracy.md'}")
-    if laws := list(fit_laws(found.fitted)):
+    if laws := list(fit_laws(study_errors.fitted)):
         write_text(output / "laws.csv", laws_text(laws))
         click.echo(f"laws: {output / 'laws.csv'}")
-    for name, figure in figures(found, laws).items():
+    for name, figure in figures(study_errors, laws).items():
         for path in save_figure(figure, output / name):
             click.echo(f"figure: {path}")
     write_sums(output)
@@ -96,7 +96,7 @@ def report(output: Path, keep: bool) -> None:
         page = (Path(__file__).parents[2] / "docs/experiments/numerics.md").read_text("utf-8")
         shown = {name: text for name, text in tables.items() if f"accuracy: {name} -->" in page}
         data = read_attributes(min(output.glob("*.nc"))) | {"command": "make accuracy"}
-        store("accuracy", tables=shown, numbers=compared_numbers(found), data=data)
+        store("accuracy", tables=shown, numbers=compared_numbers(study_errors), data=data)
 
 
 @commands.command(epilog=examples("python -m studies accuracy predictions"))
@@ -114,7 +114,7 @@ def predictions(keep: bool) -> None:
 )
 @keep_option
 def energies(scans: int, keep: bool) -> None:
-    """Compare e_el of synthetic scans with that of their spectra; print a table."""
+    """Compare e_el of synthetic scans with their spectra; print a table."""
     tables = {
         "Scans": synthetic.KINDS,
         "Roll-offs": synthetic.ROLL_OFFS,
@@ -123,14 +123,14 @@ def energies(scans: int, keep: bool) -> None:
     every = [
         (kind, number) for kinds in tables.values() for kind in kinds for number in range(scans)
     ]
-    found = defaultdict(list)
+    energies_of_scans = defaultdict(list)
     for kind, number in with_progress(every, len(every), "scans"):
-        found[kind].append(synthetic.found_scan(kind, number))
+        energies_of_scans[kind].append(synthetic.found_scan(kind, number))
     parts = {
-        name: synthetic.energy_table({kind: found[kind] for kind in kinds})
+        name: synthetic.energy_table({kind: energies_of_scans[kind] for kind in kinds})
         for name, kinds in tables.items()
     }
-    numbers = {"coverage of the hardest scans": synthetic.hardest_coverage(found)}
+    numbers = {"coverage of the hardest scans": synthetic.hardest_coverage(energies_of_scans)}
     tell("accuracy", parts, numbers=numbers, keep=keep)
 
 
@@ -143,12 +143,12 @@ def movement(scans: tuple[Path, ...], keep: bool) -> None:
     SCANS are read one by one; without any, one synthetic scan of each kind is taken.
     """
     surfaces = {str(scan): list(read_measurements([scan])) for scan in scans} or {
-        kind.name: [one.measurement for one in synthetic.found_scan(kind, 0).surface.scans]
+        kind.name: [scan.measurement for scan in synthetic.found_scan(kind, 0).surface.scans]
         for kind in synthetic.KINDS
     }
     shown = with_progress(surfaces.items(), len(surfaces), "scans")
-    found = [(name, settled.movement(one)) for name, one in shown]
-    parts = {"Movement": settled.movement_table(found)}
+    movements = [(name, settled.movement(measurements)) for name, measurements in shown]
+    parts = {"Movement": settled.movement_table(movements)}
     tell("accuracy", parts, keep=keep)
 
 
@@ -178,9 +178,9 @@ def energy_balance(keep: bool) -> None:
 def loops(loops: int, keep: bool) -> None:
     """Record simulated cycles as rigs would, and count truths within intervals; print a table."""
     announce_compilation()
-    found: dict[str, rigs.Coverage] = {}
+    coverages: dict[str, rigs.Coverage] = {}
     for press, instruments in rigs.RECORDED:
         shown = with_progress(rigs.cycles(loops, press), loops, "loops")
-        found |= rigs.coverage(shown, instruments)
-    parts = {"Measured loops": rigs.coverage_table(found)}
+        coverages |= rigs.coverage(shown, instruments)
+    parts = {"Measured loops": rigs.coverage_table(coverages)}
     tell("accuracy", parts, keep=keep)

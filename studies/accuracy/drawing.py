@@ -39,12 +39,12 @@ _AXES: dict[SettingName, str] = {
 }
 
 
-def figures(found: Measured, laws: Sequence[ErrorLaw]) -> dict[str, Figure]:
+def figures(study_errors: Measured, laws: Sequence[ErrorLaw]) -> dict[str, Figure]:
     """Figures of what was measured, by the names of their files."""
-    drawn, scenes = {}, found.scenes
+    drawn, scenes = {}, study_errors.scenes
     if shown := [scenes[name] for name in _SHOWN if name in scenes]:
         drawn["work-precision"] = work_precision_figure(shown)
-    if flat := [study for study in found.fitted if study.scene.shape == "flat"]:
+    if flat := [study for study in study_errors.fitted if study.scene.shape == "flat"]:
         drawn["laws"] = laws_figure(flat, laws)
     return drawn
 
@@ -133,11 +133,11 @@ def _draw_laws(
     tried: set[float] = set()
     for study, colour, marker in zip(studies, style.COLOURS, style.MARKERS, strict=False):
         scene = study.scene
-        values, found = setting_errors(study, setting)
+        values, errors_by_value = setting_errors(study, setting)
         tried.update(values.tolist())
         axes.plot(
             values,
-            [rms(errors[:, 1]) for errors in found],
+            [rms(errors[:, 1]) for errors in errors_by_value],
             marker=marker,
             linestyle="none",
             color=colour,

@@ -1,4 +1,4 @@
-"""Hold e_el of synthetic scans, as instruments distort them, against that of their known spectra.
+"""Compare e_el of synthetic scans, as instruments distort them, with their known spectra.
 
 Every scan is cut from a larger surface, distorted, written as the file of an instrument, and read
 as `crackfront predict` reads it.
@@ -30,18 +30,34 @@ from studies.pages import markdown_table
 Distortion = Callable[[Array, np.random.Generator], Array]
 
 SEED = 20240229
-N_POINT, PIXEL = 192, 0.1e-6
-SIDE = N_POINT * PIXEL
-MEAN_SQUARE = 1e-9
-"""Points and side of a scan, and mean square half-derivative of its surface. (Units: m)"""
+"""Seed of all scans."""
 
-_LINE_POINTS, _LINES = 600, 3
+N_POINT = 192
+"""Points along a side of a scan."""
+
+PIXEL = 0.1e-6
+"""Distance of the points. (Units: m)"""
+
+SIDE = N_POINT * PIXEL
+"""Side of a scan. (Units: m)"""
+
+MEAN_SQUARE = 1e-9
+"""Mean square half-derivative of the scanned surface. (Units: m)"""
+
+_LINE_POINTS = 600
+"""Points of a line scan."""
+
+_LINES = 3
+"""Line scans of a surface."""
 
 ANYWHERE = 1e-3 * PIXEL
 """Short cutoff that stands for an end at any of many wavelengths."""
 
-_ENDS, _FINER = (1.0, 4.0), 2
-"""Points in the shortest waves, and points of a surface for one of its scan, which holds them."""
+_ENDS = (1.0, 4.0)
+"""Points in the shortest waves of a scan, between which they are drawn."""
+
+_FINER = 2
+"""Points of a surface for one point of its scan."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,7 +65,7 @@ class Kind:
     """Scans of one spectrum, in m, that are distorted in one way.
 
     The tile is the number of sides of the scan in the surface that it is cut from. A scan is
-    resolved where it holds the scales that matter to e_el; of an oblong one every other column is
+    resolved if it contains the scales that matter to e_el; of an oblong one every other column is
     left out, and of one of lines all but some of them. Heights in their standard deviation may be
     shaped into a surface that is not Gaussian, of the same e_el.
     """
@@ -85,7 +101,7 @@ class Found:
 
     @property
     def covers(self) -> bool:
-        """Whether the interval holds the truth."""
+        """Whether the interval contains the truth."""
         return self.ratio.low <= 1 <= self.ratio.high
 
     @property
@@ -248,8 +264,8 @@ def found_scan(kind: Kind, number: int) -> Found:
     key = _key(kind, number)
     rng = np.random.default_rng(np.random.SeedSequence(SEED, spawn_key=key))
     surface = (_lines if kind.is_line else _map)(kind, rng)
-    found = surface.half_derivative
-    return Found(found.each(lambda number: number / MEAN_SQUARE), surface)
+    half_derivative = surface.half_derivative
+    return Found(half_derivative.each(lambda number: number / MEAN_SQUARE), surface)
 
 
 def _key(kind: Kind, number: int) -> tuple[int, ...]:
@@ -266,8 +282,10 @@ def _map(kind: Kind, rng: np.random.Generator) -> MeasuredSurface:
     heights = gaussian_field(kind.truth(rng), whole, kind.tile * SIDE, rng)[::_FINER, ::_FINER]
     if kind.shaped:
         shaped = kind.shaped(heights / heights.std())
-        asked, found = (rough_adhesion(1e-9 * one, SIDE).e_el for one in (heights, shaped))
-        heights = shaped * math.sqrt(asked / found)
+        undistorted, distorted = (
+            rough_adhesion(1e-9 * values, SIDE).e_el for values in (heights, shaped)
+        )
+        heights = shaped * math.sqrt(undistorted / distorted)
     if kind.distortion in (_bow, _form, _holes):
         heights = heights[:N_POINT, :N_POINT]
     if kind.tip_radius:
@@ -292,25 +310,26 @@ def _lines(kind: Kind, rng: np.random.Generator) -> MeasuredSurface:
         return measured_surface(read_measurements(paths, ReadingOptions(unit="um")))
 
 
-def energy_table(found: Mapping[Kind, Sequence[Found]]) -> str:
-    """e_el of all scans relative to the true one, and how often the intervals hold that."""
+def energy_table(energies: Mapping[Kind, Sequence[Found]]) -> str:
+    """e_el of all scans relative to the true one, and how often the intervals contain it."""
     rows = []
-    for kind, scans in found.items():
-        ratios = np.array([one.ratio.value for one in scans])
-        shares = [one.surface.joint.shares.measured for one in scans]
+    for kind, scans in energies.items():
+        ratios = np.array([scan.ratio.value for scan in scans])
+        covered = np.mean([scan.covers for scan in scans])
+        shares = [scan.surface.joint.shares.measured for scan in scans]
         rows.append(
             f"{kind.name} | {'yes' if kind.resolved else 'no'} | {np.median(ratios):.2f} | "
-            f"{np.median(np.abs(ratios - 1)):.0%} | {np.mean([one.covers for one in scans]):.0%} | "
-            f"{np.median([one.factor for one in scans]):.2f} | {np.median(shares):.0%}"
+            f"{np.median(np.abs(ratios - 1)):.0%} | {covered:.0%} | "
+            f"{np.median([scan.factor for scan in scans]):.2f} | {np.median(shares):.0%}"
         )
     table = markdown_table(
         "scans | resolved | e_el found / true | median error | intervals that hold it | "
         "their factor | e_el measured",
         rows,
     )
-    every = [one for scans in found.values() for one in scans]
-    ratios = np.array([one.ratio.value for one in every])
-    covered = np.mean([one.covers for one in every])
+    every = [scan for scans in energies.values() for scan in scans]
+    ratios = np.array([scan.ratio.value for scan in every])
+    covered = np.mean([scan.covers for scan in every])
     error = np.median(np.abs(ratios - 1))
     return (
         f"{table}\n\n{len(every)} scans: median error {error:.0%}, geometric mean of "
@@ -319,11 +338,11 @@ def energy_table(found: Mapping[Kind, Sequence[Found]]) -> str:
     )
 
 
-def hardest_coverage(found: Mapping[Kind, Sequence[Found]]) -> Number:
+def hardest_coverage(energies: Mapping[Kind, Sequence[Found]]) -> Number:
     """Share of the intervals that contain the truth, of the scans that show their roll-off least.
 
     The error is half of the 95% interval of the binomial distribution, taken as normal.
     """
-    (scans,) = (scans for kind, scans in found.items() if kind.name == _HARDEST)
+    (scans,) = (scans for kind, scans in energies.items() if kind.name == _HARDEST)
     share = float(np.mean([scan.covers for scan in scans]))
     return Number(share, REACH * math.sqrt(share * (1 - share) / len(scans)))

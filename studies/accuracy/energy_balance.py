@@ -22,7 +22,15 @@ from studies.accuracy.study import rms
 from studies.pages import markdown_table
 
 CUTOFF = 0.08
-N_POINT, N_ANGLE, N_SURFACE = 128, 340, 4
+N_POINT = 128
+"""Points along a side of a tile."""
+
+N_ANGLE = 340
+"""Sites of a front."""
+
+N_SURFACE = 4
+"""Surfaces of each amplitude."""
+
 STEPS = DEFAULT_STEP * 2.0 ** np.arange(5, -2, -1)
 
 
@@ -55,10 +63,10 @@ def energy_table() -> str:
     """Energies of all amplitudes and steps; errors are rms, against the finest two steps."""
     rows = []
     for amplitude in (0.1, 0.4, 0.84):
-        found = [
+        balances = [
             [energies(cycle(amplitude, seed, step)) for seed in range(N_SURFACE)] for step in STEPS
         ]
-        lost, work, trapezoid = np.moveaxis(np.array(found), 2, 0)
+        lost, work, trapezoid = np.moveaxis(np.array(balances), 2, 0)
         # A value from each step and the next finer one.
         extrapolated = 2 * lost[1:] - lost[:-1]
         percents = [

@@ -52,9 +52,9 @@ def _averages(scene: Scene, n_realisation: int, progress: Progress) -> xr.Datase
 
 
 def _coverage(scene: Scene, n_realisation: int, progress: Progress) -> xr.Dataset:
-    """True errors beside the stated ones."""
-    found = averages.held_out_coverage(scene, _COVERED, n_realisation, progress)
-    return records_dataset("true and stated errors", scene, found)
+    """True and stated errors."""
+    coverages = averages.held_out_coverage(scene, _COVERED, n_realisation, progress)
+    return records_dataset("true and stated errors", scene, coverages)
 
 
 STUDIES = {
@@ -91,7 +91,7 @@ def read_study(path: Path, kind: type[Record]) -> tuple[Scene, tuple[Record, ...
     """
     scene = SCENES.get(str(read_dataset(path).attrs.get("scene")))
     if scene is None:
-        raise UnreadableFileError(f"{path} holds no errors of a known scene; measure them again")
+        raise UnreadableFileError(f"{path} contains no errors of a known scene; measure them again")
     return scene, read_records(path, kind, _SETTING)
 
 

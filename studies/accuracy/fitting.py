@@ -43,8 +43,8 @@ _NO_BIAS = (-99.0, 0.0)
 def fit_laws(studies: Iterable[SceneErrors]) -> Iterator[ErrorLaw]:
     """Law of every setting, amplitude and branch, fitted to the errors of scenes.
 
-    A bias counts where it is twice its standard error; elsewhere only scatter is seen, that of
-    both branches together. The mean of measured over fitted mean squares is one: few surfaces have
+    A bias counts if it is twice its standard error; else only scatter is seen, of both branches
+    together. The mean of measured over fitted mean squares is one: few surfaces have
     an avalanche that changes, and logarithms would count those without one as much.
     """
     for study in studies:
@@ -58,10 +58,10 @@ def _avalanche(study: SceneErrors) -> float:
     deviations = np.concatenate([setting_errors(study, setting)[1] for setting in SETTINGS])
     deviations -= deviations.mean(axis=1, keepdims=True)
     few = np.mean(deviations**2, axis=1, keepdims=True) < _FEW**2
-    kept = np.where(few, deviations, 0.0)
-    total = float(np.sum(kept**2))
+    counted = np.where(few, deviations, 0.0)
+    total = float(np.sum(counted**2))
     # Of rare avalanches the ratio of the fourth moment to the second is the square of their size.
-    return float(np.sqrt(np.sum(kept**4) / total)) if total > 0 else 0.0
+    return float(np.sqrt(np.sum(counted**4) / total)) if total > 0 else 0.0
 
 
 def setting_errors(study: SceneErrors, setting: SettingName) -> tuple[Array, Array]:

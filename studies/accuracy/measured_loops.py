@@ -114,7 +114,7 @@ RECORDED = ((SHALLOW, INSTRUMENTS), (DEEP, DEEP_INSTRUMENTS))
 
 @dataclass(frozen=True, slots=True)
 class Coverage:
-    """How the intervals of an instrument hold the truth, a loop a row."""
+    """Errors and intervals of an instrument, a loop a row."""
 
     inside: Array
     """Whether w_appr, w_retr and hysteresis lie in their intervals. Shape (n_loop, 3)."""
@@ -122,7 +122,7 @@ class Coverage:
     """Found minus true work, over the true hysteresis. Shape (n_loop, 3)."""
     reach: Array
     """Half of each interval over the true hysteresis. Shape (n_loop, 3)."""
-    refused: int = 0
+    too_short: int = 0
     """Loops of too few rows for any number."""
 
 
@@ -152,9 +152,9 @@ def recording(cycle: Dataset, instrument: Instrument, rng: np.random.Generator) 
         visited = visited[
             (np.arange(visited.size) <= turn) | (way <= instrument.retraction * way[-1])
         ]
-    kept = rng.random(visited.size) < instrument.recorded
-    kept[turn] = True
-    rows = visited[kept]
+    is_recorded = rng.random(visited.size) < instrument.recorded
+    is_recorded[turn] = True
+    rows = visited[is_recorded]
     largest = float(np.max(np.abs(force)))
     before = np.zeros(instrument.free_rows)
     after = before if instrument.retraction == 1 else np.zeros(0)
@@ -178,20 +178,20 @@ def recording(cycle: Dataset, instrument: Instrument, rng: np.random.Generator) 
 
 def _first_visits(mount: Array, direction: Array) -> Array:
     """Whether the mount is at a state further than ever on its branch; contact is made at 0."""
-    found = np.zeros(mount.size, bool)
+    is_first = np.zeros(mount.size, bool)
     for sign, start in ((1, 0.0), (-1, -np.inf)):
         branch = np.flatnonzero(direction == sign)
         ahead = np.concatenate([[start], sign * mount[branch]])
-        found[branch] = ahead[1:] > np.maximum.accumulate(ahead)[:-1]
-    return found
+        is_first[branch] = ahead[1:] > np.maximum.accumulate(ahead)[:-1]
+    return is_first
 
 
 def coverage(
     loops: Iterable[Dataset], instruments: Mapping[str, Instrument], seed: int = 0
 ) -> dict[str, Coverage]:
     """Coverage by the names of the instruments, each of which records every loop."""
-    found: dict[str, list[tuple[Array, Array]]] = {name: [] for name in instruments}
-    refused = Counter[str]()
+    errors_by_rig: dict[str, list[tuple[Array, Array]]] = {name: [] for name in instruments}
+    too_short = Counter[str]()
     for number, cycle in enumerate(loops):
         truth = simulated_loop(cycle)
         for place, (name, instrument) in enumerate(instruments.items()):
@@ -204,38 +204,38 @@ def coverage(
             try:
                 measured = analyse_loop(recording(cycle, instrument, rng), rig)
             except ValueError:
-                refused[name] += 1
+                too_short[name] += 1
             else:
-                found[name].append(_departures(measured, truth))
-    return {name: _coverage(one, refused[name]) for name, one in found.items()}
+                errors_by_rig[name].append(_departures(measured, truth))
+    return {name: _coverage(errors, too_short[name]) for name, errors in errors_by_rig.items()}
 
 
 def _departures(measured: MeasuredLoop, truth: MeasuredLoop) -> tuple[Array, Array]:
     """Departures of the works and halves of their intervals, over the true hysteresis."""
     works = [(getattr(measured, name), getattr(truth, name).value) for name in WORKS]
     unit = truth.hysteresis.value
-    offset = np.array([(one.value - value) / unit for one, value in works])
-    return offset, np.array([(one.high - one.low) / 2 / unit for one, _ in works])
+    offset = np.array([(work.value - value) / unit for work, value in works])
+    return offset, np.array([(work.high - work.low) / 2 / unit for work, _ in works])
 
 
-def _coverage(loops: list[tuple[Array, Array]], refused: int) -> Coverage:
+def _coverage(loops: list[tuple[Array, Array]], too_short: int) -> Coverage:
     """Coverage of an instrument from the departures of its loops."""
     offset, reach = (np.array(column) for column in zip(*loops, strict=True))
-    return Coverage(np.abs(offset) <= reach, offset, reach, refused)
+    return Coverage(np.abs(offset) <= reach, offset, reach, too_short)
 
 
-def coverage_table(found: Mapping[str, Coverage]) -> str:
-    """Shares of intervals that hold the truth, in Markdown, an instrument a row, and of all."""
+def coverage_table(coverages: Mapping[str, Coverage]) -> str:
+    """Shares of intervals that contain the truth, in Markdown, an instrument a row, and of all."""
     rows = []
-    for name, one in found.items():
-        shares = [f"{share:.0%}" for share in (*np.mean(one.inside, axis=0), np.mean(one.inside))]
-        error = f"{np.sqrt(np.mean(one.offset[:, 2] ** 2)):.0%}"
-        half = f"{np.median(one.reach[:, 2]):.0%}"
-        rows.append((name, str(len(one.inside)), str(one.refused), *shares, error, half))
-    inside = np.concatenate([one.inside for one in found.values()])
-    refused = sum(one.refused for one in found.values())
+    for name, rig in coverages.items():
+        shares = [f"{share:.0%}" for share in (*np.mean(rig.inside, axis=0), np.mean(rig.inside))]
+        error = f"{np.sqrt(np.mean(rig.offset[:, 2] ** 2)):.0%}"
+        half = f"{np.median(rig.reach[:, 2]):.0%}"
+        rows.append((name, str(len(rig.inside)), str(rig.too_short), *shares, error, half))
+    inside = np.concatenate([rig.inside for rig in coverages.values()])
+    too_short = sum(rig.too_short for rig in coverages.values())
     shares = [f"{share:.0%}" for share in (*np.mean(inside, axis=0), np.mean(inside))]
-    rows.append(("**all**", str(len(inside)), str(refused), *shares, "", ""))
+    rows.append(("**all**", str(len(inside)), str(too_short), *shares, "", ""))
     return markdown_table(
         "rig | loops | refused | w_appr | w_retr | hysteresis | all three | rms error of the "
         "hysteresis | half of its interval",

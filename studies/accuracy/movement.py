@@ -39,45 +39,52 @@ class Movement:
 
 def movement(measurements: Sequence[Measurement]) -> Movement:
     """Movements of the interval of one surface."""
-    known, number = _ends(measurements, None)
+    usual, number = _ends(measurements, None)
     seeds = [_ends(measurements, seed)[0] for seed in range(SEEDS)]
     rounded = [
-        replace(one, heights=step * np.round(one.heights / step))
-        for one, step in ((one, DIGITS * one.heights.std()) for one in measurements)
+        replace(measurement, heights=_rounded(measurement.heights)) for measurement in measurements
     ]
     digits = [_ends(rounded, None)[0]]
     size = [_ends(measurements, SEEDS, [MORE * number // BATCH])[0]]
-    width = known[2] - known[0]
-    low, value, high = np.exp(known).tolist()
+    width = usual[2] - usual[0]
+    low, value, high = np.exp(usual).tolist()
     by_seeds, by_digits, by_size = (
-        np.max(np.abs(np.array(ends) - known), axis=0) / width for ends in (seeds, digits, size)
+        np.max(np.abs(np.array(ends) - usual), axis=0) / width for ends in (seeds, digits, size)
     )
     return Movement(Estimate(value, math.nan, low, high), by_seeds, by_digits, by_size, number)
+
+
+def _rounded(heights: Array) -> Array:
+    """Heights with steps of `DIGITS` of their standard deviation."""
+    step = DIGITS * heights.std()
+    return step * np.round(heights / step)
 
 
 def _ends(
     measurements: Sequence[Measurement], seed: int | None, numbers: Sequence[int] | None = None
 ) -> tuple[Array, int]:
     """Logarithms of the ends and the median of the interval, and the number of draws."""
-    found = joint_spectrum([analysed_scan(one) for one in measurements], seed, numbers).draws
-    energy = found.mean_square(0.5)
-    return np.log([energy.low, energy.value, energy.high]), found.weight.size
+    draws = joint_spectrum(
+        [analysed_scan(measurement) for measurement in measurements], seed, numbers
+    ).draws
+    energy = draws.mean_square(0.5)
+    return np.log([energy.low, energy.value, energy.high]), draws.weight.size
 
 
-def movement_table(found: Sequence[tuple[str, Movement]]) -> str:
+def movement_table(movements: Sequence[tuple[str, Movement]]) -> str:
     """Movements in Markdown, a surface a row, per cent of the width."""
     return markdown_table(
         "scans | factor of the interval | draws | seeds: low, median, high | digits | more draws",
-        list(_rows(found)),
+        list(_rows(movements)),
     )
 
 
-def _rows(found: Sequence[tuple[str, Movement]]) -> Iterator[tuple[str, ...]]:
+def _rows(movements: Sequence[tuple[str, Movement]]) -> Iterator[tuple[str, ...]]:
     """Rows of the table."""
-    for name, one in found:
-        factor = (one.energy.high / one.energy.low) ** 0.5
+    for name, moved_ends in movements:
+        factor = (moved_ends.energy.high / moved_ends.energy.low) ** 0.5
         moved = (
             ", ".join(f"{100 * end:.1f}" for end in ends)
-            for ends in (one.seeds, one.digits, one.size)
+            for ends in (moved_ends.seeds, moved_ends.digits, moved_ends.size)
         )
-        yield (name, f"{factor:.2f}", str(one.draws), *moved)
+        yield (name, f"{factor:.2f}", str(moved_ends.draws), *moved)

@@ -1,7 +1,7 @@
-"""Hold predictions against simulations of surfaces that the law of k was not fitted to.
+"""Compare predictions with simulations of surfaces that the law of k was not fitted to.
 
 Every surface is scanned: a map is cut from a larger one, written as a file of an instrument, read
-and fitted. Beside the k that is predicted for the fit stands that of simulations of it.
+and fitted. The k that is predicted for the fit is compared with simulations of the fit.
 """
 
 from __future__ import annotations
@@ -27,8 +27,17 @@ from studies.accuracy.scans import scanned
 from studies.pages import markdown_table
 
 SCENE = Scales(radius=1e-3, work_of_adhesion=60e-3, contact_modulus=0.7e6 / 0.75)
-REALISATIONS, SEED, N_POINT = 5, 20240229, 128
+REALISATIONS = 5
+"""Simulated surfaces of a film."""
+
+SEED = 20240229
+"""Seed of all films."""
+
+N_POINT = 128
+"""Points along a side of a scan."""
+
 _PIXELS_PER_CUTOFF = 2.5
+"""Pixels of a scan in the short cutoff of its surface."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,7 +65,7 @@ class Comparison:
 
     film: Film
     prediction: Prediction
-    found: Simulated
+    simulations: Simulated
 
 
 def comparisons() -> Iterator[Comparison]:
@@ -80,7 +89,9 @@ def _scanned(film: Film, rng: np.random.Generator) -> MeasuredSurface:
 def comparison_table(items: Iterable[Comparison]) -> str:
     """Numbers of the front, predicted and simulated, in Markdown, a film a row."""
     rows = []
-    for film, law, found in ((item.film, item.prediction, item.found) for item in items):
+    for film, law, simulations in (
+        (item.film, item.prediction, item.simulations) for item in items
+    ):
         rows.append(
             (
                 f"{film.hurst:g}",
@@ -88,9 +99,9 @@ def comparison_table(items: Iterable[Comparison]) -> str:
                 f"{law.e_el.value / law.work_of_adhesion:.3f}",
                 f"{law.correlation_length / law.contact_radius:.4f}",
                 with_interval(law.factors.both),
-                with_interval(found.k),
+                with_interval(simulations.k),
                 with_interval(law.front_hysteresis.each(lambda work: 1e3 * work)),
-                with_interval(found.hysteresis.each(lambda work: 1e3 * work)),
+                with_interval(simulations.hysteresis.each(lambda work: 1e3 * work)),
             )
         )
     return markdown_table(

@@ -25,7 +25,7 @@ _TARGETS = (0.1, 0.03, 0.01, 0.003)
 
 @dataclass(frozen=True, slots=True)
 class Measured:
-    """What a folder holds: every study by the names of its scenes."""
+    """Contents of a folder: every study by the names of its scenes."""
 
     settings: dict[str, SceneErrors]
     requested: dict[str, SceneErrors]
@@ -37,11 +37,11 @@ class Measured:
     def scenes(self) -> dict[str, SceneErrors]:
         """Errors of single settings and of requests, by the names of their scenes."""
         both = self.settings | self.requested
-        found = {name: both[name] for name in SCENES if name in both}
+        studies = {name: both[name] for name in SCENES if name in both}
         for name in self.settings.keys() & self.requested.keys():
             errors = self.settings[name].errors + self.requested[name].errors
-            found[name] = replace(self.settings[name], errors=errors)
-        return found
+            studies[name] = replace(self.settings[name], errors=errors)
+        return studies
 
     @property
     def fitted(self) -> list[SceneErrors]:
@@ -50,41 +50,41 @@ class Measured:
 
 
 def measured(folder: Path) -> Measured:
-    """All studies that a folder holds; a ValueError says if it holds none."""
+    """All studies in a folder; ValueError if it is without any."""
     single, requested, unseen = (
         _stored(folder, study, read_errors) for study in ("settings", "requested", "unseen")
     )
     samples = _stored(folder, "averages", lambda path: read_study(path, Sample))
     coverages = _stored(folder, "coverage", lambda path: read_study(path, Coverage))
     if not (single or requested or unseen or samples or coverages):
-        raise ValueError(f"{folder} holds no errors; run python -m studies accuracy scene")
+        raise ValueError(f"{folder} contains no errors; run python -m studies accuracy scene")
     return Measured(single, requested, unseen, samples, coverages)
 
 
-def error_tables(found: Measured) -> dict[str, str]:
+def error_tables(study_errors: Measured) -> dict[str, str]:
     """Tables of all studies by their names."""
-    made, scenes = {}, found.scenes
+    tables, scenes = {}, study_errors.scenes
     if scenes:
-        made["Time to an error of the hysteresis"] = _target_table(scenes.values())
-    if found.requested:
-        studies = found.requested.values()
+        tables["Time to an error of the hysteresis"] = _target_table(scenes.values())
+    if study_errors.requested:
+        studies = study_errors.requested.values()
         rows = [_chosen(study, errors) for study in studies for errors in study.errors]
         header = f"{_CHOSEN} | k of w_appr | k of w_retr"
-        made["Errors that were requested"] = markdown_table(header, rows)
-    if found.unseen:
-        made["Errors on unseen surfaces"] = _unseen_table(found.unseen.values())
-    if found.coverages:
-        made["Stated and true errors"] = _coverage_table(found.coverages.values())
-    kept = found.samples.values()
-    made |= {f"Averages, {scene.name}": _sample_table(samples) for scene, samples in kept}
-    made |= {f"Settings, {name}": _setting_table(study) for name, study in scenes.items()}
-    return made
+        tables["Errors that were requested"] = markdown_table(header, rows)
+    if study_errors.unseen:
+        tables["Errors on unseen surfaces"] = _unseen_table(study_errors.unseen.values())
+    if study_errors.coverages:
+        tables["Stated and true errors"] = _coverage_table(study_errors.coverages.values())
+    sampled = study_errors.samples.values()
+    tables |= {f"Averages, {scene.name}": _sample_table(samples) for scene, samples in sampled}
+    tables |= {f"Settings, {name}": _setting_table(study) for name, study in scenes.items()}
+    return tables
 
 
-def compared_numbers(found: Measured) -> dict[str, Number]:
+def compared_numbers(study_errors: Measured) -> dict[str, Number]:
     """How much faster an error is reached than by the authors' code, where that is known."""
     numbers = {}
-    for study in found.scenes.values():
+    for study in study_errors.scenes.values():
         if study.scene.authors_seconds is None:
             continue
         seconds, error = study.work_and_precision()
@@ -97,7 +97,7 @@ def compared_numbers(found: Measured) -> dict[str, Number]:
 
 
 def _stored(folder: Path, study: str, read: Callable[[Path], Found]) -> dict[str, Found]:
-    """What a folder holds of a study, by the names of its scenes."""
+    """Files of a study in a folder, read, by the names of its scenes."""
     paths = {name: folder / f"{study}-{name}.nc" for name in SCENES}
     return {name: read(path) for name, path in paths.items() if path.exists()}
 
@@ -169,20 +169,20 @@ def _coverage_table(coverages: Iterable[tuple[Scene, tuple[Coverage, ...]]]) -> 
     """How often intervals of the stated errors cover the true ones, and how wide they are."""
     rows = []
     pooled: tuple[list[Array], list[Array]] = [], []
-    for scene, found in coverages:
-        for item in found:
+    for scene, scene_coverages in coverages:
+        for item in scene_coverages:
             parts = (item.numerical, item.numerical_interval), (item.total, item.total_interval)
             entries = [f"{rms(item.numerical) / scene.elastic_energy:.2g}"]
             for (true, interval), every in zip(parts, pooled, strict=True):
-                known = np.isfinite(interval) & np.isfinite(true)
-                if not np.any(known):  # a run without a steady part is part of every truth
+                is_finite = np.isfinite(interval) & np.isfinite(true)
+                if not np.any(is_finite):  # a run without a steady part is part of every truth
                     entries += [""] * 3
                     continue
-                error = np.abs(true[known])
-                every.append(error / interval[known])
+                error = np.abs(true[is_finite])
+                every.append(error / interval[is_finite])
                 entries += [
                     f"{np.median(error) / scene.elastic_energy:.2g}",
-                    f"{np.median(interval[known]) / scene.elastic_energy:.2g}",
+                    f"{np.median(interval[is_finite]) / scene.elastic_energy:.2g}",
                     f"{100 * np.mean(every[-1] <= 1):.0f}%",
                 ]
             rows.append([scene.name, f"{item.requested:g}", *entries])

@@ -1,4 +1,4 @@
-"""Synthetic scans, as the files of an instrument; those of `examples/scans` among them.
+"""Synthetic scans, as the files of an instrument, including those in `examples/scans`.
 
 They are AL3D files, the format of Alicona's focus-variation microscopes: a list of tags, a comment,
 and single-precision heights in metres. Their comments say that they are synthetic.
@@ -20,8 +20,14 @@ from crackfront.measured.scan.reading import read_measurements
 from crackfront.measured.spectrum.measured_surface import MeasuredSurface, measured_surface
 
 SEED = 20240229
-ROLL_OFF, HURST, PLATEAU = 2.1e-6, 1.0, 8.4e-27
-"""Spectrum of nanodiamond. (Units: m, 1, m^4; Sanner et al., Sci. Adv. 2024, Fig. 5)"""
+ROLL_OFF = 2.1e-6
+"""Roll-off of nanodiamond, Sanner et al., Sci. Adv. (2024), Fig. 5. (Units: m)"""
+
+HURST = 1.0
+"""Hurst exponent of nanodiamond, from the same figure."""
+
+PLATEAU = 8.4e-27
+"""Density of nanodiamond below the roll-off, from the same figure. (Units: m^4)"""
 
 MAGIC = b"AliconaImaging\x00\r\n"
 COMMENT_BYTES = 256
@@ -102,7 +108,7 @@ def write_scans(folder: Path) -> None:
     """Write the synthetic scans of nanodiamond.
 
     Two maps of one surface, an overview and a detail, each cut from a larger periodic surface so
-    that its edges do not fit together, as those of a measurement do not.
+    that its edges do not fit together, as in a measurement.
     """
     for scan, seed in zip(SCANS, np.random.SeedSequence(SEED).spawn(len(SCANS)), strict=True):
         comment = (

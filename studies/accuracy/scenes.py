@@ -56,7 +56,7 @@ _VALUES: dict[SettingName, tuple[float, ...]] = {
     "pixels": (2.5, 3, 4, 5),
     "tolerance": (1e-2, 1e-3, 1e-4, 1e-5),
 }
-"""What is tried of each setting while the others are those of the reference."""
+"""Values that are tried of each setting; the others are taken from the reference."""
 
 _STRONG_VALUES: dict[SettingName, tuple[float, ...]] = _VALUES | {
     "sites": (2.2, 2.7, 3.6, 5, 7),
@@ -64,11 +64,14 @@ _STRONG_VALUES: dict[SettingName, tuple[float, ...]] = _VALUES | {
 }
 """The same at strong disorder, which bends fronts more sharply."""
 
-_FEW_SITES, _FEW_STRONG_SITES = 2.2, 5.0
-"""Sites per short cutoff where other settings are varied, one of those that are tried.
+_FEW_SITES = 2.2
+"""Sites per short cutoff, among the tried ones, where other settings are varied.
 
-Images of coarse pixels are short waves: many sites resolve them, to few they are long ones.
+Images of coarse pixels are short waves: many sites resolve them, few sites see long waves.
 """
+
+_FEW_STRONG_SITES = 5.0
+"""The same at strong disorder."""
 
 
 class Trial(NamedTuple):
@@ -84,8 +87,8 @@ class Scene:
     """Surfaces, and the penetrations at which both branches are measured.
 
     The name is shape and amplitude, the tile has so many short cutoffs a side. Errors are measured
-    against the reference, at eight penetrations a step apart up to 1; laws are fitted to those of
-    single settings. The authors' seconds are those of their code for a full cycle, where known.
+    against the reference, at eight penetrations a step apart up to 1; laws are fitted to the
+    errors of single settings. The authors' seconds: their code for a full cycle, where known.
     """
 
     name: str
@@ -181,7 +184,7 @@ def _reference(energy: float) -> Settings:
 
 
 def _unseen() -> list[Scene]:
-    """Spectra between those of the laws, and weak disorder under shorter cutoffs."""
+    """Spectra between the fitted ones, and weak disorder under shorter cutoffs."""
     wide = (0.0015, 0.003, 0.01, 0.06, 0.14, 0.25, 0.4)
     shapes: tuple[tuple[str, FieldKind, tuple[float, float, float], float, tuple[float, ...]], ...]
     shapes = (

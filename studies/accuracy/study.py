@@ -118,16 +118,16 @@ def scene_errors(
     progress(f"reference: hysteresis {study.hysteresis:.5g} w_int, {seconds:.2f} s")
     errors = []
     for trial in trials:
-        found = [measured_branches(scene, trial.settings, number) for number in surfaces]
-        errors.append(_errors(scene, trial, found, exact))
+        branches = [measured_branches(scene, trial.settings, number) for number in surfaces]
+        errors.append(_errors(scene, trial, branches, exact))
         of_k, seconds = rms(errors[-1].adhesion) / scene.elastic_energy, errors[-1].seconds.mean()
         progress(f"{trial.setting} {trial.value:g}: rms error of k {of_k:.2g}, {seconds:.2f} s")
     return replace(study, errors=tuple(errors))
 
 
-def _errors(scene: Scene, trial: Trial, found: list[Branches], exact: list[Branches]) -> Errors:
+def _errors(scene: Scene, trial: Trial, measured: list[Branches], exact: list[Branches]) -> Errors:
     """Differences of the found branches from the exact ones, surface by surface."""
-    pairs = list(zip(found, exact, strict=True))
+    pairs = list(zip(measured, exact, strict=True))
     adhesion = np.array(
         [a.apparent_work_of_adhesion - b.apparent_work_of_adhesion for a, b in pairs]
     )
@@ -138,7 +138,7 @@ def _errors(scene: Scene, trial: Trial, found: list[Branches], exact: list[Branc
     return Errors(
         setting=trial.setting,
         value=trial.value,
-        seconds=np.array([one.seconds for one in found]),
+        seconds=np.array([branches.seconds for branches in measured]),
         adhesion=np.mean(adhesion, axis=2),
         force=np.sqrt(np.mean(force**2, axis=(1, 2))),
         front_rms=np.array([rms(front) for front in fronts]),

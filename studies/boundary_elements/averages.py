@@ -23,13 +23,14 @@ Value = Callable[[Hysteresis], float]
 _DIFFERENCE = attrgetter("boundary_difference")
 
 ORDER = 3
-ORDERS = (2, ORDER, 4)
-"""Power of the range with which the hysteresis of boundary elements nears that of no range, between
-two whose difference is the error of the extrapolation.
+"""Power of the range by which the hysteresis of boundary elements is extrapolated to no range.
 
-Measured, docs/experiments/boundary-elements.md: where a range was halved twice, the second changed
-the hysteresis by a third of the first. The length of the cohesive zone would suggest its square.
+Measured, docs/experiments/boundary-elements.md: where a range was halved twice, the second halving
+changed the hysteresis by a third of the first. The length of the cohesive zone would suggest 2.
 """
+
+ORDERS = (2, ORDER, 4)
+"""Powers that are compared; results of the outer two differ by the error of the extrapolation."""
 
 ZONE = 0.26
 """Length of the cohesive zone over the square of the range."""
@@ -53,15 +54,16 @@ class Setting:
         return self._estimate(lambda mean: mean, value)
 
     def excess(self, smooth: float) -> Estimate:
-        """Logarithm of the front's w_retr - w_appr over that of boundary elements.
+        """Logarithm of the ratio of hystereses, front over boundary elements.
 
-        These have lost what they lose on the smooth sphere: that is taken off. (Units: w_int)
+        `smooth` is what boundary elements lose on the smooth sphere; it is subtracted from theirs.
+        (Units: w_int)
         """
         models = attrgetter("front_difference"), attrgetter("boundary_difference")
 
-        def logarithm(front: float, other: float) -> float:
-            both_lose = front > 0 and other > smooth
-            return math.log(front / (other - smooth)) if both_lose else math.nan
+        def logarithm(front: float, boundary: float) -> float:
+            both_lose = front > 0 and boundary > smooth
+            return math.log(front / (boundary - smooth)) if both_lose else math.nan
 
         return self._estimate(logarithm, *models)
 
@@ -71,26 +73,30 @@ class Setting:
         Its degrees of freedom are Welch's and Satterthwaite's, of surfaces with and without a
         shorter range.
         """
-        # Extrapolated: the mean of the longer range over all surfaces, and that of what changes.
+        # Extrapolated: mean of the longer range over all surfaces, plus the mean of the change.
         fine, coarse = (
             {row.seed: np.array([value(row) for value in values]) for row in rows}
             for rows in (self.rows, self.coarse)
         )
 
-        def found(left: int | None = None) -> float:
-            near = [fine[seed] - coarse.get(seed, 0.0) for seed in fine if seed != left]
-            far = [known for seed, known in coarse.items() if seed != left]
+        def estimate_without(omitted: int | None = None) -> float:
+            near = [fine[seed] - coarse.get(seed, 0.0) for seed in fine if seed != omitted]
+            far = [values for seed, values in coarse.items() if seed != omitted]
             return function(*(np.mean(near, axis=0) + (np.mean(far, axis=0) if far else 0.0)))
 
         if len(fine) < 2:
-            return student_estimate(found(), math.nan, 0)
+            return student_estimate(estimate_without(), math.nan, 0)
         count, both = self.surfaces, len(fine)
-        changed = np.array([found(seed) for seed in {**fine, **coarse}])
+        changed = np.array([estimate_without(seed) for seed in {**fine, **coarse}])
         squares = (changed - np.mean(changed)) ** 2
         error = math.sqrt((count - 1) / count * float(np.sum(squares)))
         parts = float(np.sum(squares[:both])), float(np.sum(squares[both:]))
-        apart = parts[0] ** 2 / (both - 1) + parts[1] ** 2 / max(1, count - both)
-        return student_estimate(found(), error, sum(parts) ** 2 / apart if apart else both - 1)
+        squares_by_freedom = parts[0] ** 2 / (both - 1) + parts[1] ** 2 / max(1, count - both)
+        return student_estimate(
+            estimate_without(),
+            error,
+            sum(parts) ** 2 / squares_by_freedom if squares_by_freedom else both - 1,
+        )
 
 
 def settings(rows: Iterable[Hysteresis]) -> tuple[Setting, ...]:
@@ -104,20 +110,24 @@ def limit_settings(rows: Sequence[Hysteresis], order: float = ORDER) -> tuple[Se
 
     The longer range that all of its surfaces have, and most others, is averaged with it.
     """
-    found = []
+    extended = []
     for limit in settings(range_limits(rows, order)):
-        row, seeds = limit.rows[0], {one.seed for one in limit.rows}
-        alike = settings(one for one in rows if (one.scene, one.step) == (row.scene, row.step))
-        known = [one for one in alike if seeds <= {other.seed for other in one.rows}]
-        coarse = max(known, key=lambda one: (len(one.rows), one.rows[0].interaction_range))
-        found.append(replace(limit, coarse=coarse.rows))
-    return tuple(found)
+        first, seeds = limit.rows[0], {row.seed for row in limit.rows}
+        alike = (row for row in rows if (row.scene, row.step) == (first.scene, first.step))
+        complete = (
+            setting for setting in settings(alike) if seeds <= {row.seed for row in setting.rows}
+        )
+        coarse = max(
+            complete, key=lambda setting: (len(setting.rows), setting.rows[0].interaction_range)
+        )
+        extended.append(replace(limit, coarse=coarse.rows))
+    return tuple(extended)
 
 
 def range_limits(rows: Iterable[Hysteresis], order: float = ORDER) -> list[Hysteresis]:
     """Works of adhesion and hysteresis at a vanishing range, from the two shortest of a surface.
 
-    They near it with a power of the range. Everything else is that of the shorter range.
+    They approach it with a power of the range. Everything else is copied from the shorter range.
     """
 
     def surface(row: Hysteresis) -> tuple[float, ...]:
@@ -126,8 +136,8 @@ def range_limits(rows: Iterable[Hysteresis], order: float = ORDER) -> list[Hyste
     limits = []
     ordered = sorted(rows, key=lambda row: (surface(row), row.interaction_range, -row.n_point))
     for _, alike in groupby(ordered, surface):
-        fine, *others = alike
-        longer = [row for row in others if row.interaction_range > fine.interaction_range]
+        fine, *longer_ranges = alike
+        longer = [row for row in longer_ranges if row.interaction_range > fine.interaction_range]
         if longer:
             ratio = (longer[0].interaction_range / fine.interaction_range) ** order
             changes: dict[str, Any] = {"interaction_range": 0.0}
@@ -138,9 +148,9 @@ def range_limits(rows: Iterable[Hysteresis], order: float = ORDER) -> list[Hyste
     return limits
 
 
-def rough_settings(found: Iterable[Setting]) -> list[Setting]:
+def rough_settings(candidates: Iterable[Setting]) -> list[Setting]:
     """Settings without the smooth spheres."""
-    return [one for one in found if one.rows[0].asked_energy > 0]
+    return [setting for setting in candidates if setting.rows[0].asked_energy > 0]
 
 
 def rows_by_zone(
@@ -151,14 +161,16 @@ def rows_by_zone(
     The keys are roll-off over cutoff, Hurst exponent, amplitude, and the length of the cohesive
     zone over the cutoff.
     """
-    found, smooth = {}, _smooth_loss(rows)
-    for one in sorted(rough_settings(settings(rows)), key=attrgetter("surfaces")):
-        row = _validity_row(one, one.excess(smooth), 0.0, short_cutoff)
-        found[_zone_key(one, short_cutoff)] = row
-    for one, (near, excess, far) in excess_by_order(rows):
-        apart = abs(float(far.value - near.value)) / 2
-        found[_zone_key(one, short_cutoff)] = _validity_row(one, excess, apart, short_cutoff)
-    return found
+    by_zone, smooth = {}, _smooth_loss(rows)
+    for setting in sorted(rough_settings(settings(rows)), key=attrgetter("surfaces")):
+        row = _validity_row(setting, setting.excess(smooth), 0.0, short_cutoff)
+        by_zone[_zone_key(setting, short_cutoff)] = row
+    for setting, (near, excess, far) in excess_by_order(rows):
+        half_difference = abs(float(far.value - near.value)) / 2
+        by_zone[_zone_key(setting, short_cutoff)] = _validity_row(
+            setting, excess, half_difference, short_cutoff
+        )
+    return by_zone
 
 
 def excess_by_order(rows: Sequence[Hysteresis]) -> list[tuple[Setting, tuple[Estimate, ...]]]:
@@ -166,7 +178,7 @@ def excess_by_order(rows: Sequence[Hysteresis]) -> list[tuple[Setting, tuple[Est
     smooth = _smooth_loss(rows)
     by_order = [rough_settings(limit_settings(rows, order)) for order in ORDERS]
     return [
-        (alike[ORDERS.index(ORDER)], tuple(one.excess(smooth) for one in alike))
+        (alike[ORDERS.index(ORDER)], tuple(setting.excess(smooth) for setting in alike))
         for alike in zip(*by_order, strict=True)
     ]
 
@@ -179,14 +191,15 @@ def _zone_key(setting: Setting, short_cutoff: float) -> tuple[float, ...]:
 
 
 def brought_to_no_range(
-    rows: Mapping[tuple[float, ...], ValidityRow], others: Mapping[tuple[float, ...], ValidityRow]
+    rows: Mapping[tuple[float, ...], ValidityRow],
+    counterparts: Mapping[tuple[float, ...], ValidityRow],
 ) -> Iterator[ValidityRow]:
     """Rows of one range in the limit of none, by what the range changes on others of equal keys.
 
     The errors of all three are taken as independent.
     """
     for (*scene, zone), row in rows.items():
-        same, limit = others.get((*scene, zone)), others.get((*scene, 0.0))
+        same, limit = counterparts.get((*scene, zone)), counterparts.get((*scene, 0.0))
         if zone and same and limit and math.isfinite(row.error):
             error = math.hypot(row.error, same.error, limit.error)
             yield replace(row, ratio=row.ratio * limit.ratio / same.ratio, error=error)
@@ -200,7 +213,7 @@ def _smooth_loss(rows: Iterable[Hysteresis]) -> float:
 def _validity_row(
     setting: Setting, logarithm: Estimate, order_error: float, short_cutoff: float
 ) -> ValidityRow:
-    """Both models of a setting; its interval is that of Student's t, its error half of a normal."""
+    """Both models of a setting; the error is half of Student's interval, as of a normal number."""
     row, energy = setting.rows[0], float(setting.mean(attrgetter("elastic_energy")).value)
     reach = float(logarithm.high - logarithm.value)
     spectrum = SelfAffineSpectrum(short_cutoff, row.roll_off, row.hurst)

@@ -19,13 +19,13 @@ def _small_case() -> Mapping[str, Number]:
     parameters = load_validation(Path("config/validation-test.yaml"))
     (case,) = validation_cases(parameters)
     front = front_cycle(case, parameters.front.n_angle, parameters.front.spacing)
-    found = hysteresis(case, boundary_cycle(case), front)
+    result = hysteresis(case, boundary_cycle(case), front)
     reason = "1% of the larger hysteresis: a hundred times the tolerance of pressures"
-    error = 0.01 * max(found.front_difference, found.boundary_difference)
+    error = 0.01 * max(result.front_difference, result.boundary_difference)
     return {
-        "hysteresis of the front": Number(found.front_difference, error, "w_int", reason),
+        "hysteresis of the front": Number(result.front_difference, error, "w_int", reason),
         "hysteresis of boundary elements": Number(
-            found.boundary_difference, error, "w_int", reason
+            result.boundary_difference, error, "w_int", reason
         ),
     }
 

@@ -98,12 +98,12 @@ class Loads(Section):
         for name, value in {"shown_penetration": self.shown_penetration, **steady}.items():
             if abs(value / self.step - round(value / self.step)) > 1e-9:
                 raise ValueError(
-                    f"{name} {value:g} is no multiple of the step {self.step:g}; take a step that "
-                    "leads to it"
+                    f"{name} {value:g} is not a multiple of the step {self.step:g}; take a step "
+                    "that leads to it"
                 )
 
     def loads(self, interaction_range: float) -> Iterator[Load]:
-        """Penetrations in their order; those of a whole loop have no end."""
+        """Penetrations in their order; a whole loop has infinitely many."""
         if self.steady is None:
             for count in range(math.ceil(interaction_range / self.step), 0, -1):
                 yield Load(-count * self.step, 1)
@@ -158,8 +158,8 @@ class Case:
     @property
     def stem(self) -> str:
         """Name of its file, which changes with anything that determines the result."""
-        known = asdict(self) | {"loads": self.loads.model_dump()}
-        text = json.dumps([known, VERSION], sort_keys=True, allow_nan=False)
+        identity = asdict(self) | {"loads": self.loads.model_dump()}
+        text = json.dumps([identity, VERSION], sort_keys=True, allow_nan=False)
         return f"{self.label}-{hashlib.sha256(text.encode()).hexdigest()[:12]}"
 
     def heights(self) -> Array:

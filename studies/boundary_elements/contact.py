@@ -1,7 +1,7 @@
 """A rough sphere on a half-space that attract each other, and how it comes to rest.
 
 Half-space, law of attraction and sphere come from ContactMechanics, Adhesion and SurfaceTopography,
-the extra `bem`; only the products with the elastic operators are those of scipy's real FFT.
+the extra `bem`; only the products with the elastic operators use scipy's real FFT.
 
 The nearest stable state is found as by NuMPI's `tr_newton_bounded` (a trust region, Steihaug's
 conjugate gradients on the free variables, projection on the bounds), but with the elastic operator
@@ -27,14 +27,19 @@ Values = TypeVar("Values", NDArray[np.float64], NDArray[np.float32])
 """In the precision of what they are made from."""
 
 _STRONGEST = 1.2
-"""Work of adhesion, in units of w_int, of the largest contact that a domain must hold."""
+"""Work of adhesion, in units of w_int, of the largest contact that must fit into a domain."""
 
-_ACCEPTED, _POOR = 0.1, 0.25
-"""Gains, relative to that of the model, of a step that is taken, and of one that shrinks the trust
-radius by as much."""
+_ACCEPTED = 0.1
+"""Least gain of a step that is taken, relative to the gain that the model predicts."""
 
-_FORCING, _MOST_PRODUCTS = 0.3, 200
-"""Largest residual of the conjugate gradients, relative to their start, and products of a step."""
+_POOR = 0.25
+"""Gain, relative to the predicted one, below which the trust radius shrinks to this share."""
+
+_FORCING = 0.3
+"""Largest residual of the conjugate gradients, relative to their start."""
+
+_MOST_PRODUCTS = 200
+"""Largest number of products with the elastic operator in a step."""
 
 _ROUND_OFF = 10 * float(np.finfo(float).eps)
 """Changes of the energy that have no meaning, relative to it."""
@@ -104,15 +109,15 @@ def half_space_contact(
 ) -> HalfSpaceContact:
     """Contact of a rough sphere whose attraction is cubic in the gap, with a hard wall.
 
-    The roughness is (n_point, n_point) heights on the sphere, the penetration the largest that the
-    domain must hold. (Units: reduced vertical length) A ValueError says if the grid is too coarse
-    for the attraction, or the domain too small for the contact.
+    The roughness is (n_point, n_point) heights on the sphere, the penetration the largest whose
+    contact must fit into the domain. (Units: reduced vertical length) A ValueError says if the
+    grid is too coarse for the attraction, or the domain too small for the contact.
 
     References
     ----------
     .. [1] Sanner et al., Sci. Adv. (2024), supplement, Sec. III.
     """
-    check_resolved(pixel, len(roughness), interaction_range, max_penetration)
+    check_resolution(pixel, len(roughness), interaction_range, max_penetration)
     from Adhesion.Interactions import PowerLaw
     from Adhesion.System import BoundedSmoothContactSystem
     from ContactMechanics import FreeFFTElasticHalfSpace
@@ -125,7 +130,7 @@ def half_space_contact(
     surface = np.asarray(sphere.heights()) + roughness
     substrate = FreeFFTElasticHalfSpace(shape, CONTACT_MODULUS, sides, check_boundaries=False)
     law = PowerLaw(WORK_OF_ADHESION, interaction_range, 3)
-    # The libraries halve the first axis; the operator is that of a square and symmetric.
+    # The libraries halve the first axis; the operator belongs to a square and is symmetric.
     compliance = np.ascontiguousarray(np.real(substrate.greens_function).T)
     return HalfSpaceContact(
         system=BoundedSmoothContactSystem(substrate, law, Topography(surface, sides)),
@@ -137,7 +142,7 @@ def half_space_contact(
     )
 
 
-def check_resolved(
+def check_resolution(
     pixel: float, n_point: int, interaction_range: float, max_penetration: float
 ) -> None:
     """Raise if a grid is too coarse for the attraction, or its domain too small."""
@@ -280,7 +285,7 @@ class _Linearised:
     softening: Array
 
     def free(self, values: Values) -> Values:
-        """Values without, in place, those of closed surfaces."""
+        """Values with zeros, in place, where the surfaces are closed."""
         values[: len(self.closed), : len(self.closed)][self.closed] = 0.0
         return values
 
@@ -355,7 +360,7 @@ def _truncated_step(model: _Linearised, radius: float, forcing: float) -> _Step:
 def _downward_step(model: _Linearised, radius: float) -> _Step:
     """Step along a direction of negative curvature, or none where no curvature is negative."""
     side = len(model.closed)
-    # Forces where surfaces attract each other: elsewhere the curvature is that of the half-space.
+    # Forces where surfaces attract each other: elsewhere only the half-space has a curvature.
     residual = np.zeros_like(model.gradient, dtype=np.float32)
     noise = np.random.default_rng(0).standard_normal((side, side))
     residual[:side, :side] = model.softening * noise

@@ -50,7 +50,7 @@ class BoundaryCycle:
     products: Array = variable("conjugate-gradient products", "1", STEP)
     residual: Array = variable("pressure out of balance", "largest tension", STEP)
     seconds: Array = variable("processor time of the load step", "s", STEP)
-    energy: Array = variable("energy above that of surfaces far apart", ENERGY, STEP)
+    energy: Array = variable("energy relative to surfaces far apart", ENERGY, STEP)
     released: Array = variable("how far the energy fell at the penetration", ENERGY, STEP)
     barriers: Array = variable("steps that were shortened before a barrier", "1", STEP)
     saddles: Array = variable("unstable states without forces that were left", "1", STEP)
@@ -75,18 +75,18 @@ def boundary_cycle(
     load step. A ValueError says if a state does not come to rest.
     """
     contact, so_far = case.contact(), resume or _no_states(case.n_point)
-    known, side = so_far.penetration.size, case.n_point
-    loads = islice(case.loads.loads(case.interaction_range), known, None)
+    n_finished, side = so_far.penetration.size, case.n_point
+    loads = islice(case.loads.loads(case.interaction_range), n_finished, None)
     displacement = contact.elastic_displacement(np.pad(so_far.pressure, (0, side)))
     for penetration, direction, _ in loads:
         if so_far.status != RUNNING:
             return so_far
         started = time.process_time()
         radius = max(so_far.trust_radius, _LEAST_RADIUS)
-        found = equilibrium(
+        balanced = equilibrium(
             contact, displacement, penetration, tolerance=case.tolerance, radius=radius
         )
-        displacement = found.displacement
+        displacement = balanced.displacement
         pressure = contact.elastic_pressure(displacement)[:side, :side]
         gap, edge = contact.gap(displacement, penetration), EDGE * case.interaction_range
         shown = so_far.shown_pressure
@@ -101,16 +101,16 @@ def boundary_cycle(
             "force": float(np.sum(pressure)) * area,
             "radius": perimeter(gap, case.pixel, edge),
             "seconds": time.process_time() - started,
-            "energy": found.energy * area,
-            "released": found.released * area,
-            **{name: getattr(found, name) for name in _COUNTED},
+            "energy": balanced.energy * area,
+            "released": balanced.released * area,
+            **{name: getattr(balanced, name) for name in _COUNTED},
         }
         so_far = replace(
             so_far,
             status=LOST_CONTACT if lost else RUNNING,
             shown_pressure=shown,
             pressure=pressure,
-            trust_radius=found.radius,
+            trust_radius=balanced.radius,
             **{
                 name: np.append(getattr(so_far, name), np.asarray(value)[None], axis=0)
                 for name, value in state.items()
@@ -134,7 +134,7 @@ def _no_states(side: int) -> BoundaryCycle:
 
 
 def perimeter(gap: Array, pixel: float, edge: float) -> Array:
-    """Outermost distance from the apex at which the gap is below that of the edge, ray by ray.
+    """Outermost distance from the apex at which the gap is below the gap at the edge, on every ray.
 
     The gap is (n_point, n_point), the distance (N_ANGLE,) and 0 where a ray has no contact.
     (Units: reduced vertical length, reduced lateral length)

@@ -17,8 +17,11 @@ from studies.boundary_elements.cases import Case
 from studies.boundary_elements.cycle import BoundaryCycle
 from studies.boundary_elements.front import FrontCycle, shared_states, shown_states
 
-_SAME_PLACE, _SAME_LOAD = 1.0, 0.1
-"""Largest distance of matched jumps along the front, in short cutoffs, and in penetration."""
+_SAME_PLACE = 1.0
+"""Largest distance of matched jumps along the front, in short cutoffs."""
+
+_SAME_LOAD = 0.1
+"""Largest distance of matched jumps in penetration. (Units: reduced vertical length)"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,19 +71,24 @@ def differences(case: Case, boundary: BoundaryCycle, front: FrontCycle) -> Diffe
     theirs, ours = _compared_states(case, boundary, front)
     force = boundary.force[theirs] - states.force[ours]
     area = boundary.contact_area[theirs] / states.contact_area[ours] - 1
-    apart = np.abs(boundary.radius[theirs] - front.radius[ours])
+    distance = np.abs(boundary.radius[theirs] - front.radius[ours])
     shown = boundary.radius[shown_states(case, boundary)] - front.radius[shown_states(case, states)]
     perimeters = np.mean(np.abs(shown), axis=1) / case.short_cutoff
     least, large = case.short_cutoff / 8, case.short_cutoff / 4
-    one, other = (
-        jumps(cycle.penetration[kept], cycle.direction[kept], radius[kept], least)
-        for cycle, kept, radius in (
+    boundary_jumps, front_jumps = (
+        jumps(
+            cycle.penetration[states_compared],
+            cycle.direction[states_compared],
+            radius[states_compared],
+            least,
+        )
+        for cycle, states_compared, radius in (
             (boundary, theirs, boundary.radius),
             (states, ours, front.radius),
         )
     )
     angle = _SAME_PLACE * case.short_cutoff / float(np.mean(states.mean_radius))
-    pairs = matched_jumps(one, other, angle, _SAME_LOAD)
+    pairs = matched_jumps(boundary_jumps, front_jumps, angle, _SAME_LOAD)
     shift = np.array([a.penetration - b.penetration for a, b in pairs if b.distance >= large])
     return Differences(
         n_point=case.n_point,
@@ -95,9 +103,9 @@ def differences(case: Case, boundary: BoundaryCycle, front: FrontCycle) -> Diffe
         area_rms=rms(area),
         perimeter_approach=float(perimeters[0]),
         perimeter_retraction=float(perimeters[1]),
-        perimeter_all=float(np.mean(apart)) / case.short_cutoff,
-        jumps_boundary=sum(jump.distance >= large for jump in one),
-        jumps_front=sum(jump.distance >= large for jump in other),
+        perimeter_all=float(np.mean(distance)) / case.short_cutoff,
+        jumps_boundary=sum(jump.distance >= large for jump in boundary_jumps),
+        jumps_front=sum(jump.distance >= large for jump in front_jumps),
         jumps_shared=shift.size,
         jump_shift=float(np.mean(shift)) if shift.size else 0.0,
         jump_spread=rms(shift) if shift.size else 0.0,
@@ -111,7 +119,7 @@ def jumps(penetration: Array, direction: NDArray[Any], radius: Array, least: flo
 
     A motion is a jump from the least distance on; arcs that move half of it belong to one.
     """
-    found = []
+    jumps_so_far = []
     n_angle = radius.shape[1]
     for step in range(1, len(penetration)):
         if direction[step] != direction[step - 1]:
@@ -126,8 +134,8 @@ def jumps(penetration: Array, direction: NDArray[Any], radius: Array, least: flo
             if turned[place] >= least:
                 angle = 2 * np.pi * ((place + start) % n_angle) / n_angle
                 load = float(penetration[step])
-                found.append(Jump(load, int(direction[step]), angle, float(turned[place])))
-    return found
+                jumps_so_far.append(Jump(load, int(direction[step]), angle, float(turned[place])))
+    return jumps_so_far
 
 
 def matched_jumps(
@@ -135,17 +143,17 @@ def matched_jumps(
 ) -> list[tuple[Jump, Jump]]:
     """Pairs of jumps that differ by no more than these, those closest in penetration first."""
     near = [
-        (abs(one.penetration - other.penetration), one, other)
-        for one in ours
-        for other in theirs
-        if one.direction == other.direction
-        and abs(one.penetration - other.penetration) <= penetration
-        and abs(np.angle(np.exp(1j * (one.angle - other.angle)))) <= angle
+        (abs(our_jump.penetration - their_jump.penetration), our_jump, their_jump)
+        for our_jump in ours
+        for their_jump in theirs
+        if our_jump.direction == their_jump.direction
+        and abs(our_jump.penetration - their_jump.penetration) <= penetration
+        and abs(np.angle(np.exp(1j * (our_jump.angle - their_jump.angle)))) <= angle
     ]
     pairs: dict[Jump, Jump] = {}
-    for _, one, other in sorted(near, key=itemgetter(0)):
-        if one not in pairs and other not in pairs.values():
-            pairs[one] = other
+    for _, our_jump, their_jump in sorted(near, key=itemgetter(0)):
+        if our_jump not in pairs and their_jump not in pairs.values():
+            pairs[our_jump] = their_jump
     return list(pairs.items())
 
 
@@ -156,6 +164,6 @@ def _compared_states(
     theirs, ours = shared_states(boundary, front.states)
     touching = np.any(boundary.radius, axis=1)
     first = boundary.radius[np.argmax(touching)]
-    left = np.all(boundary.radius > first + case.short_cutoff / 8, axis=1)
-    kept = (touching & (left | (boundary.direction < 0)))[theirs]
-    return theirs[kept], ours[kept]
+    is_beyond = np.all(boundary.radius > first + case.short_cutoff / 8, axis=1)
+    is_compared = (touching & (is_beyond | (boundary.direction < 0)))[theirs]
+    return theirs[is_compared], ours[is_compared]

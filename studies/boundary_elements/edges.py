@@ -38,13 +38,13 @@ class EdgeForces:
     slope: float = variable("rms slope of the edges", "1")
     pinning: float = variable("rms deviation of w_loc from its mean along an edge", ADHESION)
     left: float = variable("rms force that is not balanced", ADHESION)
-    share: float = variable("force of the line that is needed over that of first order", "1")
+    share: float = variable("force of the line: needed over first order", "1")
     line: Array = variable("force of the line to first order, by class", ADHESION, "class")
     needed: Array = variable("mean force that balances the others there", ADHESION, "class")
 
 
 def edge_forces(case: Case, boundary: BoundaryCycle, front: FrontCycle) -> EdgeForces:
-    """Forces on the edges of the steady states; the share is that of least squares."""
+    """Forces on the edges of the steady states; the share is fitted by least squares."""
     steady = case.loads.are_steady(boundary.penetration)
     angle = np.linspace(0.0, 2 * np.pi, boundary.radius.shape[1], endpoint=False)
     sites, parts = front.field.geometry.sites, []
@@ -67,6 +67,6 @@ def edge_forces(case: Case, boundary: BoundaryCycle, front: FrontCycle) -> EdgeF
         pinning=rms(pinning),
         left=rms(needed - line),
         share=float(np.sum(line * needed) / np.sum(line**2)),
-        line=np.array([np.mean(line[one]) for one in classes]),
-        needed=np.array([np.mean(needed[one]) for one in classes]),
+        line=np.array([np.mean(line[places]) for places in classes]),
+        needed=np.array([np.mean(needed[places]) for places in classes]),
     )

@@ -69,27 +69,29 @@ def front_cycle(case: Case, n_angle: int, spacing: float, *, rotated: bool = Tru
     )
 
 
-def shared_states(one: States, other: States) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+def shared_states(
+    first_states: States, second_states: States
+) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """Indices, in both, of the states that two cycles share, in the order of the first."""
-    asked, known = (
+    first_loads, second_loads = (
         list(zip(np.round(states.penetration, 9).tolist(), states.direction.tolist(), strict=True))
-        for states in (one, other)
+        for states in (first_states, second_states)
     )
-    place = {key: number for number, key in enumerate(known)}
-    pairs = [(number, place[key]) for number, key in enumerate(asked) if key in place]
+    place = {key: number for number, key in enumerate(second_loads)}
+    pairs = [(number, place[key]) for number, key in enumerate(first_loads) if key in place]
     first, second = np.array(pairs, dtype=np.int64).reshape(-1, 2).T
     return first, second
 
 
 def shown_states(case: Case, states: States) -> list[int]:
     """Indices of the states at the shown penetration, in approach and in retraction."""
-    shown, found = case.loads.shown_penetration, []
+    shown, indices = case.loads.shown_penetration, []
     for direction, branch in ((1, "approach"), (-1, "retraction")):
         at = np.isclose(states.penetration, shown, atol=1e-9) & (states.direction == direction)
         if not np.any(at):
             raise ValueError(
-                f"{case.label}: there is no contact at penetration {shown:g} in {branch}; raise "
-                "shown_penetration"
+                f"{case.label}: the sphere is not in contact at penetration {shown:g} in {branch}; "
+                "raise shown_penetration"
             )
-        found.append(int(np.argmax(at)))
-    return found
+        indices.append(int(np.argmax(at)))
+    return indices

@@ -57,7 +57,7 @@ class Hysteresis:
     @property
     def setting(self) -> tuple[float, ...]:
         """What surfaces share that are averaged: grid, range, load step, spectrum, amplitude."""
-        # Where there is no range no grid is told.
+        # An extrapolation to no range stands for all grids.
         grid = self.n_point if self.interaction_range else 0
         return grid, self.interaction_range, self.step, *self.scene
 
@@ -112,11 +112,11 @@ def apparent_adhesion(force: Array, penetration: Array) -> Array:
     return jkr.apparent_work_of_adhesion(radius, penetration)
 
 
-def _branches(name: str, states: States, kept: NDArray[np.int64]) -> dict[str, float]:
+def _branches(name: str, states: States, compared: NDArray[np.int64]) -> dict[str, float]:
     """Works of adhesion of a model."""
     works = []
     for sign in (1, -1):
-        branch = kept[states.direction[kept] == sign]
+        branch = compared[states.direction[compared] == sign]
         adhesion = apparent_adhesion(states.force[branch], states.penetration[branch])
         works.append(float(np.mean(adhesion)))
     return {f"{name}_approach": works[0], f"{name}_retraction": works[1]}

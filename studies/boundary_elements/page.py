@@ -32,10 +32,10 @@ SHORT_CUTOFFS = {"strong": 0.15, "fine": 0.05}
 
 def page_parts() -> Iterator[tuple[dict[str, str], dict[str, Number], dict[str, Any]]]:
     """Tables and numbers from each kept file, and what the file says of its origin."""
-    kept = kept_surfaces()
-    strong, fine = (read_attributes(REFERENCES / f"hysteresis-{name}.nc") for name in kept)
-    yield *_strong_parts(kept["strong"]), strong
-    yield *_common_parts(kept), fine
+    surfaces = kept_surfaces()
+    strong, fine = (read_attributes(REFERENCES / f"hysteresis-{name}.nc") for name in surfaces)
+    yield *_strong_parts(surfaces["strong"]), strong
+    yield *_common_parts(surfaces), fine
     for name in ("256", "512", "series"):
         path = REFERENCES / f"differences-{name}.nc"
         loops = read_records(path, Differences, "case")
@@ -53,9 +53,9 @@ def kept_surfaces() -> dict[str, Sequence[Hysteresis]]:
     return {name: read_records(path, Hysteresis, "case") for name, path in paths.items()}
 
 
-def kept_validity(kept: Mapping[str, Sequence[Hysteresis]]) -> list[ValidityRow]:
+def kept_validity(surfaces: Mapping[str, Sequence[Hysteresis]]) -> list[ValidityRow]:
     """How far the front is right, by all surfaces: the table of the package."""
-    strong, fine = (rows_by_zone(rows, SHORT_CUTOFFS[name]) for name, rows in kept.items())
+    strong, fine = (rows_by_zone(rows, SHORT_CUTOFFS[name]) for name, rows in surfaces.items())
     limits = [row for (*_, zone), row in strong.items() if not zone]
     return [*limits, *brought_to_no_range(fine, strong)]
 
@@ -73,15 +73,15 @@ def _strong_parts(rows: Sequence[Hysteresis]) -> tuple[dict[str, str], dict[str,
 
 
 def _common_parts(
-    kept: Mapping[str, Sequence[Hysteresis]],
+    surfaces: Mapping[str, Sequence[Hysteresis]],
 ) -> tuple[dict[str, str], dict[str, Number]]:
     """Tables and numbers of the finer surfaces, and of all together."""
-    told = kept_validity(kept)
-    slope, error = excess_coefficient(told)
-    zones = [rows_by_zone(rows, SHORT_CUTOFFS[name]) for name, rows in kept.items()]
+    validity = kept_validity(surfaces)
+    slope, error = excess_coefficient(validity)
+    zones = [rows_by_zone(rows, SHORT_CUTOFFS[name]) for name, rows in surfaces.items()]
     tables = {
-        "fine": report.surface_tables(kept["fine"])["settings"],
-        "ratios": report.ratio_table(told),
+        "fine": report.surface_tables(surfaces["fine"])["settings"],
+        "ratios": report.ratio_table(validity),
         "sizes": report.size_table(zones),
     }
     ratio = math.exp(slope * _NANODIAMOND)
@@ -94,7 +94,11 @@ def _common_parts(
 
 def _loop_numbers(loops: Sequence[Differences]) -> dict[str, Number]:
     """Differences of the front whose crack turns from the only rough loop."""
-    (loop,) = (one for one in loops if one.elastic_energy > 0 and one.rotated)
+    (loop,) = (
+        loop_differences
+        for loop_differences in loops
+        if loop_differences.elastic_energy > 0 and loop_differences.rotated
+    )
     unit = "pull-off force of the smooth sphere"
     return {
         "median difference of the force": Number(loop.force_median / report.PULL_OFF, unit=unit),

@@ -20,7 +20,7 @@ from crackfront.sweep.section import (
     yaml_mapping,
 )
 from studies.boundary_elements.cases import Case, Loads
-from studies.boundary_elements.contact import check_resolved
+from studies.boundary_elements.contact import check_resolution
 
 _POINT_BYTES = 500.0
 """Memory of a point of a grid, twice as wide in both directions, with some fifteen arrays."""
@@ -52,16 +52,16 @@ class CaseSection(Section):
     elastic_energies: Annotated[
         tuple[Annotated[float, Field(ge=0, lt=1)], ...], Field(min_length=1)
     ]  # amplitudes, 0 for a smooth sphere (w_int)
-    step: Positive | None = None  # by default that of all cases (reduced vertical length)
+    step: Positive | None = None  # by default the step of `loads` (reduced vertical length)
     roll_off: Positive | None = None
     hurst: Annotated[float, Field(gt=0, le=1)] = 1.0
-    # Their seeds are drawn from that of the file; by default one surface with that seed.
+    # Their seeds are drawn from the seed of the file; by default one surface with this seed.
     surfaces: Count | None = None
     skipped: Annotated[int, Field(ge=0)] = 0  # surfaces before the first
 
 
 class ValidationParameters(Section):
-    """The whole file; cutoff, side, tolerance and loads are those of all cases."""
+    """The whole file; all cases share cutoff, side, tolerance and loads."""
 
     seed: Seed
     short_cutoff: Positive
@@ -81,7 +81,7 @@ class ValidationParameters(Section):
             )
         if self.loads.steady is None and self.loads.shown_penetration < 0:
             raise section_error(
-                f"loads: shown_penetration {self.loads.shown_penetration:g} has no contact in "
+                f"loads: shown_penetration {self.loads.shown_penetration:g} is before contact in "
                 "approach; take 0 or more"
             )
         for number, case in enumerate(self.cases):
@@ -92,7 +92,7 @@ class ValidationParameters(Section):
         return self
 
     def _check_case(self, case: CaseSection) -> None:
-        """Raise if a case does not hold or resolve roughness and attraction, or is too large."""
+        """Raise if a case is too small, too large, or too coarse for roughness and attraction."""
         n_point, pixel, cutoff = case.n_point, self.side / case.n_point, self.short_cutoff
         if case.roll_off is not None and case.roll_off < cutoff:
             raise ValueError(
@@ -110,7 +110,7 @@ class ValidationParameters(Section):
             )
         memory = _POINT_BYTES * float(n_point) ** 2
         check_memory(f"a grid of {n_point} x {n_point} points", memory, "lower n_point")
-        check_resolved(pixel, n_point, case.interaction_range, self.loads.max_penetration)
+        check_resolution(pixel, n_point, case.interaction_range, self.loads.max_penetration)
         self.case_loads(case).check_step()
 
     def case_loads(self, case: CaseSection) -> Loads:
@@ -129,24 +129,24 @@ def load_validation(path: Path) -> ValidationParameters:
 def validation_cases(parameters: ValidationParameters) -> tuple[Case, ...]:
     """Cases in the order in which they are run: smooth spheres, then surface after surface."""
     listed = []
-    for given in parameters.cases:
-        for energy in given.elastic_energies:
-            count = (given.surfaces if energy else None) or 1
-            for surface in range(given.skipped, given.skipped + count):
+    for group in parameters.cases:
+        for energy in group.elastic_energies:
+            count = (group.surfaces if energy else None) or 1
+            for surface in range(group.skipped, group.skipped + count):
                 seeds = np.random.SeedSequence(parameters.seed, spawn_key=(surface,))
                 drawn = int(seeds.generate_state(1)[0])
                 case = Case(
-                    seed=parameters.seed if given.surfaces is None else drawn,
+                    seed=parameters.seed if group.surfaces is None else drawn,
                     short_cutoff=parameters.short_cutoff,
-                    roll_off=given.roll_off or parameters.short_cutoff,
-                    hurst=given.hurst,
+                    roll_off=group.roll_off or parameters.short_cutoff,
+                    hurst=group.hurst,
                     side=parameters.side,
-                    n_point=given.n_point,
-                    interaction_range=given.interaction_range,
+                    n_point=group.n_point,
+                    interaction_range=group.interaction_range,
                     elastic_energy=energy,
                     tolerance=parameters.tolerance,
-                    loads=parameters.case_loads(given),
+                    loads=parameters.case_loads(group),
                 )
                 listed.append((surface, energy > 0, case))
-    listed.sort(key=lambda one: one[:2])
+    listed.sort(key=lambda entry: entry[:2])
     return tuple(dict.fromkeys(case for *_, case in listed))

@@ -37,8 +37,11 @@ from studies.boundary_elements.front import FrontCycle, shown_states
 from studies.boundary_elements.hysteresis import Hysteresis
 from studies.paper.drawing import draw_jump
 
-_MOST_POINTS, _MARGIN = 320, 0.15
-"""Points along a side of the part that is kept, and its margin around the contact."""
+_MOST_POINTS = 320
+"""Points along a side of the part that is stored; more are thinned out."""
+
+_MARGIN = 0.15
+"""Margin of this part around the contact. (Units: reduced lateral length)"""
 
 _RELIEF = "0.78", "1.0"
 """Pale greys of the roughness, so that the tension on it is the darkest."""
@@ -96,8 +99,8 @@ def validation_picture(
     reach = float(np.max(shown)) + _MARGIN
     position: Array = np.arange(float(case.n_point)) * case.pixel - case.side / 2
     inside = np.flatnonzero(np.abs(position) <= reach)
-    kept = inside[:: max(1, -(-inside.size // _MOST_POINTS))]
-    part = np.ix_(kept, kept)
+    shown_points = inside[:: max(1, -(-inside.size // _MOST_POINTS))]
+    part = np.ix_(shown_points, shown_points)
     return ValidationPicture(
         short_cutoff=case.short_cutoff,
         boundary_penetration=boundary.penetration,
@@ -113,7 +116,7 @@ def validation_picture(
         boundary_radius=shown,
         front_radius=front.radius[shown_states(case, states)],
         fixed_radius=fixed.radius[shown_states(case, fixed.states)],
-        position=position[kept],
+        position=position[shown_points],
         heights=case.heights()[part],
         pressure=boundary.shown_pressure[0][part],
     )
@@ -196,10 +199,10 @@ def _draw_contact(axes: Axes, picture: ValidationPicture) -> None:
         vmax=float(tension.max()) / 2,
         interpolation="nearest",
     )
-    # Where both branches have one contact, that of the approach is seen on both sides of the other.
+    # Where both branches have one contact, the approach is seen on both sides of the retraction.
     for line, ((_, _, colour), width) in enumerate(zip(_BRANCHES, (2.0, 0.8), strict=True)):
         for radius, style in ((picture.front_radius, _DASHES), (picture.fixed_radius, _DOTS)):
-            # Dashes are in widths of the line: those of both branches have one length.
+            # Dashes are in widths of the line; both branches get dashes of one length.
             dashes = [part / width for part in style]
             curve = closed_front(picture.angle, radius[line])
             axes.plot(*curve, color=colour, linewidth=width, dashes=dashes)
@@ -228,28 +231,31 @@ def hysteresis_figure(rows: Sequence[Hysteresis], short_cutoff: float) -> Figure
 
     Ratios at the ranges that were computed are small and open.
     """
-    found, limits = (rough_settings(one) for one in (settings(rows), limit_settings(rows)))
+    computed, limits = (
+        rough_settings(averaged) for averaged in (settings(rows), limit_settings(rows))
+    )
     with house_style():
         figure = blank_figure(PAGE, 0.48 * PAGE)
         both = figure.subplots(1, 2)
         for part, grey in _BANDS:
             both[1].axhspan(-part, part, color=grey, linewidth=0, zorder=0)
-        for number, shape in enumerate(sorted({one.rows[0].scene[:2] for one in limits})):
+        for number, shape in enumerate(sorted({setting.rows[0].scene[:2] for setting in limits})):
             near, far = (
-                [one for one in many if one.rows[0].scene[:2] == shape] for many in (found, limits)
+                [setting for setting in many if setting.rows[0].scene[:2] == shape]
+                for many in (computed, limits)
             )
             look = {"color": COLOURS[number], "marker": MARKERS[number], "linewidth": 0.8}
             filled: dict[str, Any] = look | {"label": _spectrum(far[0].rows[0], short_cutoff)}
             hollow: dict[str, Any] = look | {"markerfacecolor": "white"}
             theirs, ours = (
-                [one.mean(attrgetter(f"{model}_difference")) for one in far]
+                [setting.mean(attrgetter(f"{model}_difference")) for setting in far]
                 for model in ("boundary", "front")
             )
             _draw_estimates(both[0], far, theirs, **filled)
             _draw_estimates(both[0], far, ours, **hollow, linestyle="--")
             small = hollow | {"markersize": 2.4}
             for place, (many, style) in enumerate(((near, small), (far, filled))):
-                ratios = [one.excess(0.0) for one in many]
+                ratios = [setting.excess(0.0) for setting in many]
                 aside = (2 * number + place) * _ASIDE
                 _draw_estimates(both[1], many, ratios, aside, **style, linestyle="none")
         names = "hysteresis / $w_\\mathrm{int}$", "$\\ln$ (hysteresis, front / boundary elements)"
@@ -270,16 +276,19 @@ def _spectrum(row: Hysteresis, short_cutoff: float) -> str:
 
 def _draw_estimates(
     axes: Axes,
-    found: Sequence[Setting],
+    shown_settings: Sequence[Setting],
     estimates: Sequence[Estimate],
     aside: float = 0.0,
     **style: Any,
 ) -> None:
-    """Values against e_el with their standard errors, which those of one surface lack."""
+    """Values against e_el with their standard errors, if there is more than one surface."""
     axes.errorbar(
-        [float(one.mean(attrgetter("elastic_energy")).value) + aside for one in found],
-        [float(one.value) for one in estimates],
-        yerr=[float(one.standard_error) for one in estimates],
+        [
+            float(setting.mean(attrgetter("elastic_energy")).value) + aside
+            for setting in shown_settings
+        ],
+        [float(estimate.value) for estimate in estimates],
+        yerr=[float(estimate.standard_error) for estimate in estimates],
         **style,
     )
 
@@ -289,16 +298,16 @@ def edge_figure(rows: Sequence[EdgeForces]) -> Figure:
     energies = sorted({round(row.elastic_energy, 2) for row in rows})
     with house_style():
         figure = blank_figure(PAGE, 0.46 * PAGE)
-        left, forces = figure.subplots(1, 2)
+        imbalances, forces = figure.subplots(1, 2)
         for energy, colour, marker in zip(energies, COLOURS, MARKERS, strict=False):
             alike = [row for row in rows if round(row.elastic_energy, 2) == energy]
             ranges = [row.interaction_range for row in alike]
             style = {"color": colour, "marker": marker, "linestyle": "none", "label": f"{energy:g}"}
-            left.plot(ranges, [row.left / row.pinning for row in alike], **style)
+            imbalances.plot(ranges, [row.left / row.pinning for row in alike], **style)
             shortest = min(alike, key=attrgetter("interaction_range"))
             forces.plot(shortest.line, shortest.needed, **style)
         forces.axline((0.0, 0.0), slope=1.0, color="0.6", linewidth=0.8, zorder=0)
-        left.set(
+        imbalances.set(
             xlim=(0.0, 1.1 * max(row.interaction_range for row in rows)),
             ylim=(0.0, 1.1 * max(row.left / row.pinning for row in rows)),
             xlabel=HEIGHT_LABEL.format("range of attraction"),
@@ -308,7 +317,7 @@ def edge_figure(rows: Sequence[EdgeForces]) -> Figure:
             xlabel=r"force of the line, first order / $w_\mathrm{int}$",
             ylabel=r"force that balances the others / $w_\mathrm{int}$",
         )
-        for axes, panel in ((left, "a"), (forces, "b")):
+        for axes, panel in ((imbalances, "a"), (forces, "b")):
             axes.legend(loc="upper left", title=r"$e_\mathrm{el}/w_\mathrm{int}$")
             label_panel(axes, panel)
         explain(

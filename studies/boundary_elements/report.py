@@ -41,24 +41,24 @@ def loop_tables(loops: Sequence[Differences]) -> dict[str, str]:
 
 
 def _table(text: str, header: str, lines: Iterable[str]) -> str:
-    """A paragraph and its table, or nothing where the table has no lines."""
+    """A paragraph and its table, or nothing if the table is empty."""
     rows = list(lines)
     return f"{text}\n\n{markdown_table(header, rows)}" if rows else ""
 
 
-def _hysteresis_table(found: Sequence[averages.Setting]) -> str:
+def _hysteresis_table(shown: Sequence[averages.Setting]) -> str:
     """Works of adhesion and hysteresis of both models, and how much of a surface repels."""
     branches = "approach", "retraction", "difference"
     models = [f"{model}_{branch}" for branch in branches for model in ("boundary", "front")]
     lines = []
-    for one in found:
-        row = one.rows[0]
+    for setting in shown:
+        row = setting.rows[0]
         energy, repelling, *works = (
-            one.mean(attrgetter(name)) for name in ("elastic_energy", "repelling", *models)
+            setting.mean(attrgetter(name)) for name in ("elastic_energy", "repelling", *models)
         )
         lines.append(
             f"{row.roll_off:g} | {float(energy.value):.4f} | {row.n_point} | "
-            f"{row.interaction_range:g} | {row.step:g} | {one.surfaces} | "
+            f"{row.interaction_range:g} | {row.step:g} | {setting.surfaces} | "
             f"{float(repelling.value):.1%} | {' | '.join(map(_shown, works))}"
         )
     return _table(
@@ -72,17 +72,17 @@ def _hysteresis_table(found: Sequence[averages.Setting]) -> str:
     )
 
 
-def _shown(found: Estimate) -> str:
+def _shown(estimate: Estimate) -> str:
     """A value and its standard error, if it has one."""
-    value, error = float(found.value), float(found.standard_error)
+    value, error = float(estimate.value), float(estimate.standard_error)
     return f"{value:.4f}" + (f" ({error:.4f})" if math.isfinite(error) else "")
 
 
-def ratio_table(told: Sequence[ValidityRow]) -> str:
+def ratio_table(validity: Sequence[ValidityRow]) -> str:
     """Ratios of the hystereses at a vanishing range, and the law through them."""
-    if not any(math.isfinite(row.error) for row in told):
+    if not any(math.isfinite(row.error) for row in validity):
         return ""
-    slope, error = excess_coefficient(told)
+    slope, error = excess_coefficient(validity)
     return _table(
         "Hysteresis of the front over that of boundary elements at a vanishing range, without what "
         "these lose on the smooth sphere; 68% intervals by Student's t over the surfaces, and half "
@@ -93,7 +93,7 @@ def ratio_table(told: Sequence[ValidityRow]) -> str:
             f"{row.roll_off:g} | {row.hurst:g} | {row.elastic_energy:.4f} | {row.size:.2g} | "
             f"{row.ratio:.2f} | {_interval(row)} | {math.exp(slope * row.elastic_energy):.2f} | "
             f"{row.surfaces} | {row.fine}"
-            for row in told
+            for row in validity
         ),
     )
 
@@ -106,10 +106,10 @@ def order_table(rows: Sequence[Hysteresis]) -> str:
         f"roll-off | H | e_el | {powers}",
         (
             " | ".join(
-                [f"{value:g}" for value in one.rows[0].scene]
-                + [f"{math.exp(float(found.value)):.2f}" for found in logarithms]
+                [f"{value:g}" for value in setting.rows[0].scene]
+                + [f"{math.exp(float(logarithm.value)):.2f}" for logarithm in logarithms]
             )
-            for one, logarithms in averages.excess_by_order(rows)
+            for setting, logarithms in averages.excess_by_order(rows)
         ),
     )
 
@@ -131,7 +131,7 @@ def size_table(tables: Sequence[Mapping[tuple[float, ...], ValidityRow]]) -> str
 
 
 def _interval(row: ValidityRow) -> str:
-    """Interval of 68% of a ratio, none of a single surface."""
+    """Interval of 68% of a ratio; empty for a single surface."""
     if not math.isfinite(row.error):
         return ""
     return f"{row.ratio * math.exp(-row.error):.2f} to {row.ratio * math.exp(row.error):.2f}"
@@ -143,9 +143,9 @@ _CRACK_CELLS = "{n_point} | {interaction_range:g} | {elastic_energy:.4f} | {crac
 
 def _cell_values(row: Differences) -> dict[str, Any]:
     """Values of a row, with forces relative to the pull-off force and the name of the crack."""
-    known = asdict(row)
-    forces = {name: value / PULL_OFF for name, value in known.items() if "force" in name}
-    return known | forces | {"crack": "turns" if row.rotated else "fixed"}
+    values = asdict(row)
+    forces = {name: value / PULL_OFF for name, value in values.items() if "force" in name}
+    return values | forces | {"crack": "turns" if row.rotated else "fixed"}
 
 
 def _difference_table(loops: Sequence[Differences]) -> str:

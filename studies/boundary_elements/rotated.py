@@ -87,8 +87,8 @@ def _modes(heights: Array, pixel: float) -> tuple[Array, Array, NDArray[np.compl
     q_x, q_y = np.meshgrid(*along, indexing="ij")
     floor = np.finfo(float).eps * float(np.max(np.abs(amplitude), initial=0.0))
     # Of two modes that are conjugate one is kept, with twice the amplitude.
-    kept = ((q_x > 0) | ((q_x == 0) & (q_y > 0))) & (np.abs(amplitude) > floor)
-    q_x, q_y, amplitude = q_x[kept], q_y[kept], amplitude[kept]
+    is_used = ((q_x > 0) | ((q_x == 0) & (q_y > 0))) & (np.abs(amplitude) > floor)
+    q_x, q_y, amplitude = q_x[is_used], q_y[is_used], amplitude[is_used]
     wavevector = np.hypot(q_x, q_y)
     centre = np.exp(0.5j * pixel * (n_x * q_x + n_y * q_y))
     return wavevector, np.arctan2(q_y, q_x), 2 * np.sqrt(wavevector) * amplitude * centre

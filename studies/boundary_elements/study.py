@@ -59,8 +59,10 @@ def write_validation(
     def front(case: Case, rotated: bool = True) -> FrontCycle:
         key = *case.surface, rotated
         if key not in fronts:
-            given = parameters.front
-            fronts[key] = front_cycle(case, given.n_angle, given.spacing, rotated=rotated)
+            front_numerics = parameters.front
+            fronts[key] = front_cycle(
+                case, front_numerics.n_angle, front_numerics.spacing, rotated=rotated
+            )
         return fronts[key]
 
     rows: list[Hysteresis] = []
@@ -101,9 +103,9 @@ def write_validation(
 def _cycle(folder: Path, case: Case, origin: Provenance, progress: Progress) -> BoundaryCycle:
     """Cycle of a case: read, else continued or computed."""
     path = folder / f"{case.stem}.nc"
-    known = read_record(path, BoundaryCycle) if path.exists() else None
-    if known is not None and known.status != RUNNING:
-        return known
+    stored = read_record(path, BoundaryCycle) if path.exists() else None
+    if stored is not None and stored.status != RUNNING:
+        return stored
 
     def keep(cycle: BoundaryCycle) -> None:
         write_record(path, cycle, origin, case=case.label)
@@ -113,4 +115,4 @@ def _cycle(folder: Path, case: Case, origin: Provenance, progress: Progress) -> 
             f"{cycle.seconds[-1]:.2f} s"
         )
 
-    return boundary_cycle(case, known, keep)
+    return boundary_cycle(case, stored, keep)

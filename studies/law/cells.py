@@ -75,7 +75,7 @@ def measured_cells() -> tuple[LawCell, ...]:
 def csv_rows(text: str, kind: type[Row]) -> tuple[Row, ...]:
     """Records of texts, whole numbers and numbers from comma-separated values.
 
-    ValueError if there is no row, or a column is missing.
+    ValueError if all rows or a column are missing.
     """
     record: Any = kind
     numbers = {"int": int, "float": float}
@@ -135,7 +135,7 @@ def law_cells(sweep: Sweep, dataset: xr.Dataset) -> list[LawCell]:
     if not isinstance(load, LineLoad):
         raise ValueError("the sweep runs spheres; the law is measured on straight fronts")
     cells = []
-    for (place, amplitude), found in cell_means(sweep.kind, dataset).items():
+    for (place, amplitude), means in cell_means(sweep.kind, dataset).items():
         item, requested = sweep.spectra[place], sweep.elastic_energies[amplitude]
         simulation = sweep.simulation(item, requested, 0)
         larkin = larkin_length(sweep.kind, item.spectrum, 2 * math.sqrt(requested))
@@ -147,14 +147,14 @@ def law_cells(sweep: Sweep, dataset: xr.Dataset) -> list[LawCell]:
             LawCell(
                 spectrum=name if sweep.kind == "roughness" else f"{name}-{sweep.kind}",
                 breadth=spectral_breadth(sweep.kind, item.spectrum),
-                disorder=0.0 if load.uncorrelated else 2 * math.sqrt(found.elastic_energy),
+                disorder=0.0 if load.uncorrelated else 2 * math.sqrt(means.elastic_energy),
                 size=simulation.schedule.spring_at(1.0) / larkin,
-                realisations=found.realisations,
-                approach=found.approach,
-                retraction=found.retraction,
-                both=found.both,
-                error=found.both_error,
-                numerical_error=found.numerical_error,
+                realisations=means.realisations,
+                approach=means.approach,
+                retraction=means.retraction,
+                both=means.both,
+                error=means.both_error,
+                numerical_error=means.numerical_error,
                 front_rms=float(cell.front_rms.mean()) / depth,
                 negative_share=float(cell.negative_share.mean()),
             )
@@ -173,21 +173,21 @@ def _without_spacing(sweep: Sweep, cells: Sequence[LawCell]) -> list[LawCell]:
     fine, coarse = sorted(energies)
     # The spacing is a pixel; in units of the Larkin length it goes with e_el.
     weight = fine / (coarse - fine)
-    found, order = [], 1 if energies[0] == fine else -1
+    extrapolated, order = [], 1 if energies[0] == fine else -1
     for pair in zip(cells[::2], cells[1::2], strict=True):
         first, second = pair[::order]
         numbers = {
             name: getattr(first, name) + weight * (getattr(first, name) - getattr(second, name))
             for name in ("approach", "retraction", "both", "front_rms")
         }
-        left = abs(numbers["both"] - first.both) / 3
-        found.append(
+        remainder = abs(numbers["both"] - first.both) / 3
+        extrapolated.append(
             replace(
                 first,
                 **numbers,
                 spectrum=f"{first.spectrum}-weak",
                 error=float(np.hypot((1 + weight) * first.error, weight * second.error)),
-                numerical_error=float(np.hypot(first.numerical_error, left)),
+                numerical_error=float(np.hypot(first.numerical_error, remainder)),
             )
         )
-    return found
+    return extrapolated

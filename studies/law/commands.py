@@ -1,4 +1,4 @@
-"""Commands of the law of k: measure it on straight fronts, fit it, hold spheres against it."""
+"""Commands of the law of k: measure it on straight fronts, fit it, compare spheres with it."""
 
 from __future__ import annotations
 
@@ -88,12 +88,12 @@ def fit(configurations: tuple[Path, ...], output: Path) -> None:
     cells = [cell for path in configurations for cell in _rows(path, law_cells)]
     cells.sort(key=lambda cell: (cell.spectrum, cell.disorder, cell.size))
     text = csv_text(cells or measured_cells())
-    # The fit is that of the rows as they are written, to five digits.
-    known = csv_rows(text, LawCell)
-    law = fitted_law(known)
+    # The law is fitted to the rows as they are written, to five digits.
+    rounded = csv_rows(text, LawCell)
+    law = fitted_law(rounded)
     write_text(output / "cells.csv", text)
     write_text(output / "law.json", json.dumps(asdict(law), indent=1) + "\n")
-    click.echo(f"{len(known)} rows; rms {law.rms:.1%}, worst {law.worst:.1%} for g above 1")
+    click.echo(f"{len(rounded)} rows; rms {law.rms:.1%}, worst {law.worst:.1%} for g above 1")
     click.echo(f"law: {output / 'law.json'}")
 
 

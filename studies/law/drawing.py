@@ -75,15 +75,15 @@ class LawPoints:
 
 def spectra_points(cells: Sequence[LawCell]) -> tuple[LawPoints, ...]:
     """Straight fronts of `cells.csv`, one entry a spectrum, its limit of weak disorder with it."""
-    found, names = [], [cell.spectrum.removesuffix("-weak") for cell in cells]
+    points, names = [], [cell.spectrum.removesuffix("-weak") for cell in cells]
     for name in dict.fromkeys(names):
-        rows = [cell for cell, own in zip(cells, names, strict=True) if own == name]
+        rows = [cell for cell, spectrum in zip(cells, names, strict=True) if spectrum == name]
         columns = (
             np.array([getattr(cell, item) for cell in rows])
             for item in ("disorder", "size", "both", "error", "breadth")
         )
-        found.append(LawPoints(name, *columns))
-    return tuple(found)
+        points.append(LawPoints(name, *columns))
+    return tuple(points)
 
 
 def law_figure(fronts: Sequence[LawPoints], spheres: LawPoints) -> Figure:
@@ -92,16 +92,16 @@ def law_figure(fronts: Sequence[LawPoints], spheres: LawPoints) -> Figure:
     drawn.append((spheres, _style(spheres.name, "0.2", "o", is_open=True)))
     with house_style():
         figure = blank_figure(PAGE, 0.56 * PAGE)
-        left, right = figure.subplots(1, 2, width_ratios=(1.2, 1))
-        _draw_collapse(left, drawn)
-        draw_infinite_law(right)
+        collapse, infinite = figure.subplots(1, 2, width_ratios=(1.2, 1))
+        _draw_collapse(collapse, drawn)
+        draw_infinite_law(infinite)
         for points, style in drawn:
-            _draw_extrapolated(right, points, style)
-        right.set_ylim(0.0, 1.12 * PERTURBATION_FACTOR)
-        right.legend(loc="lower left")
-        entries = left.get_legend_handles_labels()
+            _draw_extrapolated(infinite, points, style)
+        infinite.set_ylim(0.0, 1.12 * PERTURBATION_FACTOR)
+        infinite.legend(loc="lower left")
+        entries = collapse.get_legend_handles_labels()
         figure.legend(*entries, loc="outside upper center", ncols=6, columnspacing=1.4)
-        name_panels((left, right), "ab")
+        name_panels((collapse, infinite), "ab")
         explain(
             figure,
             "bars: 95% intervals over surfaces; spheres, to which nothing was adjusted, are open "
@@ -134,8 +134,8 @@ def _draw_collapse(axes: Axes, drawn: Sequence[tuple[LawPoints, dict[str, Any]]]
     law = shipped_law()
     k_0, *_, a, b, _, _, e, _ = law.coefficients
     sizes = {
-        one.name: effective_size(law.coefficients, one.disorder, one.size, one.breadth)
-        for one, _ in drawn
+        points.name: effective_size(law.coefficients, points.disorder, points.size, points.breadth)
+        for points, _ in drawn
     }
     largest = max(float(np.max(size)) for size in sizes.values())
     lowest, highest = LEAST_SIZE / 4, 2 * largest

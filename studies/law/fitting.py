@@ -54,8 +54,8 @@ def fitted_law(cells: Sequence[LawCell]) -> Law:
             values = law_value(trial[: len(COEFFICIENTS)], s, g, breadth, float(exponent))
             return (values - k) / spread
 
-        found = least_squares(residuals, coefficients)
-        coefficients = found.x
+        solution = least_squares(residuals, coefficients)
+        coefficients = solution.x
         model = _likeliest_model(coefficients, places, k, error)
     free = least_squares(residuals, [*coefficients, FINITE_SIZE_EXPONENT])
     # The residuals have unit variance.
@@ -81,7 +81,7 @@ def fitted_law(cells: Sequence[LawCell]) -> Law:
 
 def _departures(cells: Sequence[LawCell], coefficients: Array) -> tuple[Departure, ...]:
     """How far all measured cells lie above the law, those held out too, by breadth and size."""
-    found = []
+    rows = []
     last, broad = (
         math.nextafter(max(getattr(cell, name) for cell in cells), math.inf)
         for name in ("size", "breadth")
@@ -94,23 +94,23 @@ def _departures(cells: Sequence[LawCell], coefficients: Array) -> tuple[Departur
                 for cell in cells
                 if least <= cell.size < largest and narrowest <= cell.breadth < broadest
             ]
-            apart = np.array(group) - 1
-            mean, rms = float(np.mean(apart)), float(np.sqrt(np.mean(apart**2)))
+            relative = np.array(group) - 1
+            mean, rms = float(np.mean(relative)), float(np.sqrt(np.mean(relative**2)))
             row = Departure(narrowest, broadest, least, largest, mean, rms, len(group))
-            found.append(row)
-    return tuple(found)
+            rows.append(row)
+    return tuple(rows)
 
 
 def _pooled_error(size: Array, error: Array) -> Array:
-    """Standard errors of cells, each by the median square of those of cells of about its size.
+    """Standard errors of cells, each from the median square over cells of about its size.
 
-    Cells of a single tile have none of their own; where no other is near, the next one counts.
+    A cell of a single tile lacks its own error; if no cell is near, the nearest one counts.
     """
-    known = np.isfinite(error)
-    apart = np.abs(np.log(size[:, None] / size[known]))
-    near = apart <= np.maximum(_NEAR, apart.min(axis=1, keepdims=True))
+    has_error = np.isfinite(error)
+    distance = np.abs(np.log(size[:, None] / size[has_error]))
+    near = distance <= np.maximum(_NEAR, distance.min(axis=1, keepdims=True))
     # The median of the squares of normal numbers is 0.455 of their mean.
-    return np.array([np.sqrt(np.median(error[known][row] ** 2) / 0.455) for row in near])
+    return np.array([np.sqrt(np.median(error[has_error][row] ** 2) / 0.455) for row in near])
 
 
 def _likeliest_model(

@@ -48,7 +48,7 @@ def law_parts(spheres: Sequence[SphereRow]) -> dict[str, str]:
 
 def law_numbers(spheres: Sequence[SphereRow]) -> dict[str, Number]:
     """Numbers that README and the paper quote; errors are half of the 95% intervals."""
-    apart = departures(spheres)
+    differences = departures(spheres)
     s, low, high = crossing()
     strong = {
         f"k at s = {STRONG:g}, {name}": _half(pinning_factor(STRONG, math.inf, breadth=breadth))
@@ -60,8 +60,8 @@ def law_numbers(spheres: Sequence[SphereRow]) -> dict[str, Number]:
         f"g of k = {PAPER_FACTOR:g} at vanishing disorder": Number(least_size()),
         f"s of k = {PAPER_FACTOR:g} in the infinite contact": Number(s, (high - low) / 2),
         "spheres": Number(len(spheres)),
-        "spheres with g above 1": Number(len(apart)),
-        "rms difference of spheres": Number(float(np.sqrt(np.mean(np.square(apart))))),
+        "spheres with g above 1": Number(len(differences)),
+        "rms difference of spheres": Number(float(np.sqrt(np.mean(np.square(differences))))),
     }
 
 
@@ -94,13 +94,13 @@ def departures_part(law: Law) -> str:
     """Table of how far measured k lie above the law, by breadth and size."""
     rows = [
         (
-            f"{one.narrowest:.3g} to {one.broadest:.3g}",
-            f"{one.least_size:.3g} to {one.largest_size:.3g}",
-            str(one.fronts),
-            f"{one.mean:+.1%}",
-            f"{one.rms:.1%}",
+            f"{departure.narrowest:.3g} to {departure.broadest:.3g}",
+            f"{departure.least_size:.3g} to {departure.largest_size:.3g}",
+            str(departure.fronts),
+            f"{departure.mean:+.1%}",
+            f"{departure.rms:.1%}",
         )
-        for one in map(Departure._make, law.departures)
+        for departure in map(Departure._make, law.departures)
     ]
     header = "breadth | g | fronts | measured k above the law, mean | rms"
     return markdown_table(header, rows)
@@ -110,10 +110,10 @@ def limit_part() -> str:
     """Table of k in the infinite contact by spectrum, and where it is 3."""
     rows, breadths = [], stated_breadths()
     for s in DISORDERS:
-        found = [pinning_factor(s, math.inf, breadth=breadth) for breadth in breadths.values()]
+        factors = [pinning_factor(s, math.inf, breadth=breadth) for breadth in breadths.values()]
         name = "0, k_0" if s == WEAKEST else f"{s:g}"
-        intervals = (with_interval(one.factor) for one in found)
-        rows.append((name, *intervals, f"{found[0].negative_share:.1%}"))
+        intervals = (with_interval(factor.factor) for factor in factors)
+        rows.append((name, *intervals, f"{factors[0].negative_share:.1%}"))
     s, low, high = crossing()
     names = (f"k, {name} (beta {breadth:.2f})" for name, breadth in breadths.items())
     header = f"s | {' | '.join(names)} | share of negative w_loc"
@@ -129,21 +129,23 @@ def shapes_part(cells: Sequence[LawCell]) -> str:
     for name in dict.fromkeys(cell.spectrum for cell in cells):
         large = [cell for cell in cells if cell.spectrum == name and cell.size > 1]
         laws = [_law_of(cell) for cell in large]
-        apart = np.array([law.value / one.both - 1 for law, one in zip(laws, large, strict=True)])
+        differences = np.array(
+            [law.value / cell.both - 1 for law, cell in zip(laws, large, strict=True)]
+        )
         inside = sum(
-            is_within(one.both, np.nan_to_num(one.error), law)
-            for law, one in zip(laws, large, strict=True)
+            is_within(cell.both, np.nan_to_num(cell.error), law)
+            for law, cell in zip(laws, large, strict=True)
         )
         rows.append(
             (
                 name,
                 "no" if name in HELD_OUT else "yes",
                 f"{large[0].breadth:.2f}",
-                f"{min(one.disorder for one in large):.2g} to "
-                f"{max(one.disorder for one in large):.2g}",
-                f"{max(one.size for one in large):.3g}",
-                f"{np.sqrt(np.mean(apart**2)):.1%}",
-                f"{apart[np.argmax(np.abs(apart))]:+.1%}",
+                f"{min(cell.disorder for cell in large):.2g} to "
+                f"{max(cell.disorder for cell in large):.2g}",
+                f"{max(cell.size for cell in large):.3g}",
+                f"{np.sqrt(np.mean(differences**2)):.1%}",
+                f"{differences[np.argmax(np.abs(differences))]:+.1%}",
                 f"{inside} of {len(large)}",
             )
         )

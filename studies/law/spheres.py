@@ -55,11 +55,11 @@ def read_spheres(paths: Sequence[Path]) -> list[SphereRow]:
 
 
 def _row(
-    name: str, kind: FieldKind, spectrum: SelfAffineSpectrum, radius: float, found: Means
+    name: str, kind: FieldKind, spectrum: SelfAffineSpectrum, radius: float, means: Means
 ) -> SphereRow:
     """Row of a sphere with what was found for it."""
     shape = spectrum.short_cutoff, spectrum.roll_off, spectrum.hurst
-    return SphereRow(name, kind, *shape, radius, *astuple(found))
+    return SphereRow(name, kind, *shape, radius, *astuple(means))
 
 
 def sphere_rows(sweep: Sweep, dataset: xr.Dataset) -> Iterator[SphereRow]:
@@ -70,11 +70,11 @@ def sphere_rows(sweep: Sweep, dataset: xr.Dataset) -> Iterator[SphereRow]:
     if not isinstance(sweep.schedule, SteadySchedule):
         raise ValueError("the sweep does not run the steady branches of spheres")
     radius = (dataset.lowest_radius + dataset.highest_radius).mean("realisation") / 2
-    for (place, amplitude), found in cell_means(sweep.kind, dataset).items():
+    for (place, amplitude), means in cell_means(sweep.kind, dataset).items():
         item = sweep.spectra[place]
         if not isinstance(item.spectrum, SelfAffineSpectrum):
             raise ValueError(f"spectrum {item.name} is not self-affine; leave it out")
-        yield _row(item.name, sweep.kind, item.spectrum, float(radius[place, amplitude]), found)
+        yield _row(item.name, sweep.kind, item.spectrum, float(radius[place, amplitude]), means)
 
 
 def _steady(start: float, reach: float = 1.0, travel: float = 1.5) -> SteadySchedule:
@@ -84,7 +84,7 @@ def _steady(start: float, reach: float = 1.0, travel: float = 1.5) -> SteadySche
 
 @dataclass(frozen=True, slots=True)
 class Scene:
-    """A sphere that has no part in any fit."""
+    """A sphere that is not part of any fit."""
 
     name: str
     kind: FieldKind
@@ -119,19 +119,19 @@ def scene_rows(scenes: Sequence[Scene] = SCENES, realisations: int = 3) -> Itera
         ]
         columns = [[getattr(run, name) for run in runs] for name in COLUMNS]
         radius = np.mean([(run.lowest_radius + run.highest_radius) / 2 for run in runs])
-        found = mean_factors(scene.kind, *columns)
-        yield _row(scene.name, scene.kind, scene.spectrum, float(radius), found)
+        means = mean_factors(scene.kind, *columns)
+        yield _row(scene.name, scene.kind, scene.spectrum, float(radius), means)
 
 
 def reference_rows(path: Path, schedule: SteadySchedule) -> Iterator[SphereRow]:
     """Spheres of the kept data of SI Fig. S-5, of given penetrations."""
     dataset = read_dataset(path)
     radius = jkr.equilibrium_radius((schedule.start + schedule.max_penetration) / 2)
-    for (place, _), found in cell_means("roughness", dataset).items():
+    for (place, _), means in cell_means("roughness", dataset).items():
         item = dataset.isel(spectrum=place)
         shape = (float(item[name]) for name in ("short_cutoff", "roll_off", "hurst"))
         name = f"{item.spectrum.item()}, paper"
-        yield _row(name, "roughness", SelfAffineSpectrum(*shape), radius, found)
+        yield _row(name, "roughness", SelfAffineSpectrum(*shape), radius, means)
 
 
 def law_of(row: SphereRow) -> SphereFactors:
@@ -152,8 +152,8 @@ def is_within(k: float, error: float, law: Estimate[float]) -> bool:
 
 def departures(rows: Sequence[SphereRow]) -> list[float]:
     """Relative differences of the law's k from simulated ones where g is above 1."""
-    found = ((law_of(row), row) for row in rows)
-    return [law.both.value / row.both - 1 for law, row in found if law.size > 1]
+    rows_with_law = ((law_of(row), row) for row in rows)
+    return [law.both.value / row.both - 1 for law, row in rows_with_law if law.size > 1]
 
 
 def sphere_table(rows: Sequence[SphereRow]) -> str:
@@ -175,11 +175,11 @@ def sphere_table(rows: Sequence[SphereRow]) -> str:
         )
         for row, law in zip(rows, laws, strict=True)
     ]
-    apart = departures(rows)
-    rms, worst = np.sqrt(np.mean(np.square(apart))), np.max(np.abs(apart))
+    differences = departures(rows)
+    rms, worst = np.sqrt(np.mean(np.square(differences))), np.max(np.abs(differences))
     inside = sum(is_covered(row, law) for row, law in zip(rows, laws, strict=True) if law.size > 1)
     return (
-        f"{markdown_table(header, cells)}\n\nFor g above 1, {len(apart)} rows: rms "
+        f"{markdown_table(header, cells)}\n\nFor g above 1, {len(differences)} rows: rms "
         f"{rms:.1%}, worst {worst:.1%}; the 95% intervals cover {inside}."
     )
 

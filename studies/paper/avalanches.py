@@ -108,7 +108,7 @@ def avalanche_record(parameters: AvalancheParameters, progress: Progress) -> Ava
     spectrum = flat_spectrum(parameters.short_cutoff)
     means = surface_means(surfaces, "rms", "larkin_length", "circle_length", "smooth_area")
     unit = means["larkin_length"] * force_correlation_length("roughness", spectrum)
-    events = [[event for one in kind for event in one.avalanches] for kind in surfaces]
+    events = [[event for surface in kind for event in surface.avalanches] for kind in surfaces]
     columns = (np.array(column) for column in zip(*itertools.chain(*events), strict=True))
     avalanches: dict[str, Any] = dict(zip(_Avalanche._fields, columns, strict=True))
     return AvalancheRecord(

@@ -1,4 +1,4 @@
-"""A whole cycle as it is seen: every front over the field, beside the loop that it draws."""
+"""A whole cycle as it is seen: every front over the field, and the loop that it draws."""
 
 from __future__ import annotations
 
@@ -132,25 +132,30 @@ def motion_figure(shown: AnimatedCycle) -> Drawing:
 
 
 def motion_animation(shown: AnimatedCycle) -> Animation:
-    """The front over the field beside the loop: one frame a state, and some without contact."""
+    """The front over the field, and the loop: one frame a state, and some without contact."""
     with house_style():
         figure = blank_figure(PAGE, 0.49 * PAGE)
-        left, right = figure.subplots(1, 2)
+        map_axes, loop_axes = figure.subplots(1, 2)
         mean, reach = 1 - shown.elastic_energy, 4 * np.sqrt(shown.elastic_energy)
-        draw_field(left, shown.x, shown.y, shown.patch, mean, reach)
-        right.set(xlabel=f"mean {RADIUS_LABEL}", ylabel=FORCE_LABEL)
-        limits = (shown.mean_radius, right.set_xlim, 0.06), (shown.force, right.set_ylim, 0.2)
+        draw_field(map_axes, shown.x, shown.y, shown.patch, mean, reach)
+        loop_axes.set(xlabel=f"mean {RADIUS_LABEL}", ylabel=FORCE_LABEL)
+        limits = (
+            (shown.mean_radius, loop_axes.set_xlim, 0.06),
+            (shown.force, loop_axes.set_ylim, 0.2),
+        )
         for values, setter, above in limits:
             low, high = values.min(), values.max()
             setter(low - 0.06 * (high - low), high + above * (high - low))
-        (line,) = left.plot([], [], linewidth=1.2)
-        title = left.set_title("penetration $+0.00$")
+        (line,) = map_axes.plot([], [], linewidth=1.2)
+        title = map_axes.set_title("penetration $+0.00$")
         branches = {
-            direction: right.plot([], [], color=colour, label=name)[0]
+            direction: loop_axes.plot([], [], color=colour, label=name)[0]
             for direction, name, _, colour in BRANCHES
         }
-        (point,) = right.plot([], [], "o", color=BLACK, zorder=4, label="state of the front beside")
-        right.legend(loc="upper left")
+        (point,) = loop_axes.plot(
+            [], [], "o", color=BLACK, zorder=4, label="state of the front beside"
+        )
+        loop_axes.legend(loc="upper left")
         explain(figure, f"unit of the penetration: ${VERTICAL.tex}$")
     last = shown.direction.size
 

@@ -24,7 +24,7 @@ from studies.paper.rough import (
 )
 
 _TOLERANCE = 0.1
-"""Largest deviation of that of a sphere."""
+"""Largest deviation of the exponent of a sphere."""
 
 
 def size_law(record: AvalancheRecord, index: int) -> PowerLaw:
@@ -132,7 +132,7 @@ def avalanche_figure(record: AvalancheRecord) -> Drawing:
         return figure
 
 
-def _draw_densities(axes: Axes, record: AvalancheRecord, values: Array, what: str) -> None:
+def _draw_densities(axes: Axes, record: AvalancheRecord, values: Array, label: str) -> None:
     """Densities of both disorders in logarithmic bins, with the error of counting."""
     edges = event_laws.logarithmic_edges(values)
     for index, name, colour, marker in _KINDS:
@@ -151,7 +151,7 @@ def _draw_densities(axes: Axes, record: AvalancheRecord, values: Array, what: st
             color=colour,
             label=f"{name} disorder, {disorder}, {chosen.size} avalanches",
         )
-    axes.set(xlabel=what, ylabel="probability density")
+    axes.set(xlabel=label, ylabel="probability density")
 
 
 def _draw_areas(axes: Axes, record: AvalancheRecord) -> None:

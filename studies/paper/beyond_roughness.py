@@ -1,6 +1,6 @@
 """Beyond the paper: roughness of fronts, for strong and weak disorder.
 
-Those of a sphere in steady retraction, and straight ones on springs.
+Fronts of a sphere in steady retraction, and straight ones on springs.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ _EXPONENTS = (0.388, 0.5, 0.388, 0.5)
 Phys. Rev. E 65, 025101), and where disorder is a perturbation: strong and weak disorder."""
 
 _TOLERANCE = 0.05
-"""Largest deviation of an exponent, about that of a crossover within the range of the fit."""
+"""Largest deviation of an exponent, about as large as by a crossover in the range of the fit."""
 
 
 def roughness_checks(record: RoughnessRecord) -> tuple[Check, ...]:
@@ -68,7 +68,7 @@ def roughness_checks(record: RoughnessRecord) -> tuple[Check, ...]:
 
 
 def _exponent_check(record: RoughnessRecord, index: int, fit: RoughnessFit, claim: str) -> Check:
-    """One exponent against that of the theory."""
+    """One exponent against the exponent of the theory."""
     expected = _EXPONENTS[index]
     low, high = record.shortest[index], record.longest[index]
     middle = np.full(record.longest.size, np.sqrt(low * high))
@@ -99,7 +99,7 @@ _KINDS = ((STRONG, "strong", _COLOURS[STRONG]), (WEAK, "weak", _COLOURS[WEAK]))
 
 
 def roughness_figure(record: RoughnessRecord) -> Drawing:
-    """Spectra with their fits, over those of perturbation theory, differences, straight fronts."""
+    """Spectra over perturbation theory with their fits, height differences, straight fronts."""
     with house_style():
         figure = blank_figure(PAGE, 0.81 * PAGE)
         panels = figure.subplots(2, 2).ravel()

@@ -26,8 +26,8 @@ Numbers = Mapping[str, Number]
 
 def _computed(name: str, changes: Mapping[str, Any], numbers: Callable[[Any], Numbers]) -> Numbers:
     """Numbers of a figure at the scale quick, with some parameters changed to make it faster."""
-    given = load_figure(Path(f"config/figures/{name}.yaml"), "quick")
-    parameters = type(given).model_validate(given.model_dump() | dict(changes))
+    quick = load_figure(Path(f"config/figures/{name}.yaml"), "quick")
+    parameters = type(quick).model_validate(quick.model_dump() | dict(changes))
     return numbers(figure(name).compute(parameters, lambda line: None))
 
 

@@ -34,7 +34,11 @@ commands = click.Group()
 
 _output = output_option(default=Path("results/figures"), help="Folder of all figures.")
 
-_PICTURES, _REFERENCE = Path("docs/experiments/figures"), Path("docs/reference")
+_PICTURES = Path("docs/experiments/figures")
+"""Pictures of the gallery."""
+
+_REFERENCE = Path("docs/reference")
+"""Data that other pages use."""
 
 
 @commands.command(
@@ -47,7 +51,7 @@ _PICTURES, _REFERENCE = Path("docs/experiments/figures"), Path("docs/reference")
     type=click.Choice(SCALES),
     default="quick",
     show_default=True,
-    help="Coarser lengths, which take minutes on two cores, or those of the paper.",
+    help="Coarser lengths, which take minutes on two cores, or the lengths of the paper.",
 )
 @_output
 def compute_figure(configuration: Path, scale: str, output: Path) -> None:
@@ -102,22 +106,22 @@ def check_figures(output: Path) -> None:
             lines += ["", f"## {shown.title} ({scale})", "", *checks_table(checks)]
             failed += [
                 f"FAIL: {shown.title} ({scale}): {check.claim}: {check.expected} expected, "
-                f"{check.found} found"
+                f"{check.computed} found"
                 for check in checks
                 if check.result == "FAIL"
             ]
     if not counts:
         raise _no_data(output)
     agree, predicted, fail = (counts[result] for result in get_args(Result))
-    told = (
+    summary = (
         f"{agree} of {counts.total()} agree, {predicted} differ from the paper as the law of k "
         f"says (docs/law.md), {fail} fail"
     )
-    listed = ["", *(f"- {one}" for one in failed)] if failed else []
-    lines = ["# Checks of the figures", "", f"{told}.", *listed, *lines, ""]
+    listed = ["", *(f"- {failure}" for failure in failed)] if failed else []
+    lines = ["# Checks of the figures", "", f"{summary}.", *listed, *lines, ""]
     forget_sums(output)
     write_text(output / "checks.md", "\n".join(lines))
-    for line in (f"checks: {output / 'checks.md'}, {told}", *failed):
+    for line in (f"checks: {output / 'checks.md'}, {summary}", *failed):
         click.echo(line)
 
 
@@ -129,20 +133,20 @@ def check_figures(output: Path) -> None:
 def gallery(output: Path, pictures: Path) -> None:
     """Store all figures and their checks for the pages.
 
-    Of each figure the paper's scale is kept if it is there; an animation is that of the results.
+    Each figure is stored at the paper's scale if it was computed, with its animation.
     """
-    known = {path.stem: path for scale in SCALES for path in _data_of_figures(output / scale)}
-    if not known:
+    paths = {path.stem: path for scale in SCALES for path in _data_of_figures(output / scale)}
+    if not paths:
         raise _no_data(output)
     pictures.mkdir(parents=True, exist_ok=True)
-    for name in filter(known.__contains__, FIGURES):
-        shown, record = _figure_and_record(known[name])
+    for name in filter(paths.__contains__, FIGURES):
+        shown, record = _figure_and_record(paths[name])
         picture = pictures / f"{name}.{'gif' if shown.animate else 'png'}"
         if shown.animate:
-            shutil.copyfile(known[name].with_suffix(".gif"), picture)
+            shutil.copyfile(paths[name].with_suffix(".gif"), picture)
         else:
             save_picture(shown.draw(record), picture)
-        data = read_attributes(known[name])
+        data = read_attributes(paths[name])
         parts = [
             f"## {shown.title}",
             f"![{shown.title}](figures/{picture.name})",
@@ -168,21 +172,21 @@ def experiment(output: Path, keep: bool) -> None:
 
 
 def _data_of_figures(folder: Path) -> list[Path]:
-    """Files of a folder that hold data of figures."""
+    """Files of a folder with data of figures."""
     paths = [folder / f"{name}.nc" for name in FIGURES]
     return [path for path in paths if path.exists()]
 
 
 def _no_data(output: Path) -> ValueError:
-    """Refusal of a folder without data of figures."""
-    return ValueError(f"{output} has no data of figures; run python -m studies paper figure")
+    """Error about a folder without data of figures."""
+    return ValueError(f"{output} contains no data of figures; run python -m studies paper figure")
 
 
 def _figure_and_record(path: Path) -> tuple[Figure, Any]:
     """Figure that data are of, and the data."""
     if path.stem not in FIGURES:
         raise ValueError(
-            f"{path} is no data of a figure; their files are named {', '.join(FIGURES)}"
+            f"{path} does not contain data of a figure; their files are named {', '.join(FIGURES)}"
         )
     shown = figure(path.stem)
     return shown, read_record(path, shown.record)

@@ -68,12 +68,14 @@ def save_animation(animation: Animation, stem: Path) -> Path:
         frames = _frames(animation)
     # One palette for all, so that only what moves differs from frame to frame.
     palette = frames[-1].quantize()
-    first, *others = [frame.quantize(palette=palette, dither=Image.Dither.NONE) for frame in frames]
+    first, *following = [
+        frame.quantize(palette=palette, dither=Image.Dither.NONE) for frame in frames
+    ]
     written = functools.partial(
         first.save,
         format="GIF",
         save_all=True,
-        append_images=others,
+        append_images=following,
         duration=1000 / _FRAMES_PER_SECOND,
         loop=0,
     )

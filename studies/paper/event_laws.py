@@ -22,8 +22,8 @@ _ROUGHNESS = 0.388
 025101), from which all others follow."""
 
 SIZE_EXPONENT = 2 - 1 / (1 + _ROUGHNESS)
-"""That of the areas of whole events, tau; their patches have 2 tau - 1 (Laurson, Santucci, Zapperi,
-Phys. Rev. E 81, 046116)."""
+"""Exponent tau of the areas of whole events; their patches have 2 tau - 1 (Laurson, Santucci and
+Zapperi, Phys. Rev. E 81, 046116)."""
 
 _TOLERANCE = 0.03
 """Largest deviation of an exponent of whole events, if its own interval is not wider."""
@@ -77,12 +77,16 @@ def depth_slope(record: EventRecord) -> Slope:
 
 def _slope(abscissa: Array, ordinate: Array, error: Array | None = None) -> Slope:
     """Line of least squares; without errors they follow from the scatter."""
-    known = {"cov": True} if error is None else {"w": 1 / error, "cov": "unscaled"}
-    (slope, level), covariance = np.polyfit(abscissa, ordinate, 1, **known)
+    weights = {"cov": True} if error is None else {"w": 1 / error, "cov": "unscaled"}
+    (slope, level), covariance = np.polyfit(abscissa, ordinate, 1, **weights)
     return Slope(float(slope), float(_NORMAL * math.sqrt(covariance[0, 0])), float(level))
 
 
-_N_BOOTSTRAP, _NORMAL = 200, 1.96
+_N_BOOTSTRAP = 200
+"""Samples of a bootstrap, enough for a standard error within 5%."""
+
+_NORMAL = 1.96
+"""Half of the 95% interval of a normal distribution, in standard errors."""
 
 
 def event_checks(record: EventRecord) -> Iterator[Check]:
@@ -155,9 +159,9 @@ def _law_checks(record: EventRecord) -> Iterator[Check]:
 
 
 def _exponent_check(
-    claim: str, found: float, expected: float, remark: str, scatter: float, shift: float = 0.0
+    claim: str, measured: float, expected: float, remark: str, scatter: float, shift: float = 0.0
 ) -> Check:
-    """An exponent against that of the theory, within a tolerance or its own interval."""
+    """An exponent against the exponent of the theory, within a tolerance or its own interval."""
     reach = math.hypot(scatter, shift)
     of_what = f"95% interval: ± {scatter:.2g} by the scatter of the events"
     if shift:
@@ -168,8 +172,8 @@ def _exponent_check(
     return Check(
         f"whole events of a straight front: {claim}",
         with_error(expected, max(reach, _TOLERANCE)),
-        with_error(found, reach),
-        abs(found - expected) <= max(reach, _TOLERANCE),
+        with_error(measured, reach),
+        abs(measured - expected) <= max(reach, _TOLERANCE),
         f"{of_what}; {remark}",
     )
 
@@ -220,7 +224,7 @@ def draw_depths(axes: Axes, record: EventRecord) -> None:
         edges = logarithmic_edges(extent[chosen])
         place = np.digitize(extent[chosen], edges)
         means = [
-            [np.exp(np.mean(np.log(one[chosen][place == bin]))) for one in (extent, depth)]
+            [np.exp(np.mean(np.log(values[chosen][place == bin]))) for values in (extent, depth)]
             for bin in np.unique(place)
             if np.sum(place == bin) >= _FEWEST_IN_A_BIN
         ]
@@ -238,7 +242,7 @@ _FEWEST_IN_A_BIN = 10
 
 
 def logarithmic_edges(values: Array) -> Array:
-    """Edges of logarithmic bins that hold all values."""
+    """Edges of logarithmic bins that contain all values."""
     low, high = np.log10(values.min()), np.log10(values.max())
     edges = np.logspace(low, high, max(int((high - low) * _BINS_A_DECADE), 4) + 1)
     edges[-1] *= 1 + 1e-9
@@ -246,7 +250,7 @@ def logarithmic_edges(values: Array) -> Array:
 
 
 def binned_density(values: Array, edges: Array) -> tuple[Array, Array, Integers]:
-    """Geometric middles of the bins that hold values, the density there, and counts."""
+    """Geometric middles of the bins that contain values, the density there, and counts."""
     counts, _ = np.histogram(values, edges)
     density, middle = counts / np.diff(edges) / values.size, np.sqrt(edges[1:] * edges[:-1])
     return middle[counts > 0], density[counts > 0], counts[counts > 0]

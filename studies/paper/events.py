@@ -47,7 +47,7 @@ class EventRecord:
     smallest_event: float = variable("area where the power law begins", _AREA)
     spring: Array = variable("length of the springs, L_kappa", _EXTENT, _SPRING)
     swept_area: Array = variable(
-        "area that the fronts sweep, over that of the way of their load", "1", _SPRING
+        "area that the fronts sweep, over the area that their load sweeps", "1", _SPRING
     )
     smooth_event_area: Array = variable("share of that left in smooth steps", "1", _SPRING)
     event_spring: Integers = variable("which spring", "1", _EVENT)
@@ -116,14 +116,14 @@ def event_record(
     fronts: list[list[_Events]] = []
     for spring in springs:
         fronts.append([_events(parameters, spring, seed, tile) for tile in range(n_tile)])
-        count = sum(len(one.events) for one in fronts[-1])
+        count = sum(len(tiles.events) for tiles in fronts[-1])
         progress(f"spring of {spring:g} Larkin lengths: {count} whole events")
 
     def gathered(name: str) -> tuple[Integers, Array]:
         """Index of the spring of each value, and all values."""
-        values = [[value for tile in one for value in getattr(tile, name)] for one in fronts]
-        owners = np.repeat(np.arange(len(fronts)), [len(one) for one in values])
-        return owners, np.array([value for one in values for value in one])
+        values = [[value for tile in tiles for value in getattr(tile, name)] for tiles in fronts]
+        owners = np.repeat(np.arange(len(fronts)), [len(tiles) for tiles in values])
+        return owners, np.array([value for tiles in values for value in tiles])
 
     event_spring, events = gathered("events")
     patch_spring, patch_area = gathered("patches")

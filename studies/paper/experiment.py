@@ -1,4 +1,4 @@
-"""The measured hysteresis on nanodiamond, beside the paper, the front and boundary elements."""
+"""The measured hysteresis on nanodiamond against the paper, the front and boundary elements."""
 
 from __future__ import annotations
 
@@ -59,14 +59,19 @@ def hystereses_table(shown: tuple[Hysteresis, ...]) -> str:
     """Each hysteresis, and the measured one over it, in Markdown."""
     measured = shown[0].value.value
     rows = [
-        (" ".join(one.name.split()), one.text, f"{measured / one.value.value:.1f}") for one in shown
+        (
+            " ".join(hysteresis.name.split()),
+            hysteresis.text,
+            f"{measured / hysteresis.value.value:.1f}",
+        )
+        for hysteresis in shown
     ]
     return markdown_table("nanodiamond | hysteresis (mJ/m2) | measured / this", rows)
 
 
 def hystereses_numbers(shown: tuple[Hysteresis, ...]) -> dict[str, Number]:
     """Hysteresis of the front and of the prediction, and the measured one over the latter."""
-    measured, _, front, prediction = (one.value for one in shown)
+    measured, _, front, prediction = (hysteresis.value for hysteresis in shown)
     reach = (prediction.high - prediction.low) / 2
     ratio = measured.value / prediction.value
     ratio_reach = measured.value * (1 / prediction.low - 1 / prediction.high) / 2
@@ -84,12 +89,16 @@ def hystereses_figure(shown: tuple[Hysteresis, ...]) -> Figure:
         figure = blank_figure(COLUMN, 0.42 * COLUMN)
         axes = figure.subplots()
         axes.axvline(1e3 * shown[0].value.value, color=BLACK, linewidth=0.7, dashes=(4, 2))
-        for place, one in enumerate(shown):
+        for place, hysteresis in enumerate(shown):
             axes.hlines(
-                place, 1e3 * one.value.low, 1e3 * one.value.high, color=one.colour, linewidth=2
+                place,
+                1e3 * hysteresis.value.low,
+                1e3 * hysteresis.value.high,
+                color=hysteresis.colour,
+                linewidth=2,
             )
-            axes.plot(1e3 * one.value.value, place, "o", color=one.colour)
-        axes.set_yticks(range(len(shown)), [one.name for one in shown])
+            axes.plot(1e3 * hysteresis.value.value, place, "o", color=hysteresis.colour)
+        axes.set_yticks(range(len(shown)), [hysteresis.name for hysteresis in shown])
         axes.set_ylim(len(shown) - 0.5, -0.5)
         axes.set_xlim(0, 100)
         axes.set_xlabel(r"hysteresis $w_\mathrm{retr} - w_\mathrm{appr}$ (mJ m$^{-2}$)")

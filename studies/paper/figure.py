@@ -37,18 +37,18 @@ Progress = Callable[[str], None]
 
 @dataclass(frozen=True, slots=True)
 class Check:
-    """One claim and whether it holds."""
+    """One claim and whether the data agree with it."""
 
     claim: str  # what the paper states, or what must be true
     expected: str  # its number, with the tolerance
-    found: str  # what the data of the figure say
+    computed: str  # what the data of the figure say
     passed: bool
     remark: str = ""  # where the difference comes from, or what the number rests on
-    law: str = ""  # number of the law of k, where what was found agrees with it
+    law: str = ""  # number of the law of k, if the computed one agrees with it
 
     @property
     def result(self) -> Result:
-        """How the check ends; a difference that the law of k predicts is no failure."""
+        """How the check ends; a difference that the law of k predicts does not fail."""
         if self.passed:
             return "agrees"
         return "differs as the law of k says" if self.law else "FAIL"
@@ -60,7 +60,7 @@ Result = Literal["agrees", "differs as the law of k says", "FAIL"]
 
 def close_to(
     claim: str,
-    found: float,
+    measured: float,
     expected: float,
     tolerance: float,
     *,
@@ -74,13 +74,13 @@ def close_to(
     """
     after = f" {units}" if units else ""
     said = ""
-    if law is not None and abs(found - law[0]) <= law[1]:
+    if law is not None and abs(measured - law[0]) <= law[1]:
         said = f"{with_error(*law)}{after}"
     return Check(
         claim,
         f"{with_error(expected, tolerance)}{after}",
-        f"{found:.6g}{after}",
-        abs(found - expected) <= tolerance,
+        f"{measured:.6g}{after}",
+        abs(measured - expected) <= tolerance,
         remark,
         said,
     )
@@ -96,7 +96,7 @@ def checks_table(checks: Iterable[Check]) -> Iterator[str]:
             result = f"**{result}**"
         elif check.law and not check.passed:
             result = f"{result}: {check.law}"
-        yield f"| {check.claim} | {check.expected} | {check.found} | {result} | {check.remark} |"
+        yield f"| {check.claim} | {check.expected} | {check.computed} | {result} | {check.remark} |"
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,7 +113,7 @@ class Figure:
 
     @property
     def parameters(self) -> type[Section]:
-        """What its configuration fills; refuses what cannot be computed."""
+        """Type of its configuration, which raises if the figure cannot be computed."""
         return cast(type[Section], get_type_hints(self.compute)["parameters"])
 
     @property
@@ -124,7 +124,9 @@ class Figure:
 
 def values_of(source: Any, *names: str) -> dict[str, Any]:
     """Attributes of an object by their names; all fields of a dataclass where none is given."""
-    return {name: getattr(source, name) for name in names or [one.name for one in fields(source)]}
+    return {
+        name: getattr(source, name) for name in names or [field.name for field in fields(source)]
+    }
 
 
 FIGURES = tuple(
@@ -132,13 +134,13 @@ FIGURES = tuple(
     for group in ("main", "si", "beyond")
     for path in sorted(Path(__file__).parent.glob(f"{group}_*.py"))
 )
-"""Names of all figures, those of the main text first."""
+"""Names of all figures, the main text first."""
 
 
 def figure(name: str) -> Figure:
     """Figure of a name in :data:`FIGURES`."""
-    found: Figure = importlib.import_module(_module_name(name)).FIGURE
-    return found
+    loaded: Figure = importlib.import_module(_module_name(name)).FIGURE
+    return loaded
 
 
 def figure_sources(name: str) -> tuple[Path, Path]:
@@ -163,28 +165,28 @@ SCALES = ("quick", "paper")
 def load_figure(path: Path, scale: str) -> Section:
     """Parameters of a figure at a scale, from the YAML file that bears its name.
 
-    The file has the mappings `parameters` (what holds for all scales), `quick` and `paper`. A
+    The file has the mappings `parameters` (what all scales share), `quick` and `paper`. A
     ConfigurationError says what is unknown, missing or out of range.
     """
     if path.stem not in FIGURES:
         raise ConfigurationError(
-            f"there is no figure {path.stem!r}; the names of the files are {', '.join(FIGURES)}"
+            f"{path.stem!r} is not a figure; the names of the files are {', '.join(FIGURES)}"
         )
     content = yaml_mapping(path)
     sections = ("parameters", *SCALES)
     for key in content.keys() ^ set(sections):
-        what = f"unknown key {key}" if key in content else f"key {key} is missing"
-        raise ConfigurationError(f"{path}: {what}; the keys here are {', '.join(sections)}")
-    given: dict[str, Any] = {}
+        problem = f"unknown key {key}" if key in content else f"key {key} is missing"
+        raise ConfigurationError(f"{path}: {problem}; the keys here are {', '.join(sections)}")
+    values: dict[str, Any] = {}
     for section in ("parameters", scale):
         if not isinstance(content[section], dict):
             raise ConfigurationError(f"{path}: {section} must be a mapping of keys, {{}} if empty")
-        for key in given.keys() & content[section].keys():
+        for key in values.keys() & content[section].keys():
             raise ConfigurationError(
                 f"{path}: {key} stands in parameters and in {section}; remove one"
             )
-        given |= content[section]
-    return validated(path, given, figure(path.stem).parameters)
+        values |= content[section]
+    return validated(path, values, figure(path.stem).parameters)
 
 
 def sweep_of_figure(path: Path, scale: str) -> Path:

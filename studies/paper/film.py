@@ -50,13 +50,13 @@ class FilmSection(Section):
 
 
 class FilmParameters(FilmSection):
-    """A film whose spectral densities are shown, beside those that `read_profile_density` reads."""
+    """A film whose spectral densities are shown with measured ones, if there are any."""
 
     longest: Positive  # wavelength that is shown (m)
 
     @model_validator(mode="after")
     def _usable(self) -> FilmParameters:
-        _ = self.spectrum, read_profile_density(self.measured)  # each refuses what it cannot use
+        _ = self.spectrum, read_profile_density(self.measured)  # each raises if it is not usable
         return self
 
     def densities(self, shortest: float) -> FilmDensities:

@@ -21,8 +21,8 @@ _BINS_A_DECADE = 12
 class RoughnessRecord:
     """Power and height differences of fronts: of a sphere, then straight ones.
 
-    A straight front counts as the perimeter of a circle, and its springs as the stiffness of one;
-    its short cutoff is that of the sphere.
+    A straight front counts as the perimeter of a circle, and its springs as the stiffness of a
+    circle. Both have the same short cutoff.
     """
 
     short_cutoff: float = variable("shortest wavelength of the roughness", LATERAL)
@@ -77,7 +77,7 @@ def fitted_roughness(record: RoughnessRecord, index: int) -> RoughnessFit:
     weight = record.mode[used] ** -0.5
     power = record.power[index][:, used]
     slopes = np.polyfit(np.log(wavevector), np.log(power).T, 1, w=weight)[0]
-    # The logarithm of a few fronts' mean lies below that of the mean over all surfaces.
+    # The logarithm of the mean of a few fronts is lower than of the mean over all surfaces.
     freed = np.log(power.mean(axis=0)) - slopes.mean() * np.log(wavevector)
     level = np.average(freed, weights=weight**2)
     exponent = mean_estimate(-(1 + slopes) / 2)[0].each(float)
@@ -95,6 +95,6 @@ def binned_spectrum(record: RoughnessRecord, index: int) -> tuple[Array, Array, 
     wavevector, power = stiffness_wavevector(record, index), record.power[index]
     place = np.floor(_BINS_A_DECADE * np.log10(wavevector)).astype(int)
     bins = [place == value for value in np.unique(place)]
-    means = np.array([power[:, one].mean(axis=1) for one in bins])
-    middle = np.array([np.exp(np.log(wavevector[one]).mean()) for one in bins])
+    means = np.array([power[:, inside].mean(axis=1) for inside in bins])
+    middle = np.array([np.exp(np.log(wavevector[inside]).mean()) for inside in bins])
     return middle, means.mean(axis=1), means.std(axis=1, ddof=1) / np.sqrt(power.shape[0])

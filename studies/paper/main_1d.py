@@ -48,7 +48,7 @@ class SmoothLoopParameters(Section):
 
 @dataclass(frozen=True, slots=True)
 class SmoothLoop:
-    """States of both branches, as the file of the figure holds them."""
+    """States of both branches, as they are stored in the file of the figure."""
 
     approach: float = variable("work of adhesion in approach", ADHESION)
     retraction: float = variable("work of adhesion in retraction", ADHESION)
@@ -91,17 +91,17 @@ def smooth_loop_checks(loop: SmoothLoop) -> tuple[Check, ...]:
     pairs = zip(loop.penetration, works, strict=True)
     smooth = np.array([jkr.equilibrium_radius(b, work) for b, work in pairs])
     smooth[retracting] = np.minimum(smooth[retracting], loop.radius[~retracting].max())
-    apart = np.abs(loop.radius - smooth)
+    distance = np.abs(loop.radius - smooth)
     return (
         close_to(
             "radii in approach: the stable JKR radius, largest difference",
-            float(np.max(apart[~retracting])),
+            float(np.max(distance[~retracting])),
             0.0,
             1e-9,
         ),
         close_to(
             "radii in retraction: the JKR radius, or that at the turn while the edge is pinned",
-            float(np.max(apart[retracting])),
+            float(np.max(distance[retracting])),
             0.0,
             1e-9,
         ),

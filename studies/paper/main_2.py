@@ -106,8 +106,10 @@ def ring_loops(parameters: RingsParameters, progress: Progress) -> RingLoops:
     loop, direction, penetration, radius, jump = np.concatenate(loops).T
     low, high = parameters.case_window
     count = round((high - low) / parameters.case_step)
-    known = [Rings(parameters.case_amplitude, one) for one in parameters.case_wavelengths]
-    cases = [rings.mean_adhesion(low, high, count, parameters.samples) for rings in known]
+    cases_of_rings = [
+        Rings(parameters.case_amplitude, wavelength) for wavelength in parameters.case_wavelengths
+    ]
+    cases = [rings.mean_adhesion(low, high, count, parameters.samples) for rings in cases_of_rings]
     progress(f"{len(cases)} cases with an amplitude of {parameters.case_amplitude:g}")
     case_approach, case_retraction = np.transpose(cases)
     return RingLoops(
@@ -213,16 +215,16 @@ def _case_checks(loops: RingLoops) -> Iterator[Check]:
     stiffness, softest = (float(part(steady_stiffness(radii))) for part in (np.mean, np.min))
     near, critical = partial(close_to, units="w_int"), 2 * math.pi * delta / softest
     hysteresis = loops.case_retraction - loops.case_approach
-    for wavelength, found in zip(loops.case_wavelength, hysteresis, strict=True):
+    for wavelength, mean_hysteresis in zip(loops.case_wavelength, hysteresis, strict=True):
         name = f"amplitude {delta:g}, rings of {wavelength:g}: mean hysteresis"
-        if known := _KNOWN.get((delta, low, high, float(wavelength))):
+        if reference := _KNOWN.get((delta, low, high, float(wavelength))):
             remark = f"mean over b from {low:g} to {high:g}; from a program of its own"
-            yield near(name, found, *known, remark=remark)
+            yield near(name, mean_hysteresis, *reference, remark=remark)
         fall = stiffness * wavelength
         if wavelength == loops.case_wavelength.min():
             yield near(
                 f"{name}, peak to peak less the fall in the jumps, 2 delta - S d",
-                found,
+                mean_hysteresis,
                 2 * delta - fall,
                 fall * math.sqrt(fall / (2 * delta)),
                 remark=f"the limit d -> 0 is 2 delta = {2 * delta:g}; the tolerance is of the next "
@@ -230,7 +232,7 @@ def _case_checks(loops: RingLoops) -> Iterator[Check]:
             )
         if wavelength > critical:
             remark = f"no instability beyond 2 pi delta / S = {critical:.3f}"
-            yield near(name, found, 0.0, _ROUND_OFF, remark=remark)
+            yield near(name, mean_hysteresis, 0.0, _ROUND_OFF, remark=remark)
 
 
 _COLOURS = ({1: style.BLUE, -1: style.VERMILION}, {1: style.SKY, -1: style.ORANGE})
@@ -245,9 +247,9 @@ def rings_figure(loops: RingLoops) -> Drawing:
     with style.house_style():
         figure = style.blank_figure(style.PAGE, 0.8 * style.PAGE)
         grid = figure.add_gridspec(2, 2, height_ratios=(1.15, 1))
-        left = grid[0, 0].subgridspec(2, 1, height_ratios=(1, 1.25), hspace=0.02)
-        profile = figure.add_subplot(left[0])
-        top = figure.add_subplot(left[1], sharex=profile)
+        cell = grid[0, 0].subgridspec(2, 1, height_ratios=(1, 1.25), hspace=0.02)
+        profile = figure.add_subplot(cell[0])
+        top = figure.add_subplot(cell[1], sharex=profile)
         _draw_contact(profile, loops)
         _draw_rings(top, loops)
         long, short, force = (figure.add_subplot(grid[place]) for place in ((0, 1), (1, 0), (1, 1)))
@@ -353,7 +355,7 @@ def _draw_forces(axes: Axes, loops: RingLoops) -> None:
 def _draw_state(
     axes: Axes, direction: int, place: tuple[float, float], aside: tuple[float, float]
 ) -> None:
-    """State at b = 0 of the long rings, with its letter beside it."""
+    """State at b = 0 of the long rings, with its letter."""
     colour = _COLOURS[0][direction]
     axes.plot(*place, "o", color=colour, markersize=3, zorder=5)
     letter, middle = "A" if direction > 0 else "B", {"ha": "center", "va": "center"}
@@ -373,14 +375,14 @@ def _draw_branch(
     radius, penetration = loops.radius[branch], loops.penetration[branch]
     starts = np.flatnonzero(loops.jump[branch])
     pieces = zip(np.split(radius, starts), np.split(penetration, starts), strict=True)
-    for number, (held, load) in enumerate(one for one in pieces if one[0].size):
+    for number, (held, load) in enumerate(piece for piece in pieces if piece[0].size):
         name = label if number == 0 else None
         axes.plot(held, value(held, load), color=colour, linewidth=1.4, label=name)
     jumps = list(zip(np.r_[0.0, radius][starts], radius[starts], penetration[starts], strict=True))
     if direction < 0:
         jumps.append((radius[-1], 0.0, penetration[-1]))
     for before, after, load in jumps:
-        # A radius of zero itself has no energy release rate.
+        # The energy release rate is not defined at radius zero.
         path = np.linspace(max(before, 1e-6), max(after, 1e-6), 40)
         axes.plot(path, value(path, load), color=colour, linewidth=0.7)
         if index == 0:

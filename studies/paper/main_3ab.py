@@ -115,7 +115,7 @@ class _Branch:
     def energy_change(self) -> float:
         """Change of the energy of the contact, from its first and last front alone."""
         first, last = self.steps[0], self.steps[-1]
-        start, end = (jkr.stored_energy(first.before, one) for one in (first.start, last.end))
+        start, end = (jkr.stored_energy(first.before, state) for state in (first.start, last.end))
         fall = dissipated_energy(first.before, last.after, last.end, self.contact.field)
         return float(np.mean(end - start)) - fall
 
@@ -131,10 +131,12 @@ def instability_record(parameters: InstabilityParameters, progress: Progress) ->
         progress(f"retraction, {name} disorder: {len(retractions[-1].jumps)} instabilities")
     travel = parameters.travel * parameters.short_cutoff
     correlation = flat_spectrum(parameters.short_cutoff).correlation_length
-    found = [measured_instabilities(one.jumps, one.contact.field, travel) for one in retractions]
+    instabilities = [
+        measured_instabilities(branch.jumps, branch.contact.field, travel) for branch in retractions
+    ]
 
     def both(name: str) -> Array:
-        return np.concatenate([getattr(one, name) for one in found])
+        return np.concatenate([getattr(instability, name) for instability in instabilities])
 
     states = [branch.states for branch in (approach, retractions[STRONG])]
     penetration, radius, force = np.concatenate(states, axis=1)
@@ -143,15 +145,19 @@ def instability_record(parameters: InstabilityParameters, progress: Progress) ->
         travel=travel,
         elastic_energy=np.array([parameters.strong, parameters.weak]),
         rms=np.array([contact.w_rms for contact in contacts]),
-        shortest=np.array([shortest_instability(correlation, one.w_rms) for one in contacts]),
+        shortest=np.array(
+            [shortest_instability(correlation, contact.w_rms) for contact in contacts]
+        ),
         **{
             name: np.array([getattr(branch, name) for branch in retractions])
             for name in ("work", "energy_change", "smooth_energy")
         },
-        disorder_index=np.repeat([STRONG, WEAK], [one.penetration.size for one in found]),
+        disorder_index=np.repeat(
+            [STRONG, WEAK], [instability.penetration.size for instability in instabilities]
+        ),
         energy=both("dissipated_energy"),
         **{name: both(name) for name in ("penetration", "extent", "before", "after")},
-        state_direction=np.repeat([1, -1], [one.shape[1] for one in states]),
+        state_direction=np.repeat([1, -1], [branch_states.shape[1] for branch_states in states]),
         state_penetration=penetration,
         state_radius=radius,
         state_force=force,
@@ -247,15 +253,15 @@ def _disorder_checks(record: InstabilityRecord, index: int, name: str) -> Iterat
         "fixed penetration, in proportion to its size; integral of F db by trapezia over all "
         "steps, from the turn to the last state, pull-off not included",
     )
-    shortest, found = float(record.shortest[index]), _smallest_extent(record, index)
+    shortest, smallest = float(record.shortest[index]), _smallest_extent(record, index)
     correlation = flat_spectrum(record.short_cutoff).correlation_length
     expected = max(shortest, correlation)
     yield Check(
         f"{name} disorder: smallest extent, the length on which disorder is as stiff as the line "
         "or, if that is shorter, the correlation length of w_loc",
         f"{expected:.3g}, within a factor of 2",
-        f"{found:.3g}",
-        expected / 2 < found < expected * 2,
+        f"{smallest:.3g}",
+        expected / 2 < smallest < expected * 2,
         f"tenth percentile of area over depth; disorder is as stiff as the line on {shortest:.3g}, "
         f"whose factor is a convention; correlation length {correlation:.3g}",
     )
@@ -272,17 +278,17 @@ def instability_figure(record: InstabilityRecord) -> Drawing:
     """Patches of both retractions, and force against radius of the cycle."""
     with house_style():
         figure = blank_figure(PAGE, 0.45 * PAGE)
-        left, right = figure.subplots(1, 2, width_ratios=(1.6, 1))
+        energy_axes, extent_axes = figure.subplots(1, 2, width_ratios=(1.6, 1))
         shades = energy_shades(record.energy)
         for index in (STRONG, WEAK):
-            _draw_quarter(left, record, index, shades)
-            _draw_shortest(left, record, index)
-        _finish_quarters(left, record)
-        place = left.inset_axes((0.42, 0.155, 0.5, 0.028))
+            _draw_quarter(energy_axes, record, index, shades)
+            _draw_shortest(energy_axes, record, index)
+        _finish_quarters(energy_axes, record)
+        place = energy_axes.inset_axes((0.42, 0.155, 0.5, 0.028))
         bar = figure.colorbar(shades, cax=place, orientation="horizontal", extend="min")
         bar.set_label(ENERGY_LABEL, labelpad=1)
-        _draw_cycle(right, record)
-        name_panels((left, right), "ab")
+        _draw_cycle(extent_axes, record)
+        name_panels((energy_axes, extent_axes), "ab")
         explain(
             figure,
             "a: areas swept by single instabilities, outlined by the fronts before and after; "

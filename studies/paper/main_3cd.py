@@ -163,17 +163,17 @@ def _loop_checks(loop: PinnedLoop) -> tuple[Check, ...]:
         *(
             close_to(
                 f"{name} = w_int - e_el {sign} 3 e_el (main text)",
-                found,
+                adhesion,
                 1 - energy + side * PAPER_FACTOR * energy,
                 ONE_DIGIT * energy,
                 units=ADHESION,
                 remark=numbers,
                 law=(
                     1 - energy + side * branch.factor.value * energy,
-                    REACH * math.hypot(branch.factor.standard_error * energy, left),
+                    REACH * math.hypot(branch.factor.standard_error * energy, numerics_error),
                 ),
             )
-            for name, sign, side, found, left, branch in (
+            for name, sign, side, adhesion, numerics_error, branch in (
                 ("w_appr", "-", -1, loop.approach, loop.approach_error, law.approach),
                 ("w_retr", "+", 1, loop.retraction, loop.retraction_error, law.retraction),
             )
@@ -198,17 +198,17 @@ def _front_checks(loop: PinnedLoop) -> tuple[Check, ...]:
     words = "below", "above", "at"
     for name, word, sampled in zip(FRONTS, words, loop.front_adhesion, strict=True):
         arcs = np.array([arc.mean() for arc in np.array_split(sampled, _N_ARC)])
-        found, reach = float(sampled.mean()), float(3 * arcs.std(ddof=1) / math.sqrt(_N_ARC))
+        sampled_mean, reach = float(sampled.mean()), float(3 * arcs.std(ddof=1) / math.sqrt(_N_ARC))
         expected, passed = {
-            "below": (f"below {mean - reach:.4f}", found < mean - reach),
-            "above": (f"above {mean + reach:.4f}", found > mean + reach),
-            "at": (with_error(mean, reach), abs(found - mean) <= reach),
+            "below": (f"below {mean - reach:.4f}", sampled_mean < mean - reach),
+            "above": (f"above {mean + reach:.4f}", sampled_mean > mean + reach),
+            "at": (with_error(mean, reach), abs(sampled_mean - mean) <= reach),
         }[word]
         checks.append(
             Check(
                 f"w_loc under the front at b = 0, {name}: {word} the mean of the field",
                 f"{expected} {ADHESION}",
-                f"{found:.4f} {ADHESION}",
+                f"{sampled_mean:.4f} {ADHESION}",
                 passed,
                 f"the mean is {mean:.4f}; three standard errors, from the means of {_N_ARC} arcs",
             )
@@ -227,14 +227,14 @@ def _front_checks(loop: PinnedLoop) -> tuple[Check, ...]:
 
 
 def pinned_loop_figure(loop: PinnedLoop) -> Drawing:
-    """The loop beside the fronts of both branches at b = 0."""
+    """The loop, and the fronts of both branches at b = 0."""
     with house_style():
         figure = blank_figure(PAGE, 0.46 * PAGE)
-        left, right = figure.subplots(1, 2)
+        loop_axes, front_axes = figure.subplots(1, 2)
         works, window = (loop.approach, loop.retraction), (loop.lowest_radius, loop.highest_radius)
-        draw_loop(left, loop, works, window, elastic_energy=loop.elastic_energy)
-        _draw_fronts(right, loop)
-        name_panels((left, right), "cd")
+        draw_loop(loop_axes, loop, works, window, elastic_energy=loop.elastic_energy)
+        _draw_fronts(front_axes, loop)
+        name_panels((loop_axes, front_axes), "cd")
         explain(figure, "arrows: the direction of motion; d: the fronts at $b=0$")
         return figure
 

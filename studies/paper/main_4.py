@@ -60,7 +60,7 @@ class MappingParameters(Section):
 
     @model_validator(mode="after")
     def _usable(self) -> MappingParameters:
-        _ = self.spectrum  # refuses a roll-off below the cutoff
+        _ = self.spectrum  # raises if the roll-off is below the cutoff
         if not 4 * self.short_cutoff <= self.patch <= self.side:
             raise section_error(
                 f"patch is {self.patch:g}; it must have at least four short cutoffs "
@@ -146,15 +146,15 @@ def _band_correlations(heights: Array, tile: AdhesionMap, spectrum: SelfAffineSp
     along = 2 * np.pi * fftfreq(n_point, tile.pixel)
     wavevector = np.hypot(along[:, None], along)
     # On one scale the half-derivative is the heights; an octave is not quite one scale.
-    one, other = np.sqrt(wavevector) * fft2(heights), fft2(tile.work_of_adhesion)
+    heights_modes, adhesion_modes = np.sqrt(wavevector) * fft2(heights), fft2(tile.work_of_adhesion)
     longest = tile.pixel * n_point
     n_band = max(1, math.floor(math.log2(longest / spectrum.short_cutoff)))
     edges = 2 * np.pi / spectrum.short_cutoff * 2.0 ** -np.arange(n_band + 1)
     rows = []
     for high, low in pairwise(edges):
         band = (wavevector > low) & (wavevector <= high * (1 + 1e-12))
-        shared = np.sum((one[band] * np.conj(other[band])).real)
-        norms = np.sum(np.abs(one[band]) ** 2) * np.sum(np.abs(other[band]) ** 2)
+        shared = np.sum((heights_modes[band] * np.conj(adhesion_modes[band])).real)
+        norms = np.sum(np.abs(heights_modes[band]) ** 2) * np.sum(np.abs(adhesion_modes[band]) ** 2)
         middle = 2 * np.pi / math.sqrt(low * high)
         rows.append((middle, np.count_nonzero(band), shared / norms**0.5))
     return np.array(rows).T

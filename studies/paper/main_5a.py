@@ -106,9 +106,9 @@ def film_scales_checks(record: FilmScales) -> tuple[Check, ...]:
     ]
     if record.measured_wavevector.size:
         measured = record.measured_wavevector, record.measured_profile
-        found = conformity_energy(*measured, record.contact_modulus)
+        computed = conformity_energy(*measured, record.contact_modulus)
         name = "e_el of the measured profiles, over their wavevectors"
-        checks.append(close_to(name, 1e3 * found, 1e3 * energy, 1.0, units="mJ/m2"))
+        checks.append(close_to(name, 1e3 * computed, 1e3 * energy, 1.0, units="mJ/m2"))
     return tuple(checks)
 
 

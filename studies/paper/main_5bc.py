@@ -31,8 +31,11 @@ from studies.paper.nanodiamond import EVERY_WAVELENGTH, NanodiamondContact, Nano
 from studies.paper.perimeters import STRIDES, Perimeters
 from studies.paper.rough import ONE_DIGIT, expected_seconds, recorded
 
-_SYNTHETIC_POINTS, _SYNTHETIC_NOISE = 40, 0.02
-"""Points of a synthetic measurement, and the noise of its forces relative to the largest."""
+_SYNTHETIC_POINTS = 40
+"""Points of a synthetic measurement."""
+
+_SYNTHETIC_NOISE = 0.02
+"""Noise of its forces, relative to the largest."""
 
 
 def nanodiamond_contact(
@@ -50,7 +53,7 @@ def nanodiamond_contact(
     if not np.any(record.states.direction < 0):
         raise ValueError(f"the largest force was not reached: {record.status.value}")
     if not perimeters.lines:
-        raise ValueError("the contact has no state between jump-in and shown_force; raise that")
+        raise ValueError("no state lies between jump-in and shown_force; raise shown_force")
     progress(f"retraction: {record.status.value}")
     steady = steady_adhesion(record, passed)
     if steady.sentence:
@@ -172,15 +175,16 @@ def _hysteresis_checks(contact: NanodiamondContact) -> tuple[Check, ...]:
     """Hysteresis by the theory with k = 3, in the simulation and in the experiment."""
     surface, whole = 1e3 * contact.work_of_adhesion, 1e3 * contact.whole_elastic_energy
     energy = 1e3 * contact.elastic_energy
-    found = 1e3 * float(contact.retraction[0] - contact.approach[0])
+    hysteresis = 1e3 * float(contact.retraction[0] - contact.approach[0])
     error = 1e3 * math.hypot(contact.approach[1], contact.retraction[1])
     law = contact.law
     said = (law.approach.factor.value + law.retraction.factor.value) * energy
     reach = 2 * REACH * law.both.standard_error * energy
     remark = (
         f"w_appr = {1e3 * contact.approach[0]:.1f} and w_retr = {1e3 * contact.retraction[0]:.1f}, "
-        f"± {error:.1f} on their difference: k = {found / (2 * energy):.2f}; k falls with disorder,"
-        f" here w_rms = {2 * math.sqrt(energy / surface):.2f} w_int; tolerance: one digit of k"
+        f"± {error:.1f} on their difference: k = {hysteresis / (2 * energy):.2f}; k falls with "
+        f"disorder, here w_rms = {2 * math.sqrt(energy / surface):.2f} w_int; tolerance: one "
+        "digit of k"
     )
     return (
         _near("w_appr that k = 3 predicts", surface - (1 + PAPER_FACTOR) * whole, 18.4, 0.1),
@@ -188,7 +192,7 @@ def _hysteresis_checks(contact: NanodiamondContact) -> tuple[Check, ...]:
         _near("hysteresis that k = 3 predicts", 2 * PAPER_FACTOR * whole, 66.8, 0.1),
         _near(
             "hysteresis of the simulation: that of k = 3 at its own e_el",
-            found,
+            hysteresis,
             2 * PAPER_FACTOR * energy,
             2 * ONE_DIGIT * energy,
             remark=remark,
@@ -197,8 +201,8 @@ def _hysteresis_checks(contact: NanodiamondContact) -> tuple[Check, ...]:
         Check(
             "hysteresis of the simulation: the order of magnitude of the measured one",
             f"{1e3 * MEASURED:g} {_ENERGY} within a factor of {math.sqrt(10):.2g}",
-            f"{found:.4g} {_ENERGY}",
-            abs(math.log10(found / (1e3 * MEASURED))) <= 0.5,
+            f"{hysteresis:.4g} {_ENERGY}",
+            abs(math.log10(hysteresis / (1e3 * MEASURED))) <= 0.5,
             "the paper claims the order of magnitude; w_int was not adjusted to our own approach",
         ),
     )
@@ -231,7 +235,7 @@ def _fit_checks(contact: NanodiamondContact) -> tuple[Check, ...]:
     """The w_int that a fit to the approach gives."""
     surface, energy = 1e3 * contact.work_of_adhesion, 1e3 * contact.elastic_energy
     value, low, high = 1e3 * contact.synthetic_fit
-    own = (surface - energy - 1e3 * contact.approach[0]) / energy
+    approach_factor = (surface - energy - 1e3 * contact.approach[0]) / energy
     by_law = contact.law.approach.factor
     checks = [
         Check(
@@ -246,8 +250,8 @@ def _fit_checks(contact: NanodiamondContact) -> tuple[Check, ...]:
             1e3 * contact.simulated_fit[0],
             surface,
             ONE_DIGIT * energy,
-            remark=f"the approach alone has k = {own:.2f}, and the fit is off by its difference "
-            "from that assumed times e_el",
+            remark=f"the approach alone has k = {approach_factor:.2f}, and the fit is off by its "
+            "difference from that assumed times e_el",
             law=(
                 surface + (contact.factor - by_law.value) * energy,
                 REACH * math.hypot(by_law.standard_error * energy, 1e3 * contact.approach[1]),
@@ -268,24 +272,28 @@ def _fit_checks(contact: NanodiamondContact) -> tuple[Check, ...]:
     return tuple(checks)
 
 
-_MICRO, _MILLI = 1e6, 1e3
+_MICRO = 1e6
+"""Micrometres in a metre."""
+
+_MILLI = 1e3
+"""Millijoules in a joule."""
 
 
 def nanodiamond_figure(contact: NanodiamondContact) -> Drawing:
-    """Perimeters of the approach beside the loop."""
+    """Perimeters of the approach, and the loop."""
     with house_style():
         figure = blank_figure(PAGE, 0.54 * PAGE)
-        left, right = figure.subplots(1, 2)
-        _draw_perimeters(left, contact)
-        _draw_loop(right, contact)
-        name_panels((left, right), "bc")
-        own, whole = contact.elastic_energy * _MILLI, contact.whole_elastic_energy * _MILLI
+        perimeter_axes, force_axes = figure.subplots(1, 2)
+        _draw_perimeters(perimeter_axes, contact)
+        _draw_loop(force_axes, contact)
+        name_panels((perimeter_axes, force_axes), "bc")
+        simulated, whole = contact.elastic_energy * _MILLI, contact.whole_elastic_energy * _MILLI
         explain(
             figure,
             "b: the edge of the contact at equal steps of the penetration; c: dotted: JKR with the "
             "apparent works of adhesion of the branches; broken: JKR with "
-            f"$k={PAPER_FACTOR:g}$ and the $e_\\mathrm{{el}}$ of this surface, {own:.2f} mJ/m$^2$ "
-            f"(all wavelengths: {whole:.2f})",
+            f"$k={PAPER_FACTOR:g}$ and the $e_\\mathrm{{el}}$ of this surface, {simulated:.2f} "
+            f"mJ/m$^2$ (all wavelengths: {whole:.2f})",
         )
         return figure
 
@@ -309,7 +317,7 @@ def _draw_perimeters(axes: Axes, contact: NanodiamondContact) -> None:
 
 
 def _draw_loop(axes: Axes, contact: NanodiamondContact) -> None:
-    """Force against radius: simulation, its JKR curves, those of k = 3, and measured points."""
+    """Force against radius: simulation, JKR curves by it and by k = 3, measured points."""
     surface, energy, scales = contact.work_of_adhesion, contact.elastic_energy, contact.scales
     shown = np.linspace(0, 1.08 * contact.radius.max(), 300)
     radius, force = contact.radius * _MICRO, contact.force * _MILLI

@@ -1,4 +1,4 @@
-"""Measured points from CSV files, read whole or refused with the number of the line; their fits.
+"""Measured points from CSV files, whose errors name the line, and their fits.
 
 Two kinds of file are known: forces with contact radii, and spectral densities of profiles.
 """
@@ -45,24 +45,26 @@ class MeasuredTable(NamedTuple):
 def read_measured(
     path: Path, quantities: Sequence[Quantity], words: Sequence[str] = ()
 ) -> MeasuredTable:
-    """Columns of a CSV file; empty lines, those that begin with # and other columns are left out.
+    """Columns of a CSV file, without empty lines, comments (#) and other columns.
 
-    A refusal says if the file cannot be read, a column is missing or stands twice, a unit or a
-    value is missing or not understood, or there is no row.
+    A pydantic error says if the file cannot be read or has no rows, if a column is missing or
+    stands twice, or if a unit or a value is missing or not understood.
     """
     rows = _rows(path)
     top, header = f"{path}, line {rows[0][0]}", [_name_and_unit(title) for title in rows[0][1]]
     names = [name for name, _ in header]
     for name in (*(item.name for item in quantities), *words):
         if names.count(name) != 1:
-            what = "stands twice; remove one" if name in names else "is missing"
-            raise section_error(f"{top}: column {name} {what}; the header has {', '.join(names)}")
-    units = dict(header)
-    for name, known, _ in quantities:
-        if (unit := units[name]) not in known:
-            what = f"is in {unit}" if unit else "has no unit"
+            problem = "stands twice; remove one" if name in names else "is missing"
             raise section_error(
-                f"{top}: {name} {what}; write {name} (unit) with one of {', '.join(known)}"
+                f"{top}: column {name} {problem}; the header has {', '.join(names)}"
+            )
+    units = dict(header)
+    for name, allowed, _ in quantities:
+        if (unit := units[name]) not in allowed:
+            problem = f"is in {unit}" if unit else "lacks a unit"
+            raise section_error(
+                f"{top}: {name} {problem}; write {name} (unit) with one of {', '.join(allowed)}"
             )
     if len(rows) == 1:
         raise section_error(f"{path} has a header but no rows; add the points")
@@ -73,11 +75,14 @@ def read_measured(
             raise section_error(
                 f"{where} has {len(row)} values for {len(header)} columns; complete it"
             )
-        given = dict(zip(names, row, strict=True))
+        texts_by_name = dict(zip(names, row, strict=True))
         numbers.append(
-            [_number(where, given[item.name], item, units[item.name]) for item in quantities]
+            [
+                _number(where, texts_by_name[item.name], item, units[item.name])
+                for item in quantities
+            ]
         )
-        texts.append([given[name].strip() for name in words])
+        texts.append([texts_by_name[name].strip() for name in words])
         lines.append(line)
     return MeasuredTable(np.array(lines), np.array(numbers).T, np.array(texts, dtype=str).T)
 
@@ -89,7 +94,7 @@ def _rows(path: Path) -> list[tuple[int, list[str]]]:
     except OSError as error:
         raise section_error(f"{path} cannot be read: {error.strerror}") from error
     except UnicodeDecodeError as error:
-        raise section_error(f"{path} is not a text in UTF-8; save it as UTF-8") from error
+        raise section_error(f"{path} is not UTF-8 text; save it as UTF-8") from error
     lines = ("" if line.lstrip().startswith("#") else line for line in text.splitlines())
     reader = csv.reader(lines, strict=True)
     try:
@@ -137,8 +142,8 @@ def read_force_radius(path: Path | None) -> ForceRadius:
     """Points from a CSV file with the columns force (mN), radius (um) and branch, as measured.
 
     The units are N, mN or uN, and m, mm, um or nm; the branch is approach or retraction. Without a
-    file there are no points. Refused are other branches, an approach after a retraction, of less
-    than three points, or that ends at no larger force than it begins.
+    file there are no points. Other branches are errors, and so is an approach after a
+    retraction, of less than three points, or whose force does not grow.
     """
     if path is None:
         return ForceRadius(np.empty(0), np.empty(0), np.empty(0, dtype=np.int64))
@@ -182,8 +187,8 @@ def read_profile_density(path: Path | None) -> ProfileDensity:
     """Profile density from a CSV file with the columns q (1/m) and C1D (m^3).
 
     The units are 1/m, 1/um or 1/nm, and m^3, um^3 or nm^3. The mean square height is the integral
-    of C1D over q > 0, divided by pi. Without a file there are no points. Refused are a single row
-    and wavevectors that do not increase.
+    of C1D over q > 0, divided by pi. Without a file there are no points. A single row
+    is an error, and so are wavevectors that do not increase.
     """
     if path is None:
         return ProfileDensity(np.empty(0), np.empty(0))
@@ -211,10 +216,10 @@ def adhesion_from_forces(radius: Array, force: Array) -> Estimate:
             f"{radius.size} points are too few for a work of adhesion with its interval; give "
             f"{_FEWEST_POINTS} or more"
         )
-    found, covariance = curve_fit(
+    solution, covariance = curve_fit(
         jkr.equilibrium_force, radius, force, p0=[1.0], bounds=(0.0, np.inf), xtol=1e-14, ftol=1e-14
     )
-    return student_estimate(found[0], np.sqrt(covariance[0, 0]), radius.size - 1)
+    return student_estimate(solution[0], np.sqrt(covariance[0, 0]), radius.size - 1)
 
 
 def fitted_adhesion(

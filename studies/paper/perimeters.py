@@ -12,7 +12,7 @@ from crackfront.core.cycle.record import Recorder
 from crackfront.core.geometry.sphere import ContactState
 
 STRIDES = (1, 2, 4)
-"""Load steps, in those of the approach, at which the widest instability is looked for."""
+"""Strides, in load steps of the approach, over which the widest instability is looked for."""
 
 _MOST_SITES = 4096
 """Sites of a perimeter that are kept for drawing."""
@@ -90,10 +90,10 @@ class Perimeters:
             return
         self.follow(front)
         if self._count % self._every == 1 % self._every:
-            kept = slice(None, None, -(-front.size // _MOST_SITES))
-            self.angle = (2 * np.pi * np.arange(front.size) / front.size)[kept]
+            sites = slice(None, None, -(-front.size // _MOST_SITES))
+            self.angle = (2 * np.pi * np.arange(front.size) / front.size)[sites]
             self.states.append(state)
-            self.lines.append(front[kept])
+            self.lines.append(front[sites])
 
     def follow(self, front: Array) -> None:
         """Compare the front of the next state, (n_angle,) radii, with earlier ones."""
@@ -101,9 +101,9 @@ class Perimeters:
             if self._count % stride:
                 continue
             if before is not None:
-                found = advances(before, front, self._passed)
-                self.extents[stride] += [part.extent for part in found]
-                candidates = [self.widest[stride], *found]
+                moved = advances(before, front, self._passed)
+                self.extents[stride] += [part.extent for part in moved]
+                candidates = [self.widest[stride], *moved]
                 self.widest[stride] = max(candidates, key=lambda part: part.extent)
             self._before[stride] = front
         self._count += 1

@@ -19,7 +19,11 @@ _FEWEST = 20
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(100)
 """Gauss rule of the integral that normalises the density."""
 
-_N_BOOTSTRAP, _N_JOINT_BOOTSTRAP = 400, 200
+_N_BOOTSTRAP = 400
+"""Samples of a bootstrap."""
+
+_N_JOINT_BOOTSTRAP = 200
+"""Samples of a bootstrap of the joint law, whose fits take longer."""
 
 Samples = Sequence[tuple[Array, Integers]]
 """Values and their counts, of each sample."""
@@ -60,16 +64,16 @@ def truncated_power_law(values: Array, smallest: float, rng: np.random.Generator
             f"{used.size} values lie above {smallest:g}; a power law needs {_FEWEST}, so lower the "
             "smallest or take more surfaces"
         )
-    exponent, cutoff = found = _most_likely(used)
-    again = [_most_likely(rng.choice(used, used.size), found)[0] for _ in range(_N_BOOTSTRAP)]
+    exponent, cutoff = best = _most_likely(used)
+    again = [_most_likely(rng.choice(used, used.size), best)[0] for _ in range(_N_BOOTSTRAP)]
     low, high = _interval(exponent, again)
     return PowerLaw(exponent, low, high, cutoff * smallest, smallest, int(used.size))
 
 
 def _interval(exponent: float, again: Sequence[float]) -> tuple[float, float]:
-    """95% interval of an exponent, from those of the samples of a bootstrap.
+    """95% interval of an exponent, from the exponents of bootstrap samples.
 
-    It is that of a normal distribution: quantiles of some hundred samples scatter twice as much.
+    It assumes a normal distribution: quantiles of some hundred samples scatter twice as much.
     """
     reach = REACH * float(np.std(again, ddof=1))
     return exponent - reach, exponent + reach
@@ -85,14 +89,14 @@ def _most_likely(scaled: Array, start: tuple[float, float] | None = None) -> tup
         rate = float(np.exp(-point[1]))
         return point[0] * mean_log + rate * mean + _log_norm(float(point[0]), rate)
 
-    found = minimize(
+    solution = minimize(
         surprise,
         [exponent, np.log(cutoff)],
         method="Nelder-Mead",
         bounds=[(0.0, 5.0), (0.0, np.log(1e4 * np.max(scaled)))],
         options={"xatol": 1e-4, "fatol": 1e-9},
     )
-    return float(found.x[0]), float(np.exp(found.x[1]))
+    return float(solution.x[0]), float(np.exp(solution.x[1]))
 
 
 def _log_norm(exponent: float, rate: float) -> float:
@@ -250,8 +254,11 @@ def _natural_parameters(
     return value, natural
 
 
-_N_NEWTON, _GAIN = 100, 1e-8
-"""Limit on Newton steps, and the fall of the surprise below which they end."""
+_N_NEWTON = 100
+"""Limit on Newton steps."""
+
+_GAIN = 1e-8
+"""Fall of the surprise in a Newton step below which they end."""
 
 _FURTHEST = 1e3
 """End of the integral that normalises the joint law, over the scale."""

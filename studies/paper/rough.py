@@ -66,14 +66,15 @@ class RoughParameters(Section):
     def simulation_of(
         self, spectrum: SelfAffineSpectrum, elastic_energy: float, schedule: FullCycle
     ) -> Simulation:
-        """Simulation of the first surface of the seed; refused if its numerics miss the error."""
+        """Simulation of the first surface of the seed; raises if its numerics miss the error."""
         numerics = Numerics(self.error, self.tile_roll_offs)
         simulation = simulation_of(
             "roughness", spectrum, elastic_energy, schedule, numerics, seed=self.seed
         )
-        if left := missed_error(simulation, self.error):
+        if least_error := missed_error(simulation, self.error):
             raise section_error(
-                f"error is {self.error:g}, but the finest numerics leave {left:.2g}; ask for that"
+                f"error is {self.error:g}, but the finest numerics leave {least_error:.2g}; "
+                "ask for that"
             )
         return simulation
 
@@ -88,7 +89,7 @@ def expected_seconds(parameters: RoughParameters) -> float:
 
 
 class RoughCycleParameters(RoughParameters):
-    """What a figure of one cycle needs beside the shape of its spectrum."""
+    """What a figure of one cycle needs, apart from the shape of its spectrum."""
 
     short_cutoff: Positive  # shortest wavelength (reduced lateral length)
     elastic_energy: Energy  # of full conformity (w_int)
@@ -131,7 +132,7 @@ class DisorderParameters(Section):
         """Contact with one surface: e_el in units of w_int, `least_angles` sites or more."""
         spectrum = flat_spectrum(self.short_cutoff)
         side = _SIDE * jkr.equilibrium_radius(self.max_penetration)
-        # Below the weakest disorder of the laws of errors the numerics are those of there.
+        # The laws of errors end at their weakest disorder; weaker disorder gets its numerics.
         energy = max(elastic_energy, measured_energies()[0])
         settings = chosen_settings(self.error, "roughness", spectrum, energy)
         simulation = simulation_of(
@@ -195,7 +196,7 @@ class RoughContact:
 def surface_means(kinds: Sequence[Sequence[object]], *names: str) -> dict[str, Any]:
     """Means over the surfaces of each kind of what was measured on each surface, by its name."""
     return {
-        name: np.array([np.mean([getattr(one, name) for one in kind]) for kind in kinds])
+        name: np.array([np.mean([getattr(surface, name) for surface in kind]) for kind in kinds])
         for name in names
     }
 
@@ -203,7 +204,7 @@ def surface_means(kinds: Sequence[Sequence[object]], *names: str) -> dict[str, A
 def circle_stiffness(radius: ArrayLike, penetration: ArrayLike) -> Array:
     """Stiffness (w_int) of a contact's circle at fixed penetration, a dG/da.
 
-    That of mode n of the line is larger by n.
+    Mode n of the line is stiffer by n.
 
     >>> from crackfront.core.jkr import pull_off_penetration, pull_off_radius
     >>> abs(float(circle_stiffness(pull_off_radius(), pull_off_penetration()))) < 1e-9
@@ -222,7 +223,7 @@ def flat_spectrum(short_cutoff: float) -> SelfAffineSpectrum:
 def rough_spectrum(
     short_cutoff: float, roll_off: float, hurst: float, plateau: float = 1.0
 ) -> SelfAffineSpectrum:
-    """Self-affine spectrum of the parameters of a figure; a refusal says why there is none."""
+    """Self-affine spectrum of the parameters of a figure; a pydantic error if impossible."""
     try:
         return SelfAffineSpectrum(short_cutoff, roll_off, hurst, plateau)
     except ValueError as error:

@@ -23,9 +23,11 @@ _N_LAG = 60
 SPHERE, STRONG_LINE, WEAK_LINE = (STRONG, WEAK), 2, 3
 """Places of the fronts in a record."""
 
-_PRECISION, _WAY = 1e-3, 0.5
-"""Load that the solver may cost a straight front, in correlation lengths of the force, and the
-share of a tile's period over which its fronts are taken."""
+_PRECISION = 1e-3
+"""Load that the solver may cost a straight front, in correlation lengths of the force."""
+
+_WAY = 0.5
+"""Share of a tile's period over which its fronts are taken."""
 
 
 class LineParameters(StraightParameters):
@@ -89,10 +91,10 @@ def roughness_record(parameters: RoughnessParameters, progress: Progress) -> Rou
     spheres, lines = (parameters.strong, parameters.weak), parameters.lines
     measured = []
     for name, energy in zip(("strong", "weak"), spheres, strict=True):
-        measured.append([_surface(parameters, energy, one) for one in surfaces])
+        measured.append([_surface(parameters, energy, surface) for surface in surfaces])
         progress(f"{name} disorder: {parameters.n_surface} times {parameters.n_front} fronts")
     for line in lines:
-        measured.append([_tile(parameters, line, one) for one in surfaces])
+        measured.append([_tile(parameters, line, surface) for surface in surfaces])
         progress(f"straight, spring of {line.spring:g} Larkin lengths: as many fronts")
     count = min(surface.power.size for kind in measured for surface in kind)
     power = np.array([[surface.power[:count] for surface in kind] for kind in measured])

@@ -48,7 +48,7 @@ class ParametricStudy:
     short_cutoff: Array = variable("shortest wavelength lambda_s", LATERAL, _spectrum)
     roll_off: Array = variable("roll-off wavelength lambda_r", LATERAL, _spectrum)
     hurst: Array = variable("Hurst exponent", "1", _spectrum)
-    correlation_length: Array = variable("that of w_loc", LATERAL, _spectrum)
+    correlation_length: Array = variable("correlation length of w_loc", LATERAL, _spectrum)
     e_el_requested: Array = variable("requested e_el", ADHESION, _amplitude)
     e_el: Array = variable("energy of full conformity of the tile", ADHESION, *_cell)
     w_rms: Array = variable("rms of w_loc on the tile", ADHESION, *_cell)
@@ -69,8 +69,10 @@ class ParametricStudy:
 
     @property
     def table(self) -> SweepTable:
-        """The table of the sweep; without contact radii there is no k by the law."""
-        names = {one.name for one in fields(SweepTable)} & {one.name for one in fields(self)}
+        """The table of the sweep; k by the law needs contact radii."""
+        names = {field.name for field in fields(SweepTable)} & {
+            field.name for field in fields(self)
+        }
         columns = values_of(self, *names) | {"amplitude": self.e_el_requested}
         columns["spectrum"] = self.spectrum.astype(np.str_)
         if self.contact_radius is None:
@@ -86,7 +88,7 @@ def parametric_study(
 ) -> ParametricStudy:
     """Data of the figure from the fit of a sweep."""
     progress(f"{parameters.sweep}: {fit.table.finite.sum()} simulations with a value")
-    of_table = {one.name for one in fields(ParametricStudy)} - {*_OF_FIT, "e_el_requested"}
+    of_table = {field.name for field in fields(ParametricStudy)} - {*_OF_FIT, "e_el_requested"}
     columns = values_of(fit.table, *of_table) | values_of(fit, *_OF_FIT)
     return ParametricStudy(**columns, e_el_requested=fit.table.amplitude)
 
@@ -103,7 +105,7 @@ def parametric_study_checks(study: ParametricStudy) -> tuple[Check, ...]:
     factors = fit.spectra.factor.value
     spread = float(np.ptp(factors) / np.mean(factors))
     onset, is_bound = _onsets(fit)
-    in_order, known = _ordered_pairs(study.correlation_length, onset, is_bound)
+    in_order, comparable = _ordered_pairs(study.correlation_length, onset, is_bound)
     rows = zip(study.spectrum, study.correlation_length, onset, is_bound, strict=True)
     text = ", ".join(
         f"{name} {length:.3g}: {energy:.2g}{' or less' if bound else ''}"
@@ -144,14 +146,14 @@ def parametric_study_checks(study: ParametricStudy) -> tuple[Check, ...]:
             f"at most {100 * _SAME:.0f}%",
             f"{100 * spread:.1f}%",
             spread <= _SAME,
-            ", ".join(f"{one} {k:.2f}" for one, k in zip(study.spectrum, factors, strict=True)),
+            ", ".join(f"{name} {k:.2f}" for name, k in zip(study.spectrum, factors, strict=True)),
             law=_said(100 * spread, *law.spread, units="%"),
         ),
         Check(
             "onset of hysteresis at larger e_el for a longer correlation length",
             "all pairs of spectra whose order is known",
-            f"{in_order} of {known}",
-            0 < known == in_order,
+            f"{in_order} of {comparable}",
+            0 < comparable == in_order,
             f"correlation length: e_el / w_int at which k is half that of the fit ({text})",
         ),
     )
@@ -174,7 +176,7 @@ def _by_law(fit: SweepFit) -> _ByLaw:
         return _ByLaw(*[(math.nan, math.nan)] * 4)
     strength = np.log(fit.cells.w_rms[:, fit.in_range])
     along, weight = slope(strength, np.log(k))
-    # Errors of one amplitude of one spectrum count as independent of those of others.
+    # Errors of different amplitudes and spectra count as independent.
     relative = float(np.mean(error / k))
     mean = np.mean(k, axis=1)
     return _ByLaw(
@@ -185,9 +187,9 @@ def _by_law(fit: SweepFit) -> _ByLaw:
     )
 
 
-def _said(found: float, value: float, reach: float, units: str = "") -> str:
+def _said(measured: float, value: float, reach: float, units: str = "") -> str:
     """The law's number where what was found agrees with it, else nothing."""
-    return f"{with_error(value, reach)}{units}" if abs(found - value) <= reach else ""
+    return f"{with_error(value, reach)}{units}" if abs(measured - value) <= reach else ""
 
 
 def _onsets(fit: SweepFit) -> tuple[Array, NDArray[np.bool_]]:
@@ -195,28 +197,28 @@ def _onsets(fit: SweepFit) -> tuple[Array, NDArray[np.bool_]]:
 
     Where k is above the half at every amplitude, the onset is below the least that was simulated.
     """
-    found, is_bound = [], []
+    onsets, is_bound = [], []
     rows = fit.cells.e_el, fit.cells.factor.value, fit.spectra.factor.value
     for energies, factors, mean in zip(*rows, strict=True):
         below = np.flatnonzero(factors < mean / 2)
         is_bound.append(below.size == 0)
         if below.size == 0:
-            found.append(energies[0])
+            onsets.append(energies[0])
             continue
         near = slice(below[-1], below[-1] + 2)
-        found.append(np.exp(np.interp(mean / 2, factors[near], np.log(energies[near]))))
-    return np.array(found), np.array(is_bound)
+        onsets.append(np.exp(np.interp(mean / 2, factors[near], np.log(energies[near]))))
+    return np.array(onsets), np.array(is_bound)
 
 
 def _ordered_pairs(length: Array, onset: Array, is_bound: NDArray[np.bool_]) -> tuple[int, int]:
     """Pairs of spectra whose onsets are in the order of their lengths, and pairs of known order."""
-    in_order = known = 0
-    for one, other in itertools.combinations(np.argsort(length), 2):
-        low, high = sorted((one, other), key=lambda place: onset[place])
-        # The higher onset says which is higher only if it is no bound.
-        if length[one] < length[other] and not is_bound[high]:
-            known, in_order = known + 1, in_order + int(length[low] < length[high])
-    return in_order, known
+    in_order = comparable = 0
+    for first, second in itertools.combinations(np.argsort(length), 2):
+        low, high = sorted((first, second), key=lambda place: onset[place])
+        # The higher onset says which is higher only if it is not a bound.
+        if length[first] < length[second] and not is_bound[high]:
+            comparable, in_order = comparable + 1, in_order + int(length[low] < length[high])
+    return in_order, comparable
 
 
 def parametric_study_figure(study: ParametricStudy) -> Drawing:
@@ -244,7 +246,7 @@ def parametric_study_figure(study: ParametricStudy) -> Drawing:
         for name in ("b", "c"):
             set_factor_limits(panels[name], fit)
         panels["c"].set_ylabel("mean $k$")
-        # One legend for all panels: that of b has the pooled k besides.
+        # The legend of panel b serves for all panels: it also contains the pooled k.
         figure.legend(*legend_entries(panels["b"]), loc="outside upper center", ncols=4)
         texts = [
             *points_explained(fit),

@@ -85,7 +85,7 @@ class SyntheticFilm(FilmDensities):
     synthetic: Array = variable("profile density of the surfaces, mean over all lines", "m3", _MODE)
     included: Array = variable("profile density of the included scales", "m3", _MODE)
     film_energy: float = variable("energy of full conformity of the film", "J m-2")
-    tile_energy: float = variable("that of the surfaces, measured from their maps", "J m-2")
+    tile_energy: float = variable("e_el of the surfaces, measured from their maps", "J m-2")
     mode_energy: float = variable("expected energy of the modes of a tile", "J m-2")
     energy_error: float = variable("standard error of the mean of all surfaces", "J m-2")
     height_square: float = variable("mean square height of the lines about their means", "m2")
@@ -108,16 +108,16 @@ def synthetic_film(parameters: SyntheticFilmParameters, progress: Progress) -> S
         progress(f"surface {surface} of {parameters.realisations}: {n_point} points a side")
     mode = np.asarray(2 * np.pi / side * np.arange(1, n_point // 2), dtype=float)
     # A mode on the cutoff itself belongs to the surfaces, as in the spectrum.
-    kept = mode <= 2 * np.pi / parameters.shortest * (1 + 1e-12)
+    is_resolved = mode <= 2 * np.pi / parameters.shortest * (1 + 1e-12)
     finest = max(parameters.short_cutoff, parameters.shortest / _ROOM)
     expected, deviation = tile_mean_square(included, side, 0.5)
     dominant = film.dominant_wavelengths(0.5)
     return SyntheticFilm(
         **values_of(parameters.densities(finest)),
         **values_of(parameters, "shortest", "side", "realisations"),
-        mode=mode[kept],
-        synthetic=np.mean(profiles, axis=0)[kept],
-        included=included.profile_density(mode[kept]),
+        mode=mode[is_resolved],
+        synthetic=np.mean(profiles, axis=0)[is_resolved],
+        included=included.profile_density(mode[is_resolved]),
         film_energy=stiffness * film.mean_square(0.5),
         tile_energy=stiffness * float(np.mean(halves)),
         mode_energy=stiffness * expected,

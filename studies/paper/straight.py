@@ -29,9 +29,14 @@ _KIND: FieldKind = "roughness"
 _SPECTRUM = flat_spectrum(1.0)
 """A flat one, whose short cutoff is the unit of length."""
 
-_PERIOD, _TRANSIENT, _STEP = 25.0, 6.0, 0.5
-"""Period of a tile and travel before it, over the expected rms of the front, and largest load step
-until then, in correlation lengths, as in config/line.yaml."""
+_PERIOD = 25.0
+"""Period of a tile over the expected rms of the front, as in config/line.yaml."""
+
+_TRANSIENT = 6.0
+"""Travel before that period, over the expected rms of the front, as in config/line.yaml."""
+
+_STEP = 0.5
+"""Largest load step of this travel, in correlation lengths, as in config/line.yaml."""
 
 _TILE_CUTOFFS = 60.0
 """Least sides of a tile."""

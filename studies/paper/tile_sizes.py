@@ -1,4 +1,4 @@
-"""What surfaces on a tile have of a spectrum, which holds all wavelengths."""
+"""Mean squares of surfaces on a tile, which lack most wavelengths of their spectrum."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from crackfront.core.spectrum import Spectrum
 
 
 def tile_mean_square(spectrum: Spectrum, side: float, order: float) -> tuple[float, float]:
-    """Mean square of a derivative of an order on synthesised tiles, which hold but their modes.
+    """Mean square of a derivative of an order on synthesised tiles, which have discrete modes.
 
     The mean over realisations, and the standard deviation of one of them; the side is in the unit
     of the spectrum.

@@ -14,7 +14,7 @@ Result = TypeVar("Result")
 
 
 def in_fresh_process(function: Callable[..., Result], *arguments: Any) -> Result:
-    """What a function returns in a process of its own, whose memory is that of the call."""
+    """What a function returns in a fresh process, whose memory is due to the call alone."""
     spawn = multiprocessing.get_context("spawn")
     with ProcessPoolExecutor(1, mp_context=spawn) as fresh:
         return fresh.submit(function, *arguments).result()

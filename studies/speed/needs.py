@@ -103,7 +103,7 @@ class Row:
     n_step: int = variable("load steps", "1")
     samples: float = variable("samples of w_loc that the front crosses, each counted once", "1")
     seconds: float = variable("processor time, the making of the field included", "s")
-    peak: float = variable("largest memory above that of the imported package", "MB")
+    peak: float = variable("largest memory in addition to the imported package", "MB")
     field: float = variable("arrays of the field while the front moves", "MB")
     record: float = variable("arrays of the record", "MB")
     file: float = variable("size of the file", "kB")

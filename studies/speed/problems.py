@@ -29,8 +29,8 @@ PIXELS_PER_CUTOFF = 8
 class Problem:
     """One cycle from penetration 0 to 1 and back to pull-off, at a tolerance of 1e-8.
 
-    Its rms is that of the work of adhesion in w_int. A flat spectrum is that of the work of
-    adhesion, another one that of the heights. (Units: reduced lateral length) On its tile a field
+    The rms belongs to the work of adhesion, in w_int. A flat spectrum describes the work of
+    adhesion, any other spectrum the heights. (Units: reduced lateral length) On its tile a field
     is evaluated where the front is, else sampled on all rays first.
     """
 

@@ -70,13 +70,17 @@ def _simulations() -> list[Simulation]:
 def shares() -> list[Share]:
     """Shares of the parts of a simulation, the largest first.
 
-    RuntimeError where there is no perf, or it may not sample this user's processes.
+    RuntimeError if perf is missing, or may not sample this user's processes.
     """
     if shutil.which("perf") is None:
-        raise RuntimeError("there is no perf on this machine; install linux-perf or linux-tools")
+        raise RuntimeError(
+            "perf is not installed on this machine; install linux-perf or linux-tools"
+        )
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        samples, control, answer = (folder / one for one in ("samples", "control", "answer"))
+        samples, control, answer = (
+            folder / file_name for file_name in ("samples", "control", "answer")
+        )
         os.mkfifo(control)
         os.mkfifo(answer)
         perf = ["perf", "record", "--quiet", "--event", "cpu-clock:u", "--freq", "997"]
@@ -93,14 +97,14 @@ def shares() -> list[Share]:
             raise RuntimeError(f"perf cannot sample this process: {ran.stderr.strip()[-300:]}")
         *spent, names = ran.stdout.split()[-4:]
         tile, loads, store = map(float, spent)
-        told = subprocess.run(
+        reported = subprocess.run(
             ["perf", "report", "--stdio", "--input", str(samples), "--sort", "dso,sym"],
             check=True,
             capture_output=True,
             text=True,
         )
         Path(names).unlink()
-    solver = _solver_shares(told.stdout)
+    solver = _solver_shares(reported.stdout)
     seconds = {part: loads * share for part, share in solver.items()}
     seconds |= {"making the tile and its splines": tile, "making the row and the dataset": store}
     total = sum(seconds.values())
@@ -110,13 +114,13 @@ def shares() -> list[Share]:
 
 def _solver_shares(report: str) -> dict[str, float]:
     """Shares of the parts of the solver from what perf prints, which add up to 1."""
-    found: defaultdict[str, float] = defaultdict(float)
+    percentages: defaultdict[str, float] = defaultdict(float)
     for percent, rest in re.findall(r"^\s+([\d.]+)%\s+(.*)$", report, re.MULTILINE):
         kernel = _kernel(rest)
         parts = (part for part, pattern in _PARTS.items() if re.search(pattern, kernel))
-        found[next(parts, _REST)] += float(percent)
-    total = sum(found.values())
-    return {part: share / total for part, share in found.items()}
+        percentages[next(parts, _REST)] += float(percent)
+    total = sum(percentages.values())
+    return {part: share / total for part, share in percentages.items()}
 
 
 def _kernel(symbol: str) -> str:
@@ -137,7 +141,7 @@ def run(control: str, answer: str) -> None:
     dataset, and the file of the names of kernels.
     """
     objects, simulations = _loaded_objects(), _simulations()
-    # The first run loads kernels, which is no part of a simulation.
+    # The first run loads kernels, which does not belong to a simulation.
     _timed(simulations[0], lambda _: None)
     runs = [
         _timed(simulation, lambda word: _tell(control, answer, word))
@@ -164,18 +168,18 @@ def _timed(simulation: Simulation, tell: Callable[[str], None]) -> tuple[float, 
         simulation.correlation_length,
         simulation.elastic_energy,
     )
-    made = time.process_time() - begin
+    tile_seconds = time.process_time() - begin
     tell("enable")
     begin = time.process_time()
     record = simulation.schedule.run(problem, simulation.solver, Recorder())
-    loaded = time.process_time() - begin
+    load_seconds = time.process_time() - begin
     tell("disable")
     measures = RunMeasures(adhesion.e_el, adhesion.w_rms, 0.0, 0.0, 0.0, 0.0)
     arithmetic = provenance().arithmetic
     begin = time.process_time()
     row = sweep_row(SimulationResult(simulation, record, measures))
     curves_dataset([FinishedSimulation(simulation, row, record, arithmetic)]).to_netcdf()
-    return made, loaded, time.process_time() - begin
+    return tile_seconds, load_seconds, time.process_time() - begin
 
 
 def _tell(control: str, answer: str, word: str) -> None:
@@ -207,15 +211,18 @@ def _map_lines(objects: list[bytes]) -> Iterator[str]:
     engine = cpu_target.target_context.codegen()._engine._ee
     for content in objects:
         functions = list(_functions(content))
-        # Where each section was loaded, by the first function in it that the engine knows: that of
-        # the object itself. Those that it shares with others may be used from another object.
+        # Where each section was loaded, by the first function in it that the engine knows: the
+        # object's own one. Functions in several objects may be used from another object.
         bases: dict[int, int] = {}
-        for one in functions:
-            if one.section not in bases and (address := engine.get_function_address(one.name)):
-                bases[one.section] = address - one.place
-        for one in functions:
-            if one.section in bases:
-                yield f"{bases[one.section] + one.place:x} {one.size:x} {one.name}\n"
+        for function in functions:
+            if function.section not in bases and (
+                address := engine.get_function_address(function.name)
+            ):
+                bases[function.section] = address - function.place
+        for function in functions:
+            if function.section in bases:
+                address = bases[function.section] + function.place
+                yield f"{address:x} {function.size:x} {function.name}\n"
 
 
 @dataclass(frozen=True, slots=True)

@@ -95,7 +95,7 @@ def played(
 ) -> list[Played]:
     """Play a sweep, given as seconds of the tasks of its shards, through on numbers of ranks.
 
-    Up to `job_ranks` ranks are those of one job, more those of several.
+    Up to `job_ranks` ranks belong to one job, more to several.
     """
     useful = float(sum(np.sum(shard) for shard in shards))
     sizes = {n_rank: min(n_rank, job_ranks) for n_rank in rank_numbers}
@@ -119,14 +119,14 @@ def slowness() -> float:
     energy = sweep.elastic_energies[-1]
     runs = [sweep.simulation(item, energy, 0) for item in sweep.spectra]
     run_simulation(runs[0])  # compiles, and loads what is compiled
-    measured = sum(run_simulation(one).measures.cpu_seconds for one in runs)
-    return measured / sum(expected_cost(one).seconds for one in runs)
+    measured = sum(run_simulation(simulation).measures.cpu_seconds for simulation in runs)
+    return measured / sum(expected_cost(simulation).seconds for simulation in runs)
 
 
 def million(
     slower: float, n_simulation: int = 10**6, n_shard: int = 1000, seed: int = 1
 ) -> list[Array]:
-    """Times of the tasks of a sweep like that of `config/default.yaml`, shard by shard.
+    """Times of the tasks of a sweep like `config/default.yaml`, shard by shard.
 
     A time is the expected one, times how much slower the machine is, times a random factor.
     """
@@ -186,7 +186,7 @@ def hand_out_seconds(n_worker: int = 4, n_task: int = 5000) -> float:
 
 
 def start_seconds() -> float:
-    """Processor time of a job on Slurm beside its tasks: two nested Snakemakes, and the command.
+    """Processor time of a job on Slurm without its tasks: two nested Snakemakes, and the command.
 
     They run twice, and the second time counts: Python has compiled what it imports then.
     """
@@ -239,8 +239,8 @@ def _finished(sweep: Sweep, item: NamedSpectrum, origin: Provenance) -> list[Fin
     """The first simulation of each amplitude of a spectrum."""
     results = map(run_simulation, sweep.one_per_amplitude(item))
     return [
-        FinishedSimulation(one.simulation, sweep_row(one), one.record, origin.arithmetic)
-        for one in results
+        FinishedSimulation(result.simulation, sweep_row(result), result.record, origin.arithmetic)
+        for result in results
     ]
 
 
@@ -281,8 +281,8 @@ def planned(configuration: Path) -> tuple[float, float]:
 def late_table(sizes: Sequence[int]) -> str:
     """Time and memory of the commands that follow the simulations.
 
-    `sha256sum --check` reads what `verify` reads. The last `plan` is that of a sweep one of whose
-    shards has all its rows, but no file.
+    `sha256sum --check` reads what `verify` reads. The last `plan` sees a sweep one of whose
+    shards has all its rows, but lacks its file.
     """
     rows = []
     for n_row in sizes:

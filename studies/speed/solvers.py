@@ -124,9 +124,9 @@ def sections(rows: Sequence[Row], repeats: int) -> list[str]:
     for group in dict.fromkeys(row.group for row in rows):
         chosen = [row for row in rows if row.group == group]
         parts += [f"## {group.capitalize()}", table(chosen)]
-    if found := exponents(rows):
+    if law := exponents(rows):
         parts += [
             "Exponent of the time in sites times cutoffs crossed (least squares of logarithms):",
-            found,
+            law,
         ]
     return parts

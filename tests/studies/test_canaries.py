@@ -93,4 +93,4 @@ def test_a_canary_that_was_never_stored_says_what_to_run(tmp_path, monkeypatch):
 def test_a_study_without_canaries_is_refused():
     done = CliRunner().invoke(main, ["canaries", "speed"])
     assert done.exit_code == 2
-    assert "speed has no canaries; the studies with canaries are law" in done.output
+    assert "speed does not have canaries; the studies with canaries are law" in done.output

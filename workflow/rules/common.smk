@@ -97,7 +97,7 @@ FIT_REQUEST = requested(RESULTS, fit_request(SWEEP))
 SWEEP_FIGURES = ["hysteresis", "loop", "factor"]
 
 
-# Commands stand beside the Python that runs Snakemake, in a folder of any name. What they print is
+# Commands stand next to the Python that runs Snakemake, in a folder of any name. What they print is
 # shown and kept; tee outlives the signals that end what it shows.
 def command(name):
     """A command of the environment as shells and Snakemake read it."""
@@ -106,7 +106,7 @@ def command(name):
 
 
 def launcher():
-    """The mpiexec of the environment, or that of the system (`make env MPI=system`)."""
+    """The mpiexec of the environment, or of the system (`make env MPI=system`)."""
     path = Path(sys.executable).parent / "mpiexec"
     return shlex.quote(str(path)) if path.exists() else "mpiexec"
 
@@ -123,14 +123,14 @@ STUDIES = importable(BASE) + PYTHON + " -m studies"
 LOGGED = " > >(trap '' INT TERM HUP; exec tee {log:q}) 2>&1"
 
 
-# Functions of an output are no reason to run a job again, and know a module's prefix of paths.
+# Functions of an output are not a reason to run a job again, and know a module's prefix of paths.
 def folder(wildcards, output):
     """Folder of the first file of a rule."""
     return str(Path(output[0]).parent)
 
 
 def folder_above(wildcards, output):
-    """Folder above that of the first file of a rule."""
+    """Folder above the folder of the first file of a rule."""
     return str(Path(output[0]).parents[1])
 
 
@@ -142,7 +142,7 @@ def configuration(wildcards, output):
 def megabytes(number):
     """Memory to ask for where a number of bytes is expected. (Units: MB)
 
-    A job on a cluster also holds Snakemake twice, 0.3 GB each.
+    A job on a cluster also runs Snakemake twice, 0.3 GB each.
     """
     return max(1000, int(number * 1.5e-6) + 1)
 

@@ -40,7 +40,7 @@ def figure_drawing_module(wildcards):
 
 
 def figure_file(wildcards, output):
-    """Configuration of a figure of the paper, whose name is that of its data."""
+    """Configuration of a figure of the paper, which has the same name as its data."""
     return f"{FIGURE_SETTINGS}/{Path(output[0]).stem}.yaml"
 
 

@@ -31,7 +31,7 @@ SECONDS = {
 
 
 def shard_cores(cores):
-    """One core where twice as many shards are left and memory holds them, else all in turn."""
+    """One core where twice as many shards are left and they fit into memory, else all in turn."""
     n_left = sum(not Path(RESULTS, f"shards/{name}.nc").exists() for name in SHARDS)
     return 1 if n_left >= 2 * cores and cores * RANK_BYTES < memory_at_hand() else cores
 
@@ -83,7 +83,7 @@ rule simulate:
     params:
         spectrum=lambda wildcards: SHARDS[wildcards.shard].item.name,
         block=lambda wildcards: block_option(SHARDS[wildcards.shard]),
-        # One task needs no launcher. As a function of resources this is no reason to run again.
+        # One task needs no launcher. As a function of resources this is not a reason to run again.
         launch=lambda wildcards, resources: (
             f"{resources.mpi or launcher()} -n {resources.tasks}"
             if resources.tasks > 1

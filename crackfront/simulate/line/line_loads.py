@@ -257,7 +257,7 @@ class LineLoad(SurfaceLoads):
             uncorrelated=self.uncorrelated,
         )
 
-    def check_resolved(self, simulation: Simulation) -> None:
+    def check_resolution(self, simulation: Simulation) -> None:
         """Raise ValueError if a Larkin length has few sites, or a period few states."""
         sizes, schedule = simulation.resolution, simulation.schedule
         name, energy = simulation.spectrum_name, simulation.elastic_energy

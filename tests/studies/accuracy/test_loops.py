@@ -82,7 +82,7 @@ def test_offsets_and_intervals_are_told_in_parts_of_the_true_hysteresis(cycle):
     found = coverage([cycle], measured_loops.INSTRUMENTS)
     assert found.keys() == measured_loops.INSTRUMENTS.keys()
     truth = simulated_loop(cycle)
-    assert found["usual"].refused == 0
+    assert found["usual"].too_short == 0
     for one in found.values():
         assert np.array_equal(one.inside, np.abs(one.offset) <= one.reach)
         appr, retr, hysteresis = one.offset[0] * truth.hysteresis.value
@@ -91,7 +91,7 @@ def test_offsets_and_intervals_are_told_in_parts_of_the_true_hysteresis(cycle):
 
 def test_the_table_has_the_shares_of_every_instrument_and_of_all():
     offset = np.zeros((2, 3))
-    half = Coverage(np.array([[True] * 3, [False] * 3]), offset, offset + 0.1, refused=1)
+    half = Coverage(np.array([[True] * 3, [False] * 3]), offset, offset + 0.1, too_short=1)
     full = Coverage(np.ones((2, 3), bool), offset, offset + 0.1)
     lines = coverage_table({"one": half, "other": full}).splitlines()
     assert lines[2] == "| one | 2 | 1 | 50% | 50% | 50% | 50% | 0% | 10% |"

@@ -26,7 +26,7 @@ def is_met(predicted, found):
 @pytest.mark.slow
 def test_predictions_hold_for_surfaces_that_the_law_was_not_fitted_to(comparisons):
     for item in comparisons:
-        found, law = item.found, item.prediction
+        found, law = item.simulations, item.prediction
         k = law.factors.both
         assert is_met(k, found.k)
         assert abs(found.k.value - k.value) < 0.3

@@ -73,13 +73,13 @@ def test_a_loop_begins_before_the_surfaces_attract_each_other():
             "spacing: 5",
             r"front: spacing 5 misses waves .*take 0.3 or less",
         ),
-        ("loops", "tion: 0.3}", "tion: -0.15}", r"-0.15 has no contact in approach; take 0 or"),
+        ("loops", "tion: 0.3}", "tion: -0.15}", r"shown_penetration -0.15 .*; take 0 or"),
         ("loops", "seed: 5", "sead: 5", r"unknown key sead; did you mean seed"),
         ("branches", "first: 0.2", "first: 0.5", r"steady parts are first=0.5 last=0.4"),
         ("branches", "max_penetration: 0.6", "max_penetration: 0.4", r"all below max_penetration"),
         ("branches", "tion: 0.2", "tion: 0.4", r"shown_penetration 0.4 is not on both branches"),
         ("branches", "roll_off: 0.9", "roll_off: 0.3", r"cases\[2\]: roll_off 0.3 is shorter"),
-        ("branches", "step: 0.1", "step: 0.15", r"cases\[0\]: shown_penetration 0.2 is no mult"),
+        ("branches", "step: 0.1", "step: 0.15", r"cases\[0\]: shown_penetration 0.2 .* step"),
     ],
 )
 def test_a_validation_that_cannot_be_run_is_refused(tmp_path, request, kind, old, new, sentence):

@@ -1,4 +1,4 @@
-"""Validations by the command: what they write, tell, find again and refuse."""
+"""Validations by the command: what they write, tell and find again, and their errors."""
 
 import math
 import sys

@@ -10,7 +10,7 @@ CONFIGURATIONS = Path(__file__).parents[3] / "config" / "figures"
 
 
 def parameters(name, **changes):
-    """Parameters of the file of a figure at the scale quick, with changes; refused as a file is."""
+    """Parameters of the file of a figure at the scale quick, with changes; errors as there."""
     given = load_figure(CONFIGURATIONS / f"{name}.yaml", "quick")
     return type(given).model_validate(given.model_dump() | changes)
 

@@ -87,9 +87,9 @@ def test_the_figure_of_a_sweep_that_was_not_run_says_how_to_run_it(tmp_path, mon
 @pytest.mark.parametrize(
     ("arguments", "sentence"),
     [
-        (["draw", "other.nc"], "is no data of a figure"),
-        (["check", "--output", "."], "has no data of figures"),
-        (["gallery", "--output", "."], "has no data of figures"),
+        (["draw", "other.nc"], "data of a figure; their files are named"),
+        (["check", "--output", "."], "run python -m studies paper figure"),
+        (["gallery", "--output", "."], "run python -m studies paper figure"),
     ],
 )
 def test_what_is_no_figure_is_refused(tmp_path, monkeypatch, arguments, sentence):

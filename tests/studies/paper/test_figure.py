@@ -111,7 +111,7 @@ def test_a_wrong_configuration_is_refused_with_a_sentence(tmp_path, text, senten
 
 
 def test_a_figure_that_does_not_exist_is_refused():
-    with pytest.raises(ConfigurationError, match="there is no figure 'main-9'; the names"):
+    with pytest.raises(ConfigurationError, match="'main-9' is not a figure; the names"):
         load_figure(Path("main-9.yaml"), "quick")
 
 
@@ -128,7 +128,7 @@ class Long(Short):
 def test_a_file_that_lacks_data_is_refused(tmp_path):
     path = tmp_path / "short.nc"
     write_record(path, Short(np.arange(3.0)), provenance())
-    with pytest.raises(UnreadableFileError, match="holds no Long: stiffness is missing"):
+    with pytest.raises(UnreadableFileError, match="Long: stiffness is missing"):
         read_record(path, Long)
 
 

@@ -41,7 +41,7 @@ def test_nanodiamond_has_the_numbers_of_the_paper(contact):
     assert contact.force.max() >= 1e-3
     assert np.all(np.diff(contact.line, axis=0) >= 0)
     assert np.all(contact.line_force <= 0.64e-3)
-    # Half a decade of wavelengths holds three quarters of the energy of all.
+    # Half a decade of wavelengths contains three quarters of the energy of all.
     np.testing.assert_allclose(contact.elastic_energy / 11.14e-3, 0.625, rtol=0.1)
 
 
@@ -124,5 +124,5 @@ def test_a_contact_that_cannot_be_computed_is_refused(others, sentence):
 
 def test_a_force_below_that_of_jump_in_shows_no_perimeter():
     given = film_parameters().model_copy(update={"shown_force": -1.0})
-    with pytest.raises(ValueError, match="no state between jump-in and shown_force"):
+    with pytest.raises(ValueError, match="raise shown_force"):
         computed("main-5bc", given)

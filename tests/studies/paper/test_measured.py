@@ -46,7 +46,7 @@ def test_a_file_of_a_spreadsheet_with_a_byte_order_mark_is_read(tmp_path):
         ("load (N)\n1\n", "line 1: column length is missing; the header has load"),
         ("length (m),length (m)\n1,1\n", "line 1: column length stands twice; remove one"),
         ("length (inch)\n1\n", "line 1: length is in inch; write length .unit. with one of m, um"),
-        ("length\n1\n", "line 1: length has no unit"),
+        ("length\n1\n", "line 1: length lacks a unit"),
         ("length (m)\n1\n# note\nx\n", "line 4: length is 'x'; it must be a positive number"),
         ("length (m)\n0\n", "line 2: length is '0'; it must be a positive number"),
         ("length (m)\ninf\n", "line 2: length is 'inf'; it must be a positive number"),
@@ -62,7 +62,7 @@ def test_a_wrong_file_is_refused_with_its_line(tmp_path, text, sentence):
 
 
 def test_a_file_that_is_no_text_or_missing_is_refused(tmp_path):
-    with pytest.raises(PydanticCustomError, match="is not a text in UTF-8; save it as UTF-8"):
+    with pytest.raises(PydanticCustomError, match="save it as UTF-8"):
         read_measured(written(tmp_path, "length (µm)\n1\n", encoding="latin-1"), (LENGTH,))
     with pytest.raises(PydanticCustomError, match="cannot be read: No such file"):
         read_measured(tmp_path / "none.csv", (LENGTH,))

@@ -1,4 +1,4 @@
-"""Truncated power laws: recovery of what was drawn, normalisation, refusal."""
+"""Truncated power laws: recovery of what was drawn, normalisation, errors."""
 
 import numpy as np
 import pytest

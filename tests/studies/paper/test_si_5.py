@@ -69,14 +69,14 @@ def test_each_deviation_from_the_law_fails_its_check(options, failing):
 
 def test_a_spread_that_only_rounds_to_the_allowed_one_fails_and_is_told_with_its_decimal():
     check = SCENE.checks(study(np.array([2.8, 3.1])[:, None, None])[0])[3]
-    spread = float(check.found.rstrip("%"))
+    spread = float(check.computed.rstrip("%"))
     assert 10 < spread < 10.5
     assert not check.passed
 
 
 def test_onsets_below_the_least_amplitude_say_nothing_of_their_order():
     check = SCENE.checks(study(3.0, onset=(0.0002, 0.0005))[0])[4]
-    assert (check.found, check.passed) == ("0 of 0", False)
+    assert (check.computed, check.passed) == ("0 of 0", False)
     assert "or less" in check.remark
 
 
