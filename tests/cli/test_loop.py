@@ -56,7 +56,7 @@ def test_the_example_of_the_page_has_the_simulated_hysteresis():
     [
         (("--radius", "1.25"), "without a unit"),
         (("--radius", "1.25mm", "--window", "50um"), "give two contact radii"),
-        (("--radius", "1.25mm", "--stiffness", "3kg"), "no stiffness"),
+        (("--radius", "1.25mm", "--stiffness", "3kg"), "not a unit of stiffness"),
         (("--radius", "1.25mm", "--poisson", "0.3"), "--poisson has an effect only with --modulus"),
         (("--radius", "1.25mm", "--scans", "a.al3d"), "--work-of-adhesion"),
         (("--radius", "1.25mm", "--force", "Kraft"), "lacks a column 'Kraft'"),

@@ -56,7 +56,7 @@ def test_no_flipped_bit_of_an_array_in_a_netcdf_file_is_believed(tmp_path, rng, 
     for bit in (8 * start + rng.integers(8 * 16000, size=40)).tolist():
         with (
             flipped(path, bit),
-            pytest.raises(UnreadableFileError, match=r"array.nc is no complete"),
+            pytest.raises(UnreadableFileError, match=r"array.nc is not a complete"),
         ):
             read_dataset(path)
 

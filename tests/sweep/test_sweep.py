@@ -67,6 +67,6 @@ def test_realisations_that_the_sweep_does_not_have_are_refused():
     ("name", "hint"), [("flatt", "did you mean flat?"), ("xyz", "choose one of flat, rough")]
 )
 def test_a_misspelt_spectrum_is_refused_with_the_nearest_name(name, hint):
-    with pytest.raises(ValueError, match="has no spectrum") as caught:
+    with pytest.raises(ValueError, match="lacks a spectrum") as caught:
         SWEEP.named(name)
     assert hint in str(caught.value)

@@ -16,7 +16,7 @@ def test_arrays_and_their_table_are_the_same_loop(tmp_path):
     path.write_text("Force (N),Radius (m)\n" + "".join(f"{f},{a}\n" for f, a in rows))
     known = {"radius": RADIUS, "contact_modulus": MODULUS}
     assert repr(measured_loop(arrays, **known)) == repr(measured_loop(path, **known))
-    with pytest.raises(ValueError, match="has no speed"):
+    with pytest.raises(ValueError, match="lacks speed"):
         measured_loop({"force": whole.force, "speed": whole.force}, **known)
 
 
@@ -57,7 +57,7 @@ def test_masked_rows_are_left_out_and_texts_have_units():
         ({"window": (7e-5, 1e-4, 2e-4)}, "window has 3 values"),
         ({"window": ("70um", "1g")}, "a contact radius of window is '1g'"),
         ({"modulus_error": "1%"}, "modulus_error is '1%'; give a number"),
-        ({"stiffness": "3kg"}, "no stiffness"),
+        ({"stiffness": "3kg"}, "not a unit of stiffness"),
     ],
 )
 def test_an_argument_that_cannot_be_used_is_refused(given, sentence):

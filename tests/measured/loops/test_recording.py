@@ -110,13 +110,13 @@ def test_columns_are_named_and_units_given_by_options(tmp_path):
         (table().replace("60.5", "60.x"), "line 3: '60.x' in column 2"),
         (table(";").replace("60.5", "60,5"), "decimal points and with decimal commas"),
         (table(head=("Force (mN)", "Radius (kg)")), "the unit kg cannot be converted to m"),
-        ("nothing here\n", "no line with two numbers"),
+        ("nothing here\n", "lacks a line with two numbers"),
         (table().replace("60.5", "60,5"), "line 3: the row has 3 cells and there are 2 headings"),
         ("force(uN) radius(um)\n0 0.02 1\n1 0.03 1\n", "line 2: .* 3 cells and there are 2"),
         (table(head=("Force (mN)", "Contact area")), "--radius-unit um.2"),
         (table(head=("Force (mN)", "Contact area (um)")), "unit um cannot be converted to m.2"),
         (table(head=("Force (mN)", "Radius (um^2)")), "unit um.2 cannot be converted to m"),
-        ("", "no line with two numbers"),
+        ("", "lacks a line with two numbers"),
     ],
 )
 def test_what_is_no_table_of_a_loop_is_refused_with_what_to_do(content, sentence, tmp_path):

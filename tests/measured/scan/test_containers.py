@@ -184,7 +184,7 @@ def test_what_is_no_container_or_a_damaged_one_is_refused_with_a_sentence(tmp_pa
     with pytest.raises(ValueError, match=r"lacks 'a.txt', which it lists"):
         read_measurements([lacking])
     empty = container(tmp_path / "empty.zip", {"film": []}, {})
-    with pytest.raises(ValueError, match=r"meta.yml does not say .*: surfaces.0.topographies"):
+    with pytest.raises(ValueError, match=r"meta.yml does not state .*: surfaces.0.topographies"):
         read_measurements([empty])
     locked = container(tmp_path / "locked.zip", {"film": [entry("a")]}, {"a.txt": b"1"})
     content = bytearray(locked.read_bytes())

@@ -229,9 +229,9 @@ def test_sides_of_a_density_that_is_none_of_profiles_are_refused(tmp_path, head,
         ("q (1/m),PSD (m^3)\n" + columns(Q, -profile()), {}, "line 2: the density is -"),
         ("q (1/m),PSD (m^3)\n" + columns(Q[:2], profile(Q[:2])), {}, "2 values of the density"),
         (contact_engineering(), {}, "2 series; choose one .*1 '1D PSD along x'; 2 'q/π"),
-        (contact_engineering(), {"psd_series": "3"}, "no series '3'"),
+        (contact_engineering(), {"psd_series": "3"}, "lacks a series '3'"),
         ("q (1/m),PSD (m^3)\n" + columns(Q, profile()), {"psd_units": "1/m"}, "both columns"),
-        ("nothing\n", {}, "no rows of numbers"),
+        ("nothing\n", {}, "lacks rows of numbers"),
     ],
 )
 def test_what_is_no_density_is_refused_with_a_sentence(tmp_path, text, options, sentence):
