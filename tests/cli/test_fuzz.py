@@ -100,10 +100,9 @@ def fault(case):
     signal.alarm(6 * SECONDS)
     try:
         with ExitStack() as stack:
-            for module in ("cycle", "sweep"):
-                stack.enter_context(
-                    mock.patch(f"crackfront.cli.{module}.announce_cost", announcement)
-                )
+            for module in ("cycle_command", "sweep_commands"):
+                function = f"crackfront.cli.{module}.announce_cost"
+                stack.enter_context(mock.patch(function, announcement))
             result = CliRunner().invoke(main, case.arguments)
         if result.exception is not None and not isinstance(result.exception, SystemExit):
             return f"traceback: {type(result.exception).__name__}: {result.exception}"[:300]

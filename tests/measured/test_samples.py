@@ -225,7 +225,7 @@ def test_an_option_without_effect_on_a_sample_is_refused(tmp_path, row, common, 
             "A,polished,20kg",
             "line 3: rms is '20kg', whose unit is not a unit of length",
         ),
-        ("B,rough,40", "B,rough,", "line 4: a surface of numbers needs rms and hurst, and one"),
+        ("B,rough,40", "B,rough,", "line 4: a self-affine surface needs rms, hurst, and either"),
         ("B,rough", "A,rough", "line 4: the sample 'A' is in line 3 as well"),
         ("B,rough", ",rough", "line 4: the name is missing; write it in the column 'sample'"),
         ("0.8,20nm,,", "1.8,20nm,,", "line 4: hurst is 1.8; it must lie between"),
@@ -285,7 +285,7 @@ def test_what_a_row_lacks_is_refused_before_any_work(tmp_path):
     with pytest.raises(ValueError, match=r"samples.yaml, line \d: this is not YAML: "):
         read_samples(other, SPHERE)
     other.write_text("samples:\n  - {sample: A, rms: 20nm, hurst: 0.8}\n")
-    with pytest.raises(ValueError, match=r"samples.yaml, line 2: a surface of numbers needs"):
+    with pytest.raises(ValueError, match=r"samples.yaml, line 2: a self-affine surface needs"):
         read_samples(other, SPHERE)
 
 
