@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from crackfront.analysis.estimate import Estimate
+from crackfront.analysis.estimate import UNKNOWN, Estimate
 from crackfront.analysis.steady_adhesion import Branches
 from crackfront.core.arrays import Array
 from crackfront.measured.loops.baseline import baseline
@@ -23,7 +23,7 @@ from crackfront.measured.loops.recording import Recording
 from crackfront.measured.loops.remarks import loop_remarks
 from crackfront.measured.loops.result import MeasuredLoop
 from crackfront.measured.loops.rig import Rig
-from crackfront.measured.loops.stiffness import NO_ESTIMATE, machine_stiffness
+from crackfront.measured.loops.stiffness import machine_stiffness
 from crackfront.surfaces.written_units import prefixed
 
 _MOST_LOST = 0.1
@@ -129,7 +129,7 @@ def _modulus_by_fit(
 ) -> Estimate[float]:
     """Contact modulus that fits force and radius, whether or not the rig states one."""
     if not loop.has_force_and_radius:
-        return NO_ESTIMATE
+        return UNKNOWN
     rig = replace(loop.rig, contact_modulus=None, modulus_error=0.0)
     return works_of_adhesion(replace(loop, rig=rig), averaged, errors).modulus
 

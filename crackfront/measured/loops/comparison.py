@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 from typing import Any
 
-from crackfront.analysis.estimate import Estimate
+from crackfront.analysis.estimate import UNKNOWN, Estimate
 from crackfront.measured.loops.page import loop_json
 from crackfront.measured.loops.result import MeasuredLoop
 from crackfront.measured.prediction.prediction import Prediction
@@ -35,7 +35,7 @@ def hysteresis_ratio(loop: MeasuredLoop, prediction: Prediction) -> Estimate[flo
     """
     measured, predicted = loop.hysteresis, prediction.hysteresis
     if not (measured.value > 0 and predicted.value > 0):
-        return Estimate(math.nan, math.nan, math.nan, math.nan)
+        return UNKNOWN
     ratio = measured.value / predicted.value
     above = _reach(measured.high / measured.value, predicted.low / predicted.value)
     below = _reach(measured.low / measured.value, predicted.high / predicted.value)

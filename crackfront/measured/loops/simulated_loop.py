@@ -10,7 +10,7 @@ from typing import Any, get_args
 import numpy as np
 from xarray import Dataset
 
-from crackfront.analysis.estimate import Estimate, normal_estimate
+from crackfront.analysis.estimate import UNKNOWN, Estimate, normal_estimate
 from crackfront.analysis.steady_adhesion import steady_adhesion, steady_branches
 from crackfront.core.adhesion import FieldKind, correlation_length
 from crackfront.core.arrays import Array
@@ -21,7 +21,6 @@ from crackfront.core.spectrum import Spectrum
 from crackfront.core.units import CONTACT_MODULUS, WORK_OF_ADHESION, Scales
 from crackfront.measured.loops.energy import work_per_area
 from crackfront.measured.loops.result import MeasuredLoop
-from crackfront.measured.loops.stiffness import NO_ESTIMATE
 from crackfront.simulate.cycle_files import cycle_record
 from crackfront.surfaces.si_units import in_reduced_units, stated_scales
 
@@ -112,8 +111,8 @@ def simulated_loop(cycle: Dataset, name: str = "the cycle") -> MeasuredLoop:
         w_retr=_estimate(steady.w_retr, steady.w_retr_error, unit),
         hysteresis=_estimate(steady.hysteresis, steady.hysteresis_error, unit),
         contact_modulus=Estimate(modulus, 0.0, modulus, modulus),
-        fitted_modulus=NO_ESTIMATE,
-        stiffness=NO_ESTIMATE,
+        fitted_modulus=UNKNOWN,
+        stiffness=UNKNOWN,
         lost_energy=_lost_energy(record) * unit,
         pull_off_force=Estimate(pull, 0.0, pull, pull),
         sphere_radius=sphere.radius,

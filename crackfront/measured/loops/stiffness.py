@@ -8,13 +8,10 @@ from dataclasses import replace
 import numpy as np
 from scipy.special import stdtrit
 
-from crackfront.analysis.estimate import REACH, Estimate
+from crackfront.analysis.estimate import REACH, UNKNOWN, Estimate
 from crackfront.analysis.steady_adhesion import Branches, Rows
 from crackfront.measured.loops.calibration import CalibratedLoop
 from crackfront.measured.loops.intervals import BLOCKS, without_blocks
-
-NO_ESTIMATE = Estimate(math.nan, math.nan, math.nan, math.nan)
-"""A number that the loop does not give."""
 
 
 def machine_stiffness(
@@ -26,7 +23,7 @@ def machine_stiffness(
     missing or the machine does not bend.
     """
     if not loop.has_force_and_radius or loop.recording.displacement is None:
-        return NO_ESTIMATE
+        return UNKNOWN
     loop = replace(loop, modulus=modulus.value)
     rows = np.concatenate(averaged)
     value = _compliance(loop, rows)
@@ -37,7 +34,7 @@ def machine_stiffness(
     reach = math.hypot(float(stdtrit(BLOCKS - 1, 0.975)) * noise, by_modulus)
     low, high = value - reach, value + reach
     if not high > 0:
-        return NO_ESTIMATE
+        return UNKNOWN
     stiffness = 1 / value if value > 0 else math.inf
     return Estimate(stiffness, math.nan, 1 / high, 1 / low if low > 0 else math.inf)
 

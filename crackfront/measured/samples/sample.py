@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-import math
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated, Any
 
 from pydantic import BeforeValidator
 
-from crackfront.analysis.estimate import Estimate
+from crackfront.analysis.estimate import UNKNOWN, Estimate
 from crackfront.core.arguments import nearest_name
 from crackfront.core.units import Scales
 from crackfront.measured.options import (
@@ -240,7 +239,7 @@ def _measured(values: SampleOptions) -> dict[str, Estimate[float]]:
         if value is not None and error is not None:
             measured[name] = Estimate(value, error, value - 2 * error, value + 2 * error)
         elif value is not None:
-            measured[name] = Estimate(value, math.nan, math.nan, math.nan)
+            measured[name] = replace(UNKNOWN, value=value)
     return measured
 
 

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from crackfront.analysis.estimate import Estimate
+from crackfront.analysis.estimate import UNKNOWN
 from crackfront.measured.page.series import PREDICTED, SeriesPoint
 from crackfront.measured.page.texts import sample_row
 from crackfront.measured.prediction.prediction import Prediction, check_and_predict
@@ -37,13 +37,12 @@ class SampleResult:
 
     def point(self, name: str) -> SeriesPoint:
         """A predicted number, and the measured one, for a figure."""
-        nothing = Estimate(*[math.nan] * 4)
-        predicted = nothing if self.prediction is None else getattr(self.prediction, name)
+        predicted = UNKNOWN if self.prediction is None else getattr(self.prediction, name)
         return SeriesPoint(
             self.sample.name,
             self.sample.group,
             predicted,
-            self.sample.measured.get(name, nothing),
+            self.sample.measured.get(name, UNKNOWN),
             is_lower_bound=bool(self.row.get("at_least")),
         )
 

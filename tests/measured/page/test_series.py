@@ -5,10 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from crackfront.analysis.estimate import Estimate
+from crackfront.analysis.estimate import UNKNOWN, Estimate
 from crackfront.measured.page.series import SeriesPoint, series_figure
-
-NONE = Estimate(*[math.nan] * 4)
 
 
 def points():
@@ -17,9 +15,9 @@ def points():
     bare = Estimate(9e-3, math.nan, math.nan, math.nan)
     return [
         SeriesPoint("A", "film", known, other, is_lower_bound=False),
-        SeriesPoint("B", "film", known, NONE, is_lower_bound=True),
-        SeriesPoint("C", "glass", NONE, bare, is_lower_bound=False),
-        SeriesPoint("D", "glass", NONE, NONE, is_lower_bound=False),
+        SeriesPoint("B", "film", known, UNKNOWN, is_lower_bound=True),
+        SeriesPoint("C", "glass", UNKNOWN, bare, is_lower_bound=False),
+        SeriesPoint("D", "glass", UNKNOWN, UNKNOWN, is_lower_bound=False),
     ]
 
 
@@ -58,5 +56,7 @@ def test_groups_have_a_marker_and_a_colour_and_the_legend_names_them():
     assert looks[0] == looks[1] == looks[2] != looks[3]
     legend = [text.get_text() for text in axes.get_legend().get_texts()]
     assert legend == ["film", "glass", "predicted", "measured"]
-    [alone] = series_figure([SeriesPoint("A", "", NONE, NONE, is_lower_bound=False)], "w_retr").axes
+    [alone] = series_figure(
+        [SeriesPoint("A", "", UNKNOWN, UNKNOWN, is_lower_bound=False)], "w_retr"
+    ).axes
     assert alone.get_legend() is None
