@@ -13,11 +13,11 @@ from os import PathLike
 from pathlib import Path
 from typing import Annotated, Any, Literal, TypeVar, get_args
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, ValidationError, ValidationInfo
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, ValidationInfo
 from pydantic_core import ErrorDetails
 
 from crackfront.core.arguments import check_type, nearest_name
-from crackfront.core.bounds import SI, Range, check_within
+from crackfront.core.bounds import SI, check_within
 from crackfront.core.units import Scales
 from crackfront.core.words import counted
 from crackfront.surfaces.written_units import is_unit, si_value
@@ -205,20 +205,6 @@ def quantity(unit: str, name: str, example: str) -> BeforeValidator:
     return BeforeValidator(checked)
 
 
-def number(bounds: Range) -> BeforeValidator:
-    """Validator of numbers within bounds."""
-
-    def checked(value: Any, info: ValidationInfo) -> float:
-        try:
-            converted = float(value)
-        except (TypeError, ValueError) as error:
-            raise ValueError(f"{_named(info)} is {value!r}; write a number") from error
-        check_within(_named(info), converted, bounds)
-        return converted
-
-    return BeforeValidator(checked)
-
-
 def _text(value: Any, info: ValidationInfo) -> str:
     """Text, also from a whole number."""
     check_type(_named(info), value, (str, Integral), "a text or a number")
@@ -401,7 +387,7 @@ class SelfAffineOptions(Options):
     roll_off: Length | None = None
     """Roll-off wavelength, instead of the correlation length."""
 
-    hurst: Annotated[float, number(Range(1e-3, 1.0))] | None = None
+    hurst: Annotated[float, Field(ge=1e-3, le=1)] | None = None
     """Hurst exponent, as in 0.8."""
 
     short_cutoff: Length | None = None
@@ -414,7 +400,7 @@ class SphereOptions(Options):
     modulus: Annotated[float, quantity("Pa", "pressure", "0.7MPa")] | None = None
     """Young's modulus, as in 0.7MPa."""
 
-    poisson: Annotated[float, number(Range(-0.99, 0.5))] | None = None
+    poisson: Annotated[float, Field(ge=-0.99, le=0.5)] | None = None
     """Poisson's ratio, as in 0.5."""
 
     radius: Length | None = None
