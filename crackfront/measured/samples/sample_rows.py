@@ -73,7 +73,7 @@ def _table_rows(path: Path) -> Iterator[tuple[int, dict[str, Any]]]:
         for name, cell in row.items():
             if name not in _NAMES and is_number(cell):
                 number = cell.replace(",", ".") if has_decimal_commas else cell
-                row[name] = _with_unit(number, units[name])
+                row[name] = number + units[name]
         yield line, row
 
 
@@ -114,11 +114,6 @@ def _name_and_unit(each: Heading, where: str) -> tuple[str, str]:
     return re.sub(r"[\s-]+", "_", each.name.lower()), each.unit
 
 
-def _with_unit(cell: str, unit: str) -> str:
-    """A cell with the unit of its heading, if it is a number."""
-    return cell + unit if is_number(cell) else cell
-
-
 def _yaml_rows(path: Path) -> Iterator[tuple[int, dict[str, Any]]]:
     """Line and content of every sample of a YAML file."""
     try:
@@ -137,16 +132,13 @@ def _yaml_rows(path: Path) -> Iterator[tuple[int, dict[str, Any]]]:
             f"{path} lacks a list of samples; write 'samples:' with '- sample: A' below"
         )
     for row in rows:
-        where = f"{path}, line {row.lc.line + 1}"
-        cells = {
-            _name_and_unit(heading(str(name)), where): value
-            for name, value in row.items()
-            if value is not None
-        }
-        yield (
-            row.lc.line + 1,
-            {
-                name: list(value) if isinstance(value, list) else _with_unit(str(value), unit)
-                for (name, unit), value in cells.items()
-            },
-        )
+        line = row.lc.line + 1
+        cells: dict[str, Any] = {}
+        for key, value in row.items():
+            if value is not None:
+                name, unit = _name_and_unit(heading(str(key)), f"{path}, line {line}")
+                if isinstance(value, list):
+                    cells[name] = list(value)
+                else:
+                    cells[name] = f"{value}{unit}" if is_number(str(value)) else str(value)
+        yield line, cells
