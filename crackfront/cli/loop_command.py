@@ -137,7 +137,7 @@ def loop(
     Options of reading, from --channel to --longest, are the same as in `crackfront predict` and
     apply to the --scans.
     """
-    from crackfront.measured.loops.simulated_loop import is_netcdf
+    from crackfront.measured.scan.netcdf import is_netcdf
 
     if scans and work_of_adhesion is None:
         raise ValueError("a prediction for --scans needs w_int; give --work-of-adhesion")

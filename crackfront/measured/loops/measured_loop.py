@@ -16,7 +16,8 @@ from crackfront.measured.loops.analysis import analyse_loop
 from crackfront.measured.loops.recording import UNITS, Recording, read_recording
 from crackfront.measured.loops.result import MeasuredLoop
 from crackfront.measured.loops.rig import Rig
-from crackfront.measured.loops.simulated_loop import is_netcdf, simulated_loop
+from crackfront.measured.loops.simulated_loop import simulated_loop
+from crackfront.measured.scan.netcdf import is_netcdf
 from crackfront.simulate.storage import read_dataset
 from crackfront.surfaces.scales import in_si
 from crackfront.surfaces.written_units import unit_value

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from pathlib import Path
 from typing import Any, get_args
 
 import numpy as np
@@ -24,9 +23,6 @@ from crackfront.measured.loops.result import MeasuredLoop
 from crackfront.simulate.cycle_files import cycle_record
 from crackfront.surfaces.si_units import in_reduced_units, stated_scales
 
-_NETCDF = (b"CDF\x01", b"CDF\x02", b"CDF\x05", b"\x89HDF")
-"""First bytes of netCDF files."""
-
 _REDUCED = Scales(1.0, WORK_OF_ADHESION, CONTACT_MODULUS)
 """The sphere whose lengths and forces in SI are the same numbers as in reduced units."""
 
@@ -42,12 +38,6 @@ _OPEN = (
     "The energy lost is not known: the cycle does not lead from the first contact at penetration 0 "
     "to the loss of contact."
 )
-
-
-def is_netcdf(path: Path) -> bool:
-    """Whether a file is netCDF, as simulated cycles are; OSError if it cannot be opened."""
-    with path.open("rb") as file:
-        return file.read(4).startswith(_NETCDF)
 
 
 def simulated_loop(cycle: Dataset, name: str = "the cycle") -> MeasuredLoop:

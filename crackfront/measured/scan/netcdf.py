@@ -11,8 +11,16 @@ from crackfront.measured.scan.grids_reader import Grid
 from crackfront.measured.scan.points import Points, even_line
 from crackfront.surfaces.written_units import unit_value
 
-_BEGINS = (b"CDF\x01", b"CDF\x02", b"CDF\x05", b"\x89HDF\r\n\x1a\n")
+_BEGINS = (b"CDF\x01", b"CDF\x02", b"CDF\x05", b"\x89HDF")
+"""First bytes of netCDF files."""
+
 _SUFFIXES = {".nc", ".nc4", ".cdf", ".netcdf"}
+
+
+def is_netcdf(path: Path) -> bool:
+    """Whether a file is netCDF; OSError if it cannot be opened."""
+    with path.open("rb") as file:
+        return file.read(4) in _BEGINS
 
 
 def netcdf_grids(path: Path) -> list[Grid]:
@@ -20,9 +28,7 @@ def netcdf_grids(path: Path) -> list[Grid]:
 
     ValueError, of one sentence, where coordinates are not evenly spaced or have no unit of length.
     """
-    with path.open("rb") as file:
-        begin = file.read(8)
-    if path.suffix.lower() not in _SUFFIXES or not begin.startswith(_BEGINS):
+    if path.suffix.lower() not in _SUFFIXES or not is_netcdf(path):
         return []
     import netCDF4
 
