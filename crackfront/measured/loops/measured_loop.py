@@ -22,6 +22,9 @@ from crackfront.simulate.storage import read_dataset
 from crackfront.surfaces.scales import in_si
 from crackfront.surfaces.written_units import unit_value
 
+_SIMULATED = {"penetration", "pinning_force"}
+"""Variables one of which every simulated cycle has, and no measured loop."""
+
 
 def measured_loop(
     loop: str | PathLike[str] | Mapping[str, ArrayLike] | Dataset,
@@ -112,10 +115,6 @@ def measured_loop(
     return analyse_loop(_recording(loop), rig)
 
 
-_SIMULATED = {"penetration", "pinning_force"}
-"""Variables one of which every simulated cycle has, and no measured loop."""
-
-
 def _check_no_rig(**arguments: object) -> None:
     """Raise ValueError if an argument describes the rig of a simulated cycle, which has none."""
     if names := [name for name, value in arguments.items() if value is not None]:
@@ -142,15 +141,10 @@ def _window(window: tuple[float | str, float | str]) -> tuple[float, float]:
 def _recording(arrays: Mapping[str, ArrayLike] | Dataset) -> Recording:
     """Columns of arrays by their names; other variables of a dataset, as a time, are left out."""
     columns = {name: arrays[name] for name in UNITS if arrays.get(name) is not None}
-    if isinstance(arrays, Dataset):
-        if len(columns) < 2:
-            raise ValueError(
-                f"the dataset has {', '.join(map(str, arrays)) or 'no variables'}; a measured loop "
-                f"needs two of {', '.join(UNITS)}"
-            )
-    elif unknown := set(map(str, arrays)) - set(UNITS):
+    unknown = set(map(str, arrays)) - set(UNITS)
+    if unknown and not isinstance(arrays, Dataset):
         raise ValueError(
-            f"a loop lacks {', '.join(sorted(unknown))}; give two of {', '.join(UNITS)}"
+            f"a loop has no {', '.join(sorted(unknown))}; give two of {', '.join(UNITS)}"
         )
     force, radius, displacement = (
         _column(name, columns[name]) if name in columns else None for name in UNITS

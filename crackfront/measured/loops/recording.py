@@ -45,11 +45,12 @@ class Recording:
     displacement: Array | None
 
     def __post_init__(self) -> None:
-        columns = [getattr(self, name) for name in UNITS if getattr(self, name) is not None]
+        names = [name for name in UNITS if getattr(self, name) is not None]
+        columns = [getattr(self, name) for name in names]
         if len(columns) < 2:
             raise ValueError(
-                f"a loop needs two of {', '.join(UNITS)}, and has {len(columns)}; name its "
-                "columns, as in --force 'Load (mN)'"
+                f"a loop needs two of {', '.join(UNITS)}, and has {' and '.join(names) or 'none'}; "
+                "give another one"
             )
         if len({column.shape for column in columns}) > 1 or columns[0].ndim != 1:
             raise ValueError(
