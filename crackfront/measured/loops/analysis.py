@@ -6,7 +6,6 @@ import math
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crackfront.analysis.estimate import UNKNOWN, Estimate
 from crackfront.analysis.steady_adhesion import Branches
@@ -83,7 +82,7 @@ def analyse_loop(recording: Recording, rig: Rig) -> MeasuredLoop:
         contact_radius=contact.radius,
         work_of_adhesion=contact.work_of_adhesion,
         direction=_direction(steady.branches, contact.force.size),
-        in_window=_in_window(steady.averaged, contact.force.size),
+        in_window=np.isin(np.arange(contact.force.size), np.concatenate(steady.averaged)),
         w_appr=works.w_appr,
         w_retr=works.w_retr,
         hysteresis=works.hysteresis,
@@ -189,10 +188,3 @@ def _direction(branches: Branches, n_row: int) -> Array:
     direction[branches[0]] = 1
     direction[branches[1]] = -1
     return direction
-
-
-def _in_window(averaged: Branches, n_row: int) -> NDArray[np.bool_]:
-    """Whether each row is averaged."""
-    inside = np.zeros(n_row, bool)
-    inside[np.concatenate(averaged)] = True
-    return inside

@@ -87,8 +87,6 @@ def simulated_loop(cycle: Dataset, name: str = "the cycle") -> MeasuredLoop:
     if steady.sentence:
         raise ValueError(f"{name} lacks works of adhesion: {steady.sentence}")
     averaged, _, _ = steady_branches(states, states.mean_radius, "radii", length)
-    in_window = np.zeros(states.direction.size, bool)
-    in_window[np.concatenate(averaged)] = True
     sphere, unit = (_REDUCED, 1.0) if scales is None else (scales, scales.work_of_adhesion)
     modulus, pull = sphere.contact_modulus, -float(np.min(states.force)) * sphere.force
     return MeasuredLoop(
@@ -96,7 +94,7 @@ def simulated_loop(cycle: Dataset, name: str = "the cycle") -> MeasuredLoop:
         contact_radius=states.mean_radius * sphere.lateral,
         work_of_adhesion=states.apparent_work_of_adhesion * unit,
         direction=states.direction,
-        in_window=in_window,
+        in_window=np.isin(np.arange(states.direction.size), np.concatenate(averaged)),
         w_appr=_estimate(steady.w_appr, steady.w_appr_error, unit),
         w_retr=_estimate(steady.w_retr, steady.w_retr_error, unit),
         hysteresis=_estimate(steady.hysteresis, steady.hysteresis_error, unit),
