@@ -69,20 +69,26 @@ def raw_scan(path: Path, options: ReadingOptions, height_scale: float = 1.0) -> 
         level = library_scan(level.heights(), sides, info=raw.info)
     if options.height_unit is not None:
         height_unit = length_unit("--height-unit", options.height_unit)
-        heights, sides = level.heights(), tuple(map(float, level.physical_sizes))
-        if channel.unit is not None and are_possible_heights(heights, sides):
+        if channel.unit is not None and are_possible_heights(level.heights(), _sides(level)):
             raise ValueError(
                 f"{path} states heights in {channel.unit}, which are possible; leave out "
                 f"--height-unit {options.height_unit}"
             )
         [factor] = in_metres(height_unit, 1.0)
-        heights = factor * raw.heights()
-        level = library_scan(heights, sides, periodic=bool(level.is_periodic), info=raw.info)
+        level = _with_heights(level, factor * raw.heights(), raw.info)
     if height_scale != 1:
-        sides = tuple(map(float, level.physical_sizes))
-        heights = height_scale * level.heights()
-        level = library_scan(heights, sides, periodic=bool(level.is_periodic), info=raw.info)
+        level = _with_heights(level, height_scale * level.heights(), raw.info)
     return RawScan(level, reader.format(), name)
+
+
+def _sides(level: Any) -> tuple[float, ...]:
+    """Sides of a scan of the library, in its unit."""
+    return tuple(map(float, level.physical_sizes))
+
+
+def _with_heights(level: Any, heights: np.ndarray[Any, Any], info: dict[str, Any]) -> Any:
+    """A scan in metres with other heights on its points."""
+    return library_scan(heights, _sides(level), periodic=bool(level.is_periodic), info=info)
 
 
 @silenced()

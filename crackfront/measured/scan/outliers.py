@@ -107,33 +107,44 @@ def _spikes(heights: Heights) -> PointMask:
     is_spike = np.zeros(data.shape, dtype=bool)
     steps = np.abs(np.diff(data, axis=0))
     both = is_present[1:] & is_present[:-1]
-    sample = steps[:: max(1, steps.size // _MOST_SAMPLES)]
-    sample = sample[both[:: max(1, steps.size // _MOST_SAMPLES)]]
-    usual = _RMS_OF_QUANTILE * float(np.quantile(sample, 0.9)) if sample.size else 0.0
-    usual = usual or float(np.min(steps[both & (steps > 0)], initial=np.inf))
+    usual = _usual_step(steps, both)
     large = (steps > _SPIKE * usual) & both
     if not large.any():
         return is_spike
-    near = np.zeros(data.shape, dtype=bool)
-    near[1:] |= large
-    near[:-1] |= large
-    near[1:] &= large | ~both
-    near[:-1] &= large | ~both
-    places = np.nonzero(near & is_present)
+    # Candidates have a large step, and no small one, to a neighbour along the first axis.
+    candidate = np.zeros(data.shape, dtype=bool)
+    candidate[1:] |= large
+    candidate[:-1] |= large
+    candidate[1:] &= large | ~both
+    candidate[:-1] &= large | ~both
+    places = np.nonzero(candidate & is_present)
     if not places[0].size:
         return is_spike
+    neighbours = _neighbours(np.where(is_present, data, np.nan), places)
+    distances = np.abs(neighbours - data[places])
+    least = np.min(distances, axis=0, where=np.isfinite(distances), initial=np.inf)
+    spread = np.diff(np.nanquantile(neighbours, [0.25, 0.75], axis=0), axis=0)[0]
+    is_spike[places] = np.isfinite(least) & (least > np.maximum(_SPIKE * usual, _SHARP * spread))
+    return is_spike
+
+
+def _usual_step(steps: NDArray[Any], both: PointMask) -> float:
+    """Rms difference of neighbours that are `both` present, or the least if most are equal."""
+    every = max(1, steps.size // _MOST_SAMPLES)
+    sample = steps[::every][both[::every]]
+    usual = _RMS_OF_QUANTILE * float(np.quantile(sample, 0.9)) if sample.size else 0.0
+    return usual or float(np.min(steps[both & (steps > 0)], initial=np.inf))
+
+
+def _neighbours(data: NDArray[Any], places: tuple[NDArray[np.int64], ...]) -> NDArray[Any]:
+    """Heights around some points, NaN outside, (n_neighbour, n): 8 on a map, 4 on a line."""
     reach = 1 if data.ndim > 1 else 2
-    around = np.pad(np.where(is_present, data, np.nan), reach, constant_values=np.nan)
+    around = np.pad(data, reach, constant_values=np.nan)
     shifts = itertools.product(range(2 * reach + 1), repeat=data.ndim)
-    neighbours = np.array(
+    return np.array(
         [
             around[tuple(at + step for at, step in zip(places, shift, strict=True))]
             for shift in shifts
             if any(step != reach for step in shift)
         ]
     )
-    distances = np.abs(neighbours - data[places])
-    least = np.min(distances, axis=0, where=np.isfinite(distances), initial=np.inf)
-    spread = np.diff(np.nanquantile(neighbours, [0.25, 0.75], axis=0), axis=0)[0]
-    is_spike[places] = np.isfinite(least) & (least > np.maximum(_SPIKE * usual, _SHARP * spread))
-    return is_spike

@@ -64,8 +64,11 @@ _SCANNING_PROBES = {"di", "ezd", "ibw", "jpk", "mdt", "mi", "ps", "wsxm"}
 _TIP = 10e-9
 """Radius of a tip of which nothing is known (Units: m)."""
 
-_DEEP, _HIDDEN = -1.0, 0.7
-"""Skewness below which valleys are narrow, and ln of the largest e_el over what a tip finds."""
+_DEEP = -1.0
+"""Skewness of the heights below which valleys are deep, and a tip may not reach into them."""
+
+_HIDDEN = 0.7
+"""Ln of the largest e_el of such a surface over the recorded one."""
 
 
 @dataclass(frozen=True, slots=True)
