@@ -219,7 +219,7 @@ def analysed_scan(
     # Grooves along an axis look like rows that the instrument has shifted, but are real.
     may_have_stripes = not measurement.is_line and periodic[0] < MOST_PERIODIC
     stripe_axes = stripes(waves, measurement.shortest) if may_have_stripes else ()
-    striped, stripes_share = None, 0.0
+    striped = None
     if stripe_axes:
         striped = np.any([waves.near_axis(axis) for axis in stripe_axes], axis=0)
     density = waves.density(striped)
@@ -227,11 +227,13 @@ def analysed_scan(
     short_waves = _short_waves(measurement, density)
     lower = list(_lower_limits(measurement, short_waves))
     upper = list(_upper_limits(measurement, density, alternatives))
+    # Points and levelling, the first limits, also narrow a band that is named for several scans.
     if shortest is not None:
-        lower = [BandLimit("shortest", "named", shortest), *lower[: int(among_others)]]
+        lower = [BandLimit("shortest", "named", shortest), *(lower[:1] if among_others else ())]
     if longest is not None:
-        upper = [BandLimit("longest", "named", longest), *upper[: int(among_others)]]
+        upper = [BandLimit("longest", "named", longest), *(upper[:1] if among_others else ())]
     low, high = _ends(measurement, density, lower, upper)
+    stripes_share = 0.0
     if striped is not None:
         stripes_share = energy_share(waves, striped, low.wavelength, high.wavelength)
     ends = _spectrum_ends(measurement, short_waves, low, high)
@@ -253,14 +255,14 @@ def analysed_scan(
     )
     profiles = restored_periodogram(measurement, pairs, is_profile=True)
     return Scan(
-        measurement,
-        waves,
-        density,
-        alternatives,
-        unevenness(measurement),
-        band,
-        profiles.density().within(*band.wavelengths),
-        weight_of_gaps(measurement),
+        measurement=measurement,
+        waves=waves,
+        density=density,
+        alternatives=alternatives,
+        unevenness=unevenness(measurement),
+        band=band,
+        profile=profiles.density().within(*band.wavelengths),
+        missing_weight=weight_of_gaps(measurement),
     )
 
 
