@@ -260,10 +260,7 @@ def log_density_slopes(surface: Array, wavevector: Array) -> Array:
 
 def log_projection_with_slopes(surface: Array, wavevector: Array) -> tuple[Array, Array]:
     """Logarithm of the projection of the model, and its derivatives by the parameters of P."""
-    waves, weights = _projector(tuple(wavevector.tolist()))
-    scaled = log_density(surface, waves) + 2 * np.log(waves)
-    highest = np.max(scaled, axis=1, keepdims=True)
-    power = np.exp(scaled - highest)
+    waves, weights, power, highest = _scaled_power(surface, wavevector)
     total = power @ weights.T
     parts = np.einsum(
         "nkp,wk->nwp", power[..., None] * log_density_slopes(surface, waves), weights, optimize=True
@@ -273,10 +270,16 @@ def log_projection_with_slopes(surface: Array, wavevector: Array) -> tuple[Array
 
 def log_projection(surface: Array, wavevector: Array) -> Array:
     """Logarithm of the projection of the model on a line, (n, n_wavevector)."""
+    _, weights, power, highest = _scaled_power(surface, wavevector)
+    return np.asarray(np.log(power @ weights.T) + highest)
+
+
+def _scaled_power(surface: Array, wavevector: Array) -> tuple[Array, Array, Array, Array]:
+    """Wavevectors k and weights of a projection, k^2 P over its largest value, and ln of that."""
     waves, weights = _projector(tuple(wavevector.tolist()))
     scaled = log_density(surface, waves) + 2 * np.log(waves)
     highest = np.max(scaled, axis=1, keepdims=True)
-    return np.asarray(np.log(np.exp(scaled - highest) @ weights.T) + highest)
+    return waves, weights, np.exp(scaled - highest), highest
 
 
 @functools.lru_cache(maxsize=64)
