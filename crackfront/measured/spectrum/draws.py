@@ -19,7 +19,7 @@ from crackfront.analysis.estimate import Estimate, quantiles
 from crackfront.core.arrays import Array
 from crackfront.measured.density.bands import Scan
 from crackfront.measured.density.densities import Density, bin_numbers
-from crackfront.measured.spectrum.fit import Continuation, Fit, fit_of
+from crackfront.measured.spectrum.fit import INTERVAL, Continuation, Fit, fit_of
 from crackfront.measured.spectrum.quadrature import Quadrature
 
 ORDERS = (0.0, 0.5, 1.0)
@@ -56,9 +56,6 @@ _RARE_PLACES = 1.5
 A scan has too few of the rare places that dominate e_el.
 """
 
-_INTERVAL = (0.025, 0.5, 0.975)
-"""Quantiles at the lower end, median and upper end of an interval."""
-
 
 @dataclass(frozen=True, slots=True)
 class Draws:
@@ -85,7 +82,7 @@ class Draws:
 
     def estimate(self, values: Array) -> Estimate[float]:
         """Median over the draws of a positive number, with its 95% interval."""
-        low, value, high = quantiles(values, self.weight, _INTERVAL).tolist()
+        low, value, high = quantiles(values, self.weight, INTERVAL).tolist()
         mean = float(np.sum(self.weight * np.log(values)))
         spread = float(np.sum(self.weight * (np.log(values) - mean) ** 2)) ** 0.5
         return Estimate(value, value * spread, low, high)
@@ -123,9 +120,9 @@ class Draws:
         uncertain, however many draws there are elsewhere.
         """
         logarithm = np.log(self.estimated[1])
-        ends = quantiles(logarithm, self.weight, _INTERVAL)
+        ends = quantiles(logarithm, self.weight, INTERVAL)
         errors = []
-        for probability, end in zip(_INTERVAL, ends, strict=True):
+        for probability, end in zip(INTERVAL, ends, strict=True):
             below = logarithm <= end
             error = math.sqrt(np.sum(self.weight**2 * (below - probability) ** 2))
             probabilities = np.clip([probability - error, probability + error], 0.0, 1.0)
@@ -312,7 +309,7 @@ def _interval(grid: Array, draws: _Drawn, weight: Array) -> tuple[Array, Array]:
     for column, wavevector in enumerate(grid):
         reaching = draws.end >= min(wavevector, median_end)
         values = draws.table[reaching, column]
-        ends[:, column] = quantiles(values, weight[reaching], (0.025, 0.975))
+        ends[:, column] = quantiles(values, weight[reaching], INTERVAL[::2])
     low, high = np.exp(ends)
     return low, high
 

@@ -45,7 +45,7 @@ _LEAST_CURVATURE = -2.0
 _FIRST_HURST = np.array([0.7, 0.7])
 """Hurst exponents at long and short waves with which fits begin."""
 
-_INTERVAL = (0.025, 0.5, 0.975)
+INTERVAL = (0.025, 0.5, 0.975)
 """Quantiles at the lower end, median and upper end of an interval."""
 
 
@@ -116,7 +116,7 @@ class Fit:
 
     def _estimate(self, values: Array) -> Estimate[float]:
         """Median over the states with its 95% interval."""
-        low, middle, high = quantiles(values, self.weight, _INTERVAL).tolist()
+        low, middle, high = quantiles(values, self.weight, INTERVAL).tolist()
         return Estimate(middle, math.nan, low, high)
 
 
