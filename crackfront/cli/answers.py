@@ -11,6 +11,9 @@ import click
 from crackfront.core.words import in_time
 from crackfront.simulate.jsonable import to_jsonable
 
+_MOMENT = 20.0
+"""Time that needs no announcement. (Units: s)"""
+
 
 class StoppedError(click.ClickException):
     """A command was interrupted; the message says what is stored and how to continue."""
@@ -56,10 +59,6 @@ def announce_compilation(*, err: bool = False) -> None:
 
     sentence = "compiling the solver (once, for half a minute to a minute)"
     when_compiling(lambda: click.echo(sentence, err=err))
-
-
-_MOMENT = 20.0
-"""Time that needs no announcement. (Units: s)"""
 
 
 def announce_cost(seconds: float, *, err: bool = True) -> None:

@@ -11,6 +11,11 @@ from crackfront.cli.answers import echo_answer
 from crackfront.cli.parameters import FILE, as_json, examples
 from crackfront.core.words import counted
 
+_REMEDY = (
+    "remove damaged files, of curves also their file in shards, and run make, which makes them "
+    "again; remove what does not belong to the list, or run crackfront checksums"
+)
+
 
 @click.command(
     epilog=examples("crackfront verify results/default", "crackfront verify default.zip --json")
@@ -40,12 +45,6 @@ def verify(place: Path, as_json: bool) -> None:
             f"{place} is not as it was written: {len(report.damaged)} damaged, "
             f"{len(report.missing)} missing, {len(report.unlisted)} not in the list; {_REMEDY}"
         )
-
-
-_REMEDY = (
-    "remove damaged files, of curves also their file in shards, and run make, which makes them "
-    "again; remove what does not belong to the list, or run crackfront checksums"
-)
 
 
 @click.command(epilog=examples("crackfront checksums results/default"))
