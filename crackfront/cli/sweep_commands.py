@@ -58,6 +58,7 @@ def plan(configuration: Path, output: Path | None, block: int | None, as_json: b
     progress = {item.name: store.progress(sweep, item) for item in sweep.spectra}
     missing = [item for inventory in progress.values() for item in inventory.missing]
     n_missing = sum(inventory.n_missing for inventory in progress.values())
+    warnings = [*steady_part_warnings(sweep)]
     content = {
         "results": store.folder,
         "spectra": [item.name for item in sweep.spectra],
@@ -69,7 +70,7 @@ def plan(configuration: Path, output: Path | None, block: int | None, as_json: b
         "shards": [shard.name for shard in shards],
         "unit_of_lengths": "reduced" if sweep.scales is None else "m",
         "expected": expected,
-        "doubts": (warnings := [*steady_part_warnings(sweep)]),
+        "doubts": warnings,
         **_costs(missing),
     }
     lines = _plan_lines(sweep, store, shards, progress, expected)
@@ -333,9 +334,8 @@ class Progress:
 
 def _progress(inventories: Mapping[str, Inventory]) -> list[Progress]:
     """Progress of each spectrum; the time that is left assumes the speed so far."""
-    spent, expected = (
-        sum(getattr(inventory, name) for inventory in inventories.values()) for name in _SPENT
-    )
+    spent = sum(inventory.cpu_seconds for inventory in inventories.values())
+    expected = sum(inventory.expected_seconds for inventory in inventories.values())
     pace = spent / expected if spent else 1.0
     return [
         Progress(
@@ -347,10 +347,6 @@ def _progress(inventories: Mapping[str, Inventory]) -> list[Progress]:
         )
         for name, inventory in inventories.items()
     ]
-
-
-_SPENT = "cpu_seconds", "expected_seconds"
-"""Fields of an inventory: processor time of what is stored, and what was expected for it."""
 
 
 def _status_lines(spectra: Sequence[Progress], running: Sequence[str]) -> Iterator[str]:
