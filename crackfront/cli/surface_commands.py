@@ -17,6 +17,7 @@ from crackfront.cli.output_files import (
 )
 from crackfront.cli.parameters import (
     FILE,
+    Command,
     as_json,
     check_needed_option,
     check_together,
@@ -47,7 +48,6 @@ if TYPE_CHECKING:
     from crackfront.measured.spectrum.measured_surface import MeasuredSurface
     from crackfront.measured.spectrum.stated import Surface
 
-Command = Callable[..., None]
 Say = Callable[[str], None]
 
 
@@ -165,21 +165,16 @@ def predict(
     check_overwriting(inputs, {"--csv": table, "--figure": figure})
     check_replaced_table("--csv", table, "scan")
     if table is not None:
-        if not scans:
-            raise ValueError("--csv writes a row for each scan; name scans")
         if as_json or simulate or is_long or panel or figure:
             raise ValueError("--csv writes rows alone; leave out what prints, draws or simulates")
-        from crackfront.measured.samples.sample import scans_as_samples
-
-        reading = reading_options(for_files(options, scans), len(scans), "--")
-        samples = scans_as_samples(scans, reading, scales, theory)
-        results = write_samples(table, samples, "scan")
-        context.exit(max(exit_code(result.outcome, strict) for result in results))
+        outcomes = _write_rows(table, scans, options, scales, theory)
+        context.exit(max(exit_code(outcome, strict) for outcome in outcomes))
     stem = Path("results/predict", name) if figure is None else figure
     if not no_figure:
         check_writable(stem.parent)
     surface: Surface = _surface(scans, options) if scans else _stated_surface(psd, options)
-    (verdict, prediction), outcome = check_and_predict(surface, scales, theory), None
+    verdict, prediction = check_and_predict(surface, scales, theory)
+    outcome = None
     say: Say = (lambda _: None) if as_json else click.echo
     if prediction is not None:
         say(repr(prediction))
@@ -217,6 +212,23 @@ def _origin(scans: tuple[Path, ...], psd: Path | None, options: Mapping[str, Any
     if not scans and reading:
         raise ValueError(f"--{reading[0].replace('_', '-')} is of scans; leave it out")
     return scans[0].stem if scans else "numbers" if psd is None else psd.stem
+
+
+def _write_rows(
+    table: Path,
+    scans: tuple[Path, ...],
+    options: Mapping[str, Any],
+    scales: Scales,
+    theory: PredictionOptions,
+) -> list[str]:
+    """Write a row for each scan, as for a sample; their outcomes."""
+    from crackfront.measured.samples.sample import scans_as_samples
+
+    if not scans:
+        raise ValueError("--csv writes a row for each scan; name scans")
+    reading = reading_options(for_files(options, scans), len(scans), "--")
+    samples = scans_as_samples(scans, reading, scales, theory)
+    return [result.outcome for result in write_samples(table, samples, "scan")]
 
 
 def _stated_surface(psd: Path | None, options: Mapping[str, Any]) -> Surface:
@@ -303,5 +315,5 @@ def _surface(scans: tuple[Path, ...], options: Mapping[str, Any]) -> MeasuredSur
 
 
 def _scales(options: Mapping[str, Any]) -> Scales:
-    """Scene of the sphere of a command, in SI units."""
+    """Scales of the sphere of a command, in SI units."""
     return sphere_scales(checked_options(SphereOptions, options, "--"), "--")
