@@ -156,8 +156,9 @@ def _shape(text: str) -> SelfAffineSpectrum:
 
     try:
         numbers = [float(part) for part in text.split(",")]
-        # The Hurst exponent has no effect on a flat spectrum.
-        short_cutoff, roll_off, hurst = (*numbers * 2, 1.0) if len(numbers) == 1 else numbers
+        if len(numbers) == 1:  # flat, so that the Hurst exponent has no effect
+            numbers = [numbers[0], numbers[0], 1.0]
+        short_cutoff, roll_off, hurst = numbers
     except ValueError as error:
         raise ValueError(
             f"--spectrum is {text!r}; write short cutoff, roll-off and Hurst exponent, as in "
