@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import collections
+import itertools
 import re
+import statistics
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -147,10 +149,7 @@ def number_tables(path: Path) -> NumberTables | None:
 
 def _is_row_of_numbers(cells: Sequence[str]) -> bool:
     """Whether cells are numbers, or without a value."""
-    try:
-        return len(list(map(float, cells))) > 0
-    except ValueError:
-        return any(cells) and all(not cell or _is_value(cell) for cell in cells)
+    return any(cells) and all(not cell or _is_value(cell) for cell in cells)
 
 
 def _is_value(cell: str) -> bool:
@@ -228,8 +227,7 @@ def _check_rows(
     path: Path, lines: Sequence[str], table: Sequence[Sequence[str]], is_row: Sequence[bool]
 ) -> None:
     """Raise at the first line that is meant as a row of numbers and is not one."""
-    counts = [len(cells) for cells, is_numbers in zip(table, is_row, strict=True) if is_numbers]
-    [(width, _)] = collections.Counter(counts).most_common(1)
+    width = statistics.mode(map(len, itertools.compress(table, is_row)))
     first = list(is_row).index(True)
     before = 0
     for number, (line, cells) in enumerate(zip(lines, table, strict=True)):
@@ -277,4 +275,6 @@ def _without_counts(cells: DataFrame) -> DataFrame:
 
 def _are_counts(cells: Sequence[str]) -> bool:
     """Whether cells are consecutive whole numbers from 0 or 1."""
-    return list(cells) in ([*map(str, range(start, start + len(cells)))] for start in (0, 1))
+    return any(
+        all(cell == str(number) for number, cell in enumerate(cells, start)) for start in (0, 1)
+    )
