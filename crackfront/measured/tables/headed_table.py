@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import itertools
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -87,14 +88,14 @@ def table_of_texts(path: Path) -> Table:
         If the file cannot be opened.
     """
     lines = _text_lines(path)
-    is_heading = (line.strip() and not line.startswith(_COMMENT) for line in lines)
-    first = next((number for number, is_first in enumerate(is_heading) if is_first), None)
-    if first is None:
+    above = tuple(itertools.takewhile(lambda line: not line.strip() or line[0] == _COMMENT, lines))
+    first = len(above)
+    if first == len(lines):
         return _table(path, [], ",", 0, ())
     separator = max("\t;,", key=lines[first].count)
     names = next(csv.reader(lines[first:], delimiter=separator))
     table = _table(path, lines, separator, first + 1, tuple(map(heading, names)))
-    return replace(table, above=tuple(lines[:first]))
+    return replace(table, above=above)
 
 
 def _text_lines(path: Path) -> list[str]:
