@@ -11,7 +11,7 @@ import numpy as np
 
 from crackfront.core.arrays import Array
 from crackfront.measured.tables.headed_table import table_of_numbers
-from crackfront.measured.tables.headings import Heading, listed, matching, plain_name
+from crackfront.measured.tables.headings import Heading, listed, matching
 from crackfront.measured.tables.table import Table
 from crackfront.surfaces.written_units import is_unit, unit_value
 
@@ -106,7 +106,7 @@ def _places(table: Table, named: Mapping[str, str]) -> dict[str, int]:
     """Places of the columns of force, radius and displacement that a table has."""
     headings = table.headings
     requested = {name: text.strip().lower() for name, text in named.items()}
-    written = [{heading.text.lower(), plain_name(heading)} for heading in headings]
+    written = [{heading.text.lower(), heading.plain_name} for heading in headings]
     places = {}
     for name, pattern in _NAMES.items():
         if name in requested:
@@ -121,7 +121,7 @@ def _places(table: Table, named: Mapping[str, str]) -> dict[str, int]:
                 n for n in matching(headings, pattern) if not written[n] & {*requested.values()}
             ]
         # An area next to the radius has the same values again.
-        radii = [n for n in candidates if plain_name(headings[n]).endswith("radius")]
+        radii = [n for n in candidates if headings[n].plain_name.endswith("radius")]
         candidates = radii if len(radii) == 1 else candidates
         if len(candidates) > 1:
             option = "contact-radius" if name == "radius" else name
@@ -160,12 +160,12 @@ def _converted(name: str, heading: Heading, values: Array, unit: str) -> Array:
     if _is_area(name, heading, unit):
         return np.sqrt(np.maximum(values * unit_value(unit, "m^2"), 0.0) / np.pi)
     column = values * unit_value(unit, UNITS[name])
-    return column / 2 if name == "radius" and "diameter" in plain_name(heading) else column
+    return column / 2 if name == "radius" and "diameter" in heading.plain_name else column
 
 
 def _is_area(name: str, heading: Heading, unit: str) -> bool:
     """Whether a column of radii has areas, by its heading or, if this is not clear, its unit."""
-    named = plain_name(heading)
+    named = heading.plain_name
     if name != "radius" or re.search("radius|diameter", named):
         return False
     return "area" in named or is_unit(unit, "m^2")

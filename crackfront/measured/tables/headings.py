@@ -39,6 +39,11 @@ class Heading:
     unit: str
     """Empty if there is none."""
 
+    @property
+    def plain_name(self) -> str:
+        """The name in lower case and with blanks for underscores."""
+        return self.name.replace("_", " ").strip().lower()
+
 
 def heading(text: str) -> Heading:
     """Name and unit of a column, as in `force (uN)`, `force / uN`, `force_uN` or `Load, uN`.
@@ -140,13 +145,8 @@ def matching(headings: Sequence[Heading], pattern: str) -> list[int]:
     return [
         place
         for place, each in enumerate(headings)
-        if re.fullmatch(pattern, plain_name(each), re.IGNORECASE)
+        if re.fullmatch(pattern, each.plain_name, re.IGNORECASE)
     ]
-
-
-def plain_name(each: Heading) -> str:
-    """Name in a heading, in lower case and with blanks for underscores."""
-    return each.name.replace("_", " ").strip().lower()
 
 
 def listed(headings: Sequence[Heading]) -> str:
