@@ -127,22 +127,21 @@ def self_affine_surface_of(options: SelfAffineOptions) -> StatedSurface:
 
     ValueError if a number is missing, or the numbers contradict each other.
     """
-    rms, hurst = options.rms, options.hurst
+    rms, hurst, length = options.rms, options.hurst, options.correlation_length
     needs = "a self-affine surface needs rms, hurst, and either a correlation length or a roll-off"
-    is_bounded = options.correlation_length is not None or options.roll_off is not None
-    if options.correlation_length is not None and options.roll_off is not None:
+    if length is not None and options.roll_off is not None:
         raise ValueError(f"{needs}; both lengths are named")
-    if rms is None or hurst is None or not is_bounded:
-        required = {"rms": rms, "hurst": hurst, "correlation length": is_bounded or None}
-        missing = [name for name, value in required.items() if value is None]
+    required = {"rms": rms, "hurst": hurst, "correlation length": length or options.roll_off}
+    missing = [name for name, value in required.items() if value is None]
+    if rms is None or hurst is None or missing:
         raise ValueError(f"{needs}; name {' and '.join(missing)}")
     shape = _self_affine_shape(options, rms, hurst)
     cutoff, roll_off = shape.short_cutoff, shape.roll_off
     waves = (roll_off, cutoff) if roll_off > cutoff else (2 * cutoff, cutoff)
     densities = shape.density(2 * np.pi / np.array(waves)).tolist()
     lengths = f"roll-off {prefixed('m', roll_off)}"
-    if options.correlation_length is not None:
-        lengths += f", of a correlation length of {prefixed('m', options.correlation_length)}"
+    if length is not None:
+        lengths += f", of a correlation length of {prefixed('m', length)}"
     return _stated(
         f"rms height {prefixed('m', rms)}, {lengths}, H {hurst:g}",
         TabulatedSpectrum(waves, tuple(densities)),
