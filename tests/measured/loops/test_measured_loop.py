@@ -16,7 +16,7 @@ def test_arrays_and_their_table_are_the_same_loop(tmp_path):
     path.write_text("Force (N),Radius (m)\n" + "".join(f"{f},{a}\n" for f, a in rows))
     known = {"radius": RADIUS, "contact_modulus": MODULUS}
     assert repr(measured_loop(arrays, **known)) == repr(measured_loop(path, **known))
-    with pytest.raises(ValueError, match="lacks speed"):
+    with pytest.raises(ValueError, match="speed; give two of force, radius"):
         measured_loop({"force": whole.force, "speed": whole.force}, **known)
 
 
