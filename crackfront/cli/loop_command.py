@@ -16,6 +16,7 @@ from crackfront.cli.parameters import (
     as_json,
     check_needed_option,
     examples,
+    option_name,
     options_of,
 )
 from crackfront.core.bounds import Range
@@ -150,8 +151,8 @@ def loop(
     contact_modulus = None if modulus is None else modulus / (1 - poisson**2)
     if is_netcdf(path):
         if names := [name for name, value in rig.items() if value]:
-            option = names[0].replace("_", "-")
-            raise ValueError(f"{path} is a simulated cycle without a rig; leave out --{option}")
+            option = option_name(names[0])
+            raise ValueError(f"{path} is a simulated cycle without a rig; leave out {option}")
         result = _simulated(path, radius, contact_modulus, work_of_adhesion, bool(scans))
     else:
         if work_of_adhesion is not None and not scans:
@@ -178,7 +179,7 @@ def _reading(scans: tuple[Path, ...], options: dict[str, Any]) -> dict[str, Any]
     """Options of reading scans that the command names; ValueError without scans."""
     names = named_options(ReadingOptions, options)
     if names and not scans:
-        raise ValueError(f"--{names[0].replace('_', '-')} is of scans; name --scans too")
+        raise ValueError(f"{option_name(names[0])} is of scans; name --scans too")
     reading = for_files({name: options[name] for name in names}, scans)
     reading_options(reading, len(scans), "--")
     return reading

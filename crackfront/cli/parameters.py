@@ -71,7 +71,7 @@ def options_of(record: type[Options], *, required: bool = False) -> Callable[[Co
         for name, field in reversed(record.model_fields.items()):
             marks = [mark for mark in (PER_SCAN, REPEATED) if mark in field.metadata]
             command = click.option(
-                f"--{name.replace('_', '-')}",
+                option_name(name),
                 required=required,
                 multiple=bool(marks),
                 default=field.default or None,
@@ -87,7 +87,9 @@ def check_needed_option(context: click.Context, needed: str, *names: str) -> Non
     if not context.params[needed]:
         for name in names:
             if context.get_parameter_source(name) is not ParameterSource.DEFAULT:
-                raise ValueError(f"{_option(name)} has an effect only with {_option(needed)}")
+                raise ValueError(
+                    f"{option_name(name)} has an effect only with {option_name(needed)}"
+                )
 
 
 def check_together(context: click.Context, decider: str, *names: str) -> None:
@@ -95,9 +97,11 @@ def check_together(context: click.Context, decider: str, *names: str) -> None:
     if context.params[decider]:
         for name in names:
             if context.get_parameter_source(name) is not ParameterSource.DEFAULT:
-                raise ValueError(f"{_option(name)} has no effect with {_option(decider)}; drop one")
+                raise ValueError(
+                    f"{option_name(name)} has no effect with {option_name(decider)}; drop one"
+                )
 
 
-def _option(name: str) -> str:
+def option_name(name: str) -> str:
     """Name of the option of a parameter."""
     return f"--{name.removeprefix('as_').removeprefix('is_').replace('_', '-')}"

@@ -22,6 +22,7 @@ from crackfront.cli.parameters import (
     check_needed_option,
     check_together,
     examples,
+    option_name,
     options_of,
     whole,
 )
@@ -197,7 +198,7 @@ def predict(
 def _origin(scans: tuple[Path, ...], psd: Path | None, options: Mapping[str, Any]) -> str:
     """Name for the figure of a surface; ValueError unless the surface is given in one way."""
     numbers = named_options(SelfAffineOptions, options)
-    number = f"--{numbers[0].replace('_', '-')}" if numbers else "--rms"
+    number = option_name(numbers[0] if numbers else "rms")
     ways = {"SCANS": bool(scans), "--psd": psd is not None, number: bool(numbers)}
     named = [way for way, is_named in ways.items() if is_named]
     if len(named) != 1:
@@ -207,10 +208,10 @@ def _origin(scans: tuple[Path, ...], psd: Path | None, options: Mapping[str, Any
         )
     further = named_options(PsdOptions, options)
     if psd is None and further:
-        raise ValueError(f"--{further[0].replace('_', '-')} is of a density; name it with --psd")
+        raise ValueError(f"{option_name(further[0])} is of a density; name it with --psd")
     reading = named_options(ReadingOptions, options)
     if not scans and reading:
-        raise ValueError(f"--{reading[0].replace('_', '-')} is of scans; leave it out")
+        raise ValueError(f"{option_name(reading[0])} is of scans; leave it out")
     return scans[0].stem if scans else "numbers" if psd is None else psd.stem
 
 
