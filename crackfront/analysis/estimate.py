@@ -59,6 +59,11 @@ UNKNOWN: Estimate[float] = Estimate(math.nan, math.nan, math.nan, math.nan)
 """Estimate of a number that the data do not determine."""
 
 
+def exact_estimate(value: float) -> Estimate[float]:
+    """Estimate of a number without an error."""
+    return Estimate(value, 0.0, value, value)
+
+
 def quantiles(values: Array, weight: Array, part: ArrayLike) -> Array:
     """Weighted quantiles along the first axis; the result has the axis of `part` first.
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 import scipy
 
-from crackfront.analysis.estimate import REACH, Estimate
+from crackfront.analysis.estimate import Estimate, normal_estimate
 from crackfront.analysis.steady_adhesion import Rows
 from crackfront.core.arrays import Array
 
@@ -72,9 +72,8 @@ def pull_off(force: Array, retraction: Rows, errors: Sequence[Array]) -> PullOff
         smoothed = _smoothed(force[rows], width)
     variance = _AT_ENDS * smoothed.variance / width
     variance += sum(float(error[rows[smoothed.place]]) ** 2 for error in errors)
-    value, error = -smoothed.lowest, math.sqrt(variance)
-    reach = REACH * error
-    return PullOff(Estimate(value, error, value - reach, value + reach), math.sqrt(smoothed.noise))
+    force_estimate = normal_estimate(-smoothed.lowest, math.sqrt(variance))
+    return PullOff(force_estimate, math.sqrt(smoothed.noise))
 
 
 def _smoothed(values: Array, width: int) -> _Smoothed:

@@ -9,7 +9,7 @@ from typing import Any, get_args
 import numpy as np
 from xarray import Dataset
 
-from crackfront.analysis.estimate import UNKNOWN, Estimate, normal_estimate
+from crackfront.analysis.estimate import UNKNOWN, Estimate, exact_estimate, normal_estimate
 from crackfront.analysis.steady_adhesion import steady_adhesion, steady_branches
 from crackfront.core.adhesion import FieldKind, correlation_length
 from crackfront.core.arrays import Array
@@ -88,7 +88,6 @@ def simulated_loop(cycle: Dataset, name: str = "the cycle") -> MeasuredLoop:
         raise ValueError(f"{name} lacks works of adhesion: {steady.sentence}")
     averaged, _, _ = steady_branches(states, states.mean_radius, "radii", length)
     sphere, unit = (_REDUCED, 1.0) if scales is None else (scales, scales.work_of_adhesion)
-    modulus, pull = sphere.contact_modulus, -float(np.min(states.force)) * sphere.force
     return MeasuredLoop(
         force=states.force * sphere.force,
         contact_radius=states.mean_radius * sphere.lateral,
@@ -98,11 +97,11 @@ def simulated_loop(cycle: Dataset, name: str = "the cycle") -> MeasuredLoop:
         w_appr=_estimate(steady.w_appr, steady.w_appr_error, unit),
         w_retr=_estimate(steady.w_retr, steady.w_retr_error, unit),
         hysteresis=_estimate(steady.hysteresis, steady.hysteresis_error, unit),
-        contact_modulus=Estimate(modulus, 0.0, modulus, modulus),
+        contact_modulus=exact_estimate(sphere.contact_modulus),
         fitted_modulus=UNKNOWN,
         stiffness=UNKNOWN,
         lost_energy=_lost_energy(record) * unit,
-        pull_off_force=Estimate(pull, 0.0, pull, pull),
+        pull_off_force=exact_estimate(-float(np.min(states.force)) * sphere.force),
         sphere_radius=sphere.radius,
         window=(steady.lowest_radius * sphere.lateral, steady.highest_radius * sphere.lateral),
         remarks=tuple(_remarks(record, is_reduced=scales is None)),

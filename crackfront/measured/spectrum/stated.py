@@ -11,7 +11,7 @@ import numpy as np
 import scipy
 from scipy.special import j0, j1
 
-from crackfront.analysis.estimate import Estimate
+from crackfront.analysis.estimate import exact_estimate
 from crackfront.core.arrays import Array
 from crackfront.core.spectrum import SelfAffineSpectrum, TabulatedSpectrum
 from crackfront.measured.options import SelfAffineOptions
@@ -300,16 +300,12 @@ def _stated(
     origin: str, spectrum: TabulatedSpectrum, shares: Shares, doubts: list[str]
 ) -> StatedSurface:
     """Surface with an exact spectrum, whose measures have intervals of zero width."""
-
-    def exact(number: float) -> Estimate[float]:
-        return Estimate(number, 0.0, number, number)
-
-    half = exact(spectrum.mean_square(0.5))
+    half = exact_estimate(spectrum.mean_square(0.5))
     return StatedSurface(
         measures=tuple(
             RmsMeasure(
                 order,
-                exact(math.sqrt(spectrum.mean_square(order))),
+                exact_estimate(math.sqrt(spectrum.mean_square(order))),
                 *spectrum.dominant_wavelengths(order, DOMINANT_SHARE),
             )
             for order in ORDERS
