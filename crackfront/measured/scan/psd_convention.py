@@ -84,9 +84,8 @@ def stated_convention(series: Table, options: PsdOptions) -> Convention:
     ValueError if something is missing or contradictory; the sentence names the option.
     """
     path, words = series.path, _words(series)
-    abscissa, abscissa_unit = _abscissa(series, options)
-    named = _named_units(options)
-    written = named[1] if named else written_unit(series, 1)
+    first, written = _units(series, options)
+    abscissa, abscissa_unit = _abscissa(series, first, options)
     density_unit = _density_unit(path, written)
     kind, scale = _kind(path, words, density_unit, options)
     is_per_radian = re.search(_PER_LENGTH["wavevector"], written, re.IGNORECASE) is not None
@@ -128,23 +127,22 @@ def written_unit(series: Table, place: int) -> str:
     return series.headings[place].unit if series.headings else ""
 
 
-def _named_units(options: PsdOptions) -> tuple[str, ...]:
-    """Units that options name, of both columns."""
+def _units(series: Table, options: PsdOptions) -> tuple[str, str]:
+    """Units of both columns, as options name them, or else as they are written."""
     if options.psd_units is None:
-        return ()
-    units = tuple(unit.strip() for unit in options.psd_units.split(","))
+        return written_unit(series, 0), written_unit(series, 1)
+    units = [unit.strip() for unit in options.psd_units.split(",")]
     if len(units) != 2:
         raise ValueError(
             f"--psd-units is {options.psd_units!r}; write the units of both columns, as in "
             "1/um,um^3"
         )
-    return units
+    return units[0], units[1]
 
 
-def _abscissa(series: Table, options: PsdOptions) -> tuple[PsdAbscissa, str]:
-    """What the first column is, and its unit."""
-    path, named = series.path, _named_units(options)
-    unit = named[0] if named else written_unit(series, 0)
+def _abscissa(series: Table, unit: str, options: PsdOptions) -> tuple[PsdAbscissa, str]:
+    """What the first column is, and its unit without what it counts."""
+    path = series.path
     head = series.headings[0].text.lower() if series.headings else ""
     counted = next(
         (name for name, words in _PER_LENGTH.items() if re.search(words, unit, re.IGNORECASE)), None
