@@ -103,7 +103,8 @@ def write_samples(path: Path, samples: Sequence[Sample], first: str) -> list[Sam
     from crackfront.measured.samples.sample_results import predicted_samples
     from crackfront.simulate.storage import check_regular_file, write_text
 
-    is_printed, results = str(path) == "-", []
+    is_printed = str(path) == "-"
+    results, rows = [], []
     if not is_printed:
         check_regular_file(path)
         check_writable(path.parent)
@@ -111,9 +112,10 @@ def write_samples(path: Path, samples: Sequence[Sample], first: str) -> list[Sam
     for result in predicted_samples(samples):
         click.echo(_line(result), err=is_printed)
         results.append(result)
-        rows = [{first: each.row["sample"]} | each.row for each in results]
+        row = {first: result.row["sample"]} | result.row
         if first != "sample":
-            rows = [{k: v for k, v in row.items() if k not in ("sample", "group")} for row in rows]
+            del row["sample"], row["group"]
+        rows.append(row)
         # After every sample, as each takes seconds: an interruption keeps what was read.
         stream = io.StringIO()
         table = csv.DictWriter(stream, dict.fromkeys(name for row in rows for name in row))
