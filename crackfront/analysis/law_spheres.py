@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import functools
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -134,11 +135,7 @@ def _sphere_spring(elastic_energy: float, contact_radius: float) -> Callable[[fl
             "between 0 and 1"
         )
     check_within("contact radius", contact_radius, LENGTH)
-
-    def spring(work_of_adhesion: float) -> float:
-        return jkr.spring(contact_radius, work_of_adhesion)
-
-    return spring
+    return functools.partial(jkr.spring, contact_radius)
 
 
 def factors_on_springs(
