@@ -86,7 +86,7 @@ def steady_adhesion(record: CycleRecord, correlation_length: float) -> SteadyAdh
     states, radius = record.states, record.states.mean_radius
     branches, window, sentence = steady_branches(states, radius, "radii", correlation_length)
     if sentence:
-        return _no_value((branches[0].size, branches[1].size), sentence)
+        return _no_value(branches, sentence)
     from_force = [_adhesion_from_force(radius[branch], states.force[branch]) for branch in branches]
     columns = states.apparent_work_of_adhesion, radius, states.rms_radius
     return replace(
@@ -214,7 +214,7 @@ def steady_means(
     """
     branches, _, sentence = steady_branches(states, columns[1], name, correlation_length, period)
     if sentence:
-        return _no_value((branches[0].size, branches[1].size), sentence)
+        return _no_value(branches, sentence)
     return _measures(columns, branches, correlation_length)
 
 
@@ -232,7 +232,7 @@ def period_adhesion(
     branches = approach, retraction
     if min(approach.size, retraction.size) < n_period:
         counts = approach.size, retraction.size
-        return _no_value(counts, f"the front was left before it had passed the tile: {counts}")
+        return _no_value(branches, f"the front was left before it had passed the tile: {counts}")
     columns = mean - states.pinning_force, states.mean_position, states.rms_position
     return _measures(columns, branches, correlation_length)
 
@@ -293,9 +293,8 @@ def _adhesion_from_force(radius: Array, force: Array) -> float:
     return float(root**2)
 
 
-def _no_value(counts: tuple[int, int], sentence: str) -> SteadyAdhesion:
-    """Measures that are NaN, with a sentence that says why."""
+def _no_value(branches: Branches, sentence: str) -> SteadyAdhesion:
+    """Measures that are NaN but for the numbers of states, with a sentence that says why."""
     values = {item.name: math.nan for item in fields(SteadyMeasures)}
-    n_approach, n_retraction = counts
-    values |= {"n_approach": n_approach, "n_retraction": n_retraction}
+    values |= {"n_approach": branches[0].size, "n_retraction": branches[1].size}
     return SteadyAdhesion(**values, sentence=sentence)  # type: ignore[arg-type]
