@@ -112,24 +112,37 @@ def _draw_stated(axes: Axes, surface: StatedSurface) -> None:
     wavevector = _set_wavevectors(axes, surface)
     shown = wavevector[wavevector <= 2 * np.pi / spectrum.short_cutoff]
     axes.plot(shown, spectrum.density(shown), color=BLACK, label="spectrum", zorder=4)
+    given = 2 * np.pi / np.array(spectrum.wavelengths), np.array(spectrum.densities)
+    _draw_points(axes, *given, BLUE, "o", "as given")
+    axes.set_ylim(bottom=0.02 * min(spectrum.densities))
+    _add_scales(axes, surface)
+    axes.legend(loc="lower left")
+
+
+def _draw_points(
+    axes: Axes, wavevector: Array, density: Array, colour: str, marker: str, label: str
+) -> None:
+    """Draw values of a density as open markers, with an entry in the legend if it has a label."""
     axes.plot(
-        2 * np.pi / np.array(spectrum.wavelengths),
-        spectrum.densities,
+        wavevector,
+        density,
         linestyle="none",
-        marker="o",
+        marker=marker,
         markersize=2.8,
         markerfacecolor="none",
         markeredgewidth=0.6,
-        color=BLUE,
-        label="as given",
+        color=colour,
+        label=label or None,
         zorder=3,
     )
-    axes.set_ylim(bottom=0.02 * min(spectrum.densities))
+
+
+def _add_scales(axes: Axes, surface: Surface) -> None:
+    """Add dominant scales to an isotropic density, and name its axes."""
     scales = [(item.rms.value**2, item.shortest, item.longest) for item in surface.measures]
     draw_dominant_scales(axes, *np.transpose(scales))
     axes.set_ylabel(ISOTROPIC_LABEL)
     add_wavelengths(axes)
-    axes.legend(loc="lower left")
 
 
 def _draw_scans(figure: FigureBase, surface: MeasuredSurface, fewest: int = 1) -> None:
@@ -153,7 +166,7 @@ def _set_wavevectors(axes: Axes, surface: Surface) -> Array:
 
 def _draw_isotropic(axes: Axes, surface: MeasuredSurface, _: Prediction) -> None:
     """Densities of maps at all wavelengths, the spectrum and its dominant scales."""
-    spectrum, measures = surface.joint.spectrum, surface.measures
+    spectrum = surface.joint.spectrum
     wavevector = _set_wavevectors(axes, surface)
     shown = wavevector[wavevector <= 2 * np.pi / spectrum.short_cutoff]
     for index, scan in enumerate(surface.scans):
@@ -171,11 +184,8 @@ def _draw_isotropic(axes: Axes, surface: MeasuredSurface, _: Prediction) -> None
     label = "spectrum, with its 95% interval"
     axes.plot(shown, spectrum.density(shown), color=BLACK, label=label, zorder=4)
     axes.set_ylim(0.02 * np.min(low), 5 * np.max(high))
-    scales = [(item.rms.value**2, item.shortest, item.longest) for item in measures]
-    draw_dominant_scales(axes, *np.transpose(scales))
+    _add_scales(axes, surface)
     _draw_limits(axes, surface, named=False)
-    axes.set_ylabel(ISOTROPIC_LABEL)
-    add_wavelengths(axes)
     axes.legend(loc="lower left", **ON_WHITE)
 
 
@@ -221,18 +231,8 @@ def _draw_profiles(axes: Axes, surface: MeasuredSurface, _: Prediction) -> None:
 
 def _draw_density(axes: Axes, index: int, density: Density, name: str) -> None:
     """Density of one measurement as open markers."""
-    axes.plot(
-        density.wavevector,
-        density.value,
-        linestyle="none",
-        marker=MARKERS[index % len(MARKERS)],
-        markersize=2.8,
-        markerfacecolor="none",
-        markeredgewidth=0.6,
-        color=COLOURS[index % len(COLOURS)],
-        label=name or None,
-        zorder=3,
-    )
+    colour, marker = COLOURS[index % len(COLOURS)], MARKERS[index % len(MARKERS)]
+    _draw_points(axes, density.wavevector, density.value, colour, marker, name)
 
 
 def _draw_forces(axes: Axes, _: Surface, prediction: Prediction) -> None:
