@@ -78,22 +78,7 @@ def chosen_channel(path: Path, reader: Any, requested: str | None) -> tuple[Any,
         raise ValueError(
             f"{path} lacks an array of numbers in two dimensions; export the heights as one"
         )
-    if requested is None:
-        named = [each for each in channels if each.is_default]
-    else:
-        named = [each for each in channels if each.name == requested]
-    if requested is None and not named:
-        raise ValueError(
-            f"{path} contains {len(channels)} arrays, and their names do not say which one has the "
-            f"heights; {_choice(channels)}"
-        )
-    named = named or [each for each in channels if str(each.number) == requested]
-    if len(named) != 1:
-        raise ValueError(
-            f"{path} has {'several channels' if named else 'no channel'} {requested!r}; "
-            f"{_choice(channels)}"
-        )
-    [chosen] = named
+    chosen = _requested(path, channels, requested)
     if chosen.quantity != "height":
         of_heights = [each for each in channels if each.quantity == "height"]
         raise ValueError(
@@ -103,6 +88,26 @@ def chosen_channel(path: Path, reader: Any, requested: str | None) -> tuple[Any,
     several = f", {chosen.number} of {len(channels)}" if len(channels) > 1 else ""
     [channel] = [each for each in reader.channels if each.index == chosen.number]
     return channel, f"{chosen.name!r}{several}"
+
+
+def _requested(path: Path, channels: Sequence[Channel], requested: str | None) -> Channel:
+    """The channel of a name or number, or the one that is read where none is named."""
+    if requested is None:
+        default = next((each for each in channels if each.is_default), None)
+        if default is None:
+            raise ValueError(
+                f"{path} contains {len(channels)} arrays, and their names do not say which one has "
+                f"the heights; {_choice(channels)}"
+            )
+        return default
+    named = [each for each in channels if each.name == requested]
+    named = named or [each for each in channels if str(each.number) == requested]
+    if len(named) != 1:
+        raise ValueError(
+            f"{path} has {'several channels' if named else 'no channel'} {requested!r}; "
+            f"{_choice(channels)}"
+        )
+    return named[0]
 
 
 def _is_tiff(path: Path) -> bool:
