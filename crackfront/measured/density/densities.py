@@ -156,10 +156,7 @@ def periodogram(
     """
     heights = measurement.heights if heights is None else heights
     axes = (0,) if is_profile else tuple(range(heights.ndim))
-    windows = [
-        np.ones(count) if measurement.periodic or axis not in axes else cosine_window(window, count)
-        for axis, count in enumerate(heights.shape)
-    ]
+    windows = _windows(measurement, window, axes)
     weight = np.asarray(math.prod(np.ix_(*windows)))
     square = math.prod(float(np.mean(factor**2)) for factor in windows)
     dependence = math.prod(float(np.mean(factor**4)) for factor in windows) / square**2
@@ -198,12 +195,17 @@ def weight_of_gaps(measurement: Measurement) -> float:
     """Part of the window's weight that lies on missing points."""
     if measurement.gaps is None:
         return 0.0
-    windows = [
-        np.ones(count) if measurement.periodic else cosine_window("hann", count)
-        for count in measurement.heights.shape
-    ]
+    windows = _windows(measurement, "hann", range(measurement.heights.ndim))
     weight = np.asarray(math.prod(np.ix_(*windows))) ** 2
     return float(np.sum(weight[measurement.gaps]) / np.sum(weight))
+
+
+def _windows(measurement: Measurement, name: str, axes: Sequence[int]) -> list[Array]:
+    """Weights of the points along each side; equal ones if the scan is periodic, or off `axes`."""
+    return [
+        np.ones(count) if measurement.periodic or axis not in axes else cosine_window(name, count)
+        for axis, count in enumerate(measurement.heights.shape)
+    ]
 
 
 def cosine_window(name: str, count: int) -> Array:
