@@ -224,9 +224,8 @@ def spectrum_remarks(surface: Surface) -> Iterator[Remark]:
         return
     yield from disagreements(surface)
     for scan in surface.scans:
-        ratio, angle = scan.band.anisotropy
+        path, (ratio, angle) = str(scan.measurement.path), scan.band.anisotropy
         if ratio > _MOST_ANISOTROPY:
-            path = str(scan.measurement.path)
             yield Remark(
                 path,
                 "reservation",
@@ -234,7 +233,6 @@ def spectrum_remarks(surface: Surface) -> Iterator[Remark]:
                 "slope perpendicular to it; the theory is for isotropic surfaces.",
             )
         if scan.band.stripes_share > _MOST_STRIPES:
-            path = str(scan.measurement.path)
             axes = " and ".join("xy"[axis] for axis in scan.band.stripes)
             yield Remark(
                 path,
