@@ -31,26 +31,13 @@ def units_and_sides(
     path: Path, name: str, channel: Any, options: ReadingOptions
 ) -> tuple[dict[str, Any], tuple[float, ...] | None]:
     """Unit and sides that options add to a file; sides in metres if the file states wrong ones."""
-    unit, size = channel.unit, channel.physical_sizes
-    has_sides = is_sized(channel)
-    if unit is not None and has_sides and not _are_possible(stated_sides := in_metres(unit, *size)):
-        if options.size is None or options.unit is None:
-            raise ValueError(
-                f"{path} states sides of {shown_sides(stated_sides)}, which no instrument "
-                "measures; its unit is wrong, so name the sides, as in --size "
-                f"{','.join(f'{side:g}' for side in stated_sides)} --unit um"
-            )
-        named = length_unit("--unit", options.unit)
-        return {}, _named_sides(path, _sides(path, options.size, len(stated_sides)), named)
-    added: dict[str, Any] = {}
-    if unit is None:
-        if options.unit is None:
-            raise ValueError(
-                f"{path}, read as {name}, states no unit of length; name it, as in --unit um"
-            )
-        added["unit"] = unit = length_unit("--unit", options.unit)
-    elif options.unit is not None and length_unit("--unit", options.unit) != length_unit("", unit):
-        raise ValueError(f"{path} states its own unit, {unit}; leave --unit {options.unit} out")
+    size, has_sides = channel.physical_sizes, is_sized(channel)
+    if channel.unit is not None and has_sides:
+        stated_sides = in_metres(channel.unit, *size)
+        if not _are_possible(stated_sides):
+            return {}, _corrected_sides(path, stated_sides, options)
+    unit = _unit(path, name, channel.unit, options.unit)
+    added: dict[str, Any] = {"unit": unit} if channel.unit is None else {}
     if not has_sides and size is not None and None not in size:
         return added, _sides_with_one(path, channel, options, unit)
     if not has_sides:
@@ -62,6 +49,32 @@ def units_and_sides(
         raise ValueError(f"{path} states its own size, {shown} {unit}; leave --size out")
     _named_sides(path, size, unit)
     return added, None
+
+
+def _corrected_sides(
+    path: Path, stated: tuple[float, ...], options: ReadingOptions
+) -> tuple[float, ...]:
+    """Sides that options name in place of those that a file states and cannot have (Units: m)."""
+    if options.size is None or options.unit is None:
+        raise ValueError(
+            f"{path} states sides of {shown_sides(stated)}, which no instrument measures; its unit "
+            "is wrong, so name the sides, as in --size "
+            f"{','.join(f'{side:g}' for side in stated)} --unit um"
+        )
+    named = length_unit("--unit", options.unit)
+    return _named_sides(path, _sides(path, options.size, len(stated)), named)
+
+
+def _unit(path: Path, name: str, stated: str | None, named: str | None) -> str:
+    """Unit of length that a file states, or that an option names; both may not differ."""
+    if stated is None and named is None:
+        raise ValueError(
+            f"{path}, read as {name}, states no unit of length; name it, as in --unit um"
+        )
+    unit = None if named is None else length_unit("--unit", named)
+    if stated is not None and unit is not None and unit != length_unit("", stated):
+        raise ValueError(f"{path} states its own unit, {stated}; leave --unit {named} out")
+    return str(unit if stated is None else stated)
 
 
 def is_sized(channel: Any) -> bool:
