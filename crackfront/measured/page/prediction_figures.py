@@ -26,17 +26,8 @@ from crackfront.plots.density_axes import (
     draw_dominant_scales,
     set_density_scales,
 )
-from crackfront.plots.parts import ON_WHITE, label_panel
-from crackfront.plots.style import (
-    BLACK,
-    BLUE,
-    COLOURS,
-    MARKERS,
-    PAGE,
-    VERMILION,
-    blank_figure,
-    house_style,
-)
+from crackfront.plots.parts import ON_WHITE, label_panel, spectrum_colour, spectrum_marker
+from crackfront.plots.style import BLACK, BLUE, PAGE, VERMILION, blank_figure, house_style
 
 _MOST_MAPS = 4
 """Largest number of scans that are drawn as maps."""
@@ -173,7 +164,7 @@ def _draw_isotropic(axes: Axes, surface: MeasuredSurface, _: Prediction) -> None
         if not scan.measurement.is_line:
             _draw_density(axes, index, scan.trusted, scan.measurement.path.name)
             whole = scan.density.within(2 * np.pi / wavevector[-1], 2 * np.pi / wavevector[0])
-            colour = COLOURS[index % len(COLOURS)]
+            colour = spectrum_colour(index)
             axes.plot(
                 whole.wavevector, whole.value, color=colour, linewidth=0.5, alpha=0.6, zorder=2
             )
@@ -192,7 +183,7 @@ def _draw_isotropic(axes: Axes, surface: MeasuredSurface, _: Prediction) -> None
 def _draw_limits(axes: Axes, surface: MeasuredSurface, *, named: bool) -> None:
     """Ends of the trusted bands, with their causes if `named`."""
     for index, scan in enumerate(surface.scans):
-        colour = COLOURS[index % len(COLOURS)]
+        colour = spectrum_colour(index)
         for limit in scan.band.ends:
             wavevector = 2 * np.pi / limit.wavelength
             axes.axvline(wavevector, color=colour, linewidth=0.5, dashes=(2, 2), zorder=1)
@@ -231,7 +222,7 @@ def _draw_profiles(axes: Axes, surface: MeasuredSurface, _: Prediction) -> None:
 
 def _draw_density(axes: Axes, index: int, density: Density, name: str) -> None:
     """Density of one measurement as open markers."""
-    colour, marker = COLOURS[index % len(COLOURS)], MARKERS[index % len(MARKERS)]
+    colour, marker = spectrum_colour(index), spectrum_marker(index)
     _draw_points(axes, density.wavevector, density.value, colour, marker, name)
 
 

@@ -11,8 +11,8 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from crackfront.analysis.estimate import Estimate
-from crackfront.plots.parts import PointStyle
-from crackfront.plots.style import BLACK, COLOURS, MARKERS, PAGE, blank_figure, explain, house_style
+from crackfront.plots.parts import PointStyle, spectrum_colour, spectrum_marker
+from crackfront.plots.style import BLACK, PAGE, blank_figure, explain, house_style
 
 PREDICTED = {
     "hysteresis": (r"hysteresis (mJ m$^{-2}$)", 1e3),
@@ -84,7 +84,7 @@ def series_figure(points: Sequence[SeriesPoint], name: str) -> Figure:
 
 def _group_style(group: int) -> PointStyle:
     """Colour and marker of a group, by its number."""
-    return PointStyle(COLOURS[group % len(COLOURS)], MARKERS[group % len(MARKERS)], "")
+    return PointStyle(spectrum_colour(group), spectrum_marker(group), "")
 
 
 def _draw(
