@@ -125,7 +125,6 @@ def shown_axes() -> Iterator[Axes]:
 _DATES = {".pdf": "CreationDate", ".png": "Software", ".svg": "Date"}
 """Metadata with the date or the program, left out so that equal figures have equal bytes."""
 
-
 _SUBJECTS = {".pdf": "Subject", ".png": "Description", ".svg": "Description"}
 """Metadata with the subject of a figure."""
 

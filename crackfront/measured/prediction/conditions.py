@@ -55,7 +55,6 @@ _FAR_INSIDE = 1000.0
 _MOST_UNCERTAIN = 2.0
 """Ratio of the ends of the interval of e_el above which a reservation states it."""
 
-
 _ASSUMPTION = Remark(
     "range of attraction",
     "note",

@@ -36,7 +36,6 @@ _FEWEST_ALONG = 0.5
 _FEWEST_FILLED = 0.05
 """Least part of the places of a grid that have a point; with fewer it is not a grid."""
 
-
 _WORDS = "( ?-?(position|coordinate|axis|height)s?)?"
 """What may follow the name of a coordinate."""
 
