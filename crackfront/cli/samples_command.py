@@ -80,8 +80,7 @@ def samples(
     check_replaced_table("--csv", table, "sample")
     stem = Path("results/samples", path.stem)
     table = table or stem.with_name(f"{stem.name}.csv")
-    common = {name: value for name, value in options.items() if value not in (None, ())}
-    series = read_samples(path, common)
+    series = read_samples(path, options)
     if not no_figure:
         check_writable((figure or stem).parent)
     results = write_samples(table, series, "sample")

@@ -187,7 +187,7 @@ def _sample(folder: Path, row: Mapping[str, Any], common: Mapping[str, Any]) -> 
         group=values.group or "",
         scans=scans,
         psd=None if values.psd is None else _file(folder, values.psd),
-        reading=tuple(reading_options(_without_empty(options), len(scans))),
+        reading=tuple(reading_options(options, len(scans))),
         density=checked_options(PsdOptions, options),
         numbers=numbers,
         scales=sphere_scales(checked_options(SphereOptions, options)),
@@ -224,10 +224,6 @@ def _check_effect(
     for name in named_options(record, {**common, **row}):
         advice = "leave it out" if name in row else f"write it in a column, for rows with {way}"
         raise ValueError(f"{name} is an option of {way}, and the sample has none; {advice}")
-
-
-def _without_empty(options: Mapping[str, Any]) -> dict[str, Any]:
-    return {name: value for name, value in options.items() if value not in (None, ())}
 
 
 def _measured(values: SampleOptions) -> dict[str, Estimate[float]]:

@@ -15,6 +15,7 @@ _BEGINS = (b"CDF\x01", b"CDF\x02", b"CDF\x05", b"\x89HDF")
 """First bytes of netCDF files."""
 
 _SUFFIXES = {".nc", ".nc4", ".cdf", ".netcdf"}
+"""Suffixes of files that may have coordinates with units; others go to the library."""
 
 
 def is_netcdf(path: Path) -> bool:
@@ -67,8 +68,8 @@ def _is_conventional(dataset: Any) -> bool:
 
 def _unit(variable: Any) -> str | None:
     """Unit that a variable states."""
-    unit = getattr(variable, "units", None) or getattr(variable, "unit", None)
-    return str(unit).strip() or None if unit is not None else None
+    unit = getattr(variable, "units", None) or getattr(variable, "unit", None) or ""
+    return str(unit).strip() or None
 
 
 def _grid(path: Path, dataset: Any, name: str) -> Grid:
