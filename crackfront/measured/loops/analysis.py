@@ -16,13 +16,12 @@ from crackfront.measured.loops.calibration import CalibratedLoop, Contact
 from crackfront.measured.loops.contact_rows import rows_in_contact
 from crackfront.measured.loops.energy import lost_energy
 from crackfront.measured.loops.fit import fitted_modulus, fitted_zero
-from crackfront.measured.loops.intervals import Works, works_of_adhesion
+from crackfront.measured.loops.intervals import Works, machine_stiffness, works_of_adhesion
 from crackfront.measured.loops.pull_off import PullOff, pull_off
 from crackfront.measured.loops.recording import Recording
 from crackfront.measured.loops.remarks import loop_remarks
 from crackfront.measured.loops.result import MeasuredLoop
 from crackfront.measured.loops.rig import Rig
-from crackfront.measured.loops.stiffness import machine_stiffness
 from crackfront.surfaces.written_units import prefixed
 
 _MOST_LOST = 0.1

@@ -1,4 +1,4 @@
-"""Works of adhesion and modulus of a calibrated loop, with 95% intervals."""
+"""Works of adhesion, modulus and stiffness of the machine of a loop, with 95% intervals."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.special import stdtrit
 
-from crackfront.analysis.estimate import REACH, Estimate
+from crackfront.analysis.estimate import REACH, UNKNOWN, Estimate
 from crackfront.analysis.standard_error import FEWEST_STATES
 from crackfront.analysis.steady_adhesion import Branches, Rows, branch_means, within
 from crackfront.core.arrays import Array
 from crackfront.measured.loops.calibration import CalibratedLoop, Contact
 from crackfront.measured.loops.fit import fitted_modulus, fitted_zero
 
-BLOCKS = 10
+_BLOCKS = 10
 """Blocks of a branch, each of which is left out once to measure the errors by noise."""
 
 _RIG_STEP = 1e-4
@@ -58,8 +58,8 @@ def works_of_adhesion(loop: CalibratedLoop, averaged: Branches, errors: Sequence
         and both zeros. They are NaN where an error of the zero leaves a row without adhesion.
     """
     value = _numbers(loop, averaged)
-    n_blocks = min(BLOCKS, min(rows.size for rows in averaged) // 2)
-    parts = zip(*(without_blocks(rows, n_blocks) for rows in averaged), strict=True)
+    n_blocks = min(_BLOCKS, min(rows.size for rows in averaged) // 2)
+    parts = zip(*(_without_blocks(rows, n_blocks) for rows in averaged), strict=True)
     left_out = np.array([_numbers(loop, part) for part in parts])
     squares = np.sum((left_out - left_out.mean(axis=0)) ** 2, axis=0)
     noise = np.sqrt((n_blocks - 1) / n_blocks * squares)
@@ -73,7 +73,7 @@ def works_of_adhesion(loop: CalibratedLoop, averaged: Branches, errors: Sequence
     return Works(*(Estimate(*row) for row in columns.tolist()))
 
 
-def without_blocks(rows: Rows, n_blocks: int) -> list[Rows]:
+def _without_blocks(rows: Rows, n_blocks: int) -> list[Rows]:
     """Rows without the first of some equal blocks, without the second, and so on."""
     blocks = np.array_split(rows, n_blocks)
     return [np.concatenate(blocks[:i] + blocks[i + 1 :]) for i in range(n_blocks)]
@@ -148,3 +148,34 @@ def _trend(loop: CalibratedLoop, averaged: Branches, noise: Array) -> Array:
         return np.zeros_like(noise)
     half = (_numbers(loop, upper) - _numbers(loop, lower)) / 2
     return np.asarray(np.maximum(half**2 - noise**2, 0.0))
+
+
+def machine_stiffness(
+    loop: CalibratedLoop, modulus: Estimate[float], averaged: Branches
+) -> Estimate[float]:
+    """Stiffness of the machine (Units: N/m), from its bending under the force.
+
+    The displacement exceeds the penetration of force and radius by this bending. NaN if a column is
+    missing or the machine does not bend.
+    """
+    if not loop.has_force_and_radius or loop.recording.displacement is None:
+        return UNKNOWN
+    loop = replace(loop, modulus=modulus.value)
+    rows = np.concatenate(averaged)
+    value = _compliance(loop, rows)
+    left_out = [_compliance(loop, part) for part in _without_blocks(rows, _BLOCKS)]
+    noise = math.sqrt((_BLOCKS - 1) * float(np.var(left_out)))
+    stiffer = replace(loop, modulus=modulus.value + modulus.standard_error)
+    by_modulus = REACH * (_compliance(stiffer, rows) - value)
+    reach = math.hypot(float(stdtrit(_BLOCKS - 1, 0.975)) * noise, by_modulus)
+    low, high = value - reach, value + reach
+    if not high > 0:
+        return UNKNOWN
+    stiffness = 1 / value if value > 0 else math.inf
+    return Estimate(stiffness, math.nan, 1 / high, 1 / low if low > 0 else math.inf)
+
+
+def _compliance(loop: CalibratedLoop, rows: Rows) -> float:
+    """Bending of the machine per force in some rows (Units: m/N)."""
+    bending = np.asarray(loop.recording.displacement) - loop.contact().penetration
+    return float(np.polyfit(np.asarray(loop.recording.force)[rows], bending[rows], 1)[0])
