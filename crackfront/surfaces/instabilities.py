@@ -62,11 +62,12 @@ def resolved_motion(
     for name, value in (("travel", travel), ("precision", precision)):
         if not 0 < value < math.inf:
             raise ValueError(f"{name} is {value}; it must be positive and finite")
-    tries: list[Load] = []
-    steps = follow(field, front, iter(tries.pop, None), solver)
+    requested: list[Load] = []
+    # Loads are read from the list when a step is wanted: all steps share the samples of the field.
+    steps = follow(field, front, iter(requested.pop, None), solver)
 
     def front_at(value: float) -> Array | None:
-        tries.append(Load(value, direction, front))
+        requested.append(Load(value, direction, front))
         step = next(steps)
         if step.status is Status.LOST_CONTACT:
             return None

@@ -92,10 +92,9 @@ class LoopNumerics:
     def __post_init__(self) -> None:
         if self.error is not None:
             check_fraction("error", self.error)
-        for name, value in (("sites", self.sites), ("samples", self.samples)):
-            if value is not None and self.error is not None:
+            if self.by_pixels:
                 raise ValueError(
-                    f"error is {self.error:g}, which decides sites and samples; leave out {name}, "
+                    f"error is {self.error:g}, which decides sites and samples; leave these out, "
                     "or the error"
                 )
         if self.sites is not None:
@@ -179,7 +178,10 @@ def check_samples(
 
 
 def load_values(loads: Iterable[float | str]) -> tuple[float, ...]:
-    """Loads of a protocol as numbers; a ValueError if there are none, or one is not a number."""
+    """Loads to visit as numbers.
+
+    ValueError if there are none or one is not a number, TypeError if they are not several values.
+    """
     if isinstance(loads, str) or not isinstance(loads, Iterable):
         raise TypeError(f"loads is {loads!r}; give the loads to visit, as in [0, 1, 0.5]")
     values = []
@@ -195,5 +197,5 @@ def load_values(loads: Iterable[float | str]) -> tuple[float, ...]:
 
 
 def state_count(loads: tuple[float, ...], step: float) -> float:
-    """Loads of a protocol, about."""
+    """About how many loads are visited, with steps between those that are further apart."""
     return len(loads) + sum(abs(end - start) for start, end in pairwise(loads)) / step
