@@ -152,10 +152,10 @@ def covering(
     No realisation is taken twice, and none beyond the requested number.
     """
     chosen, position = [], 0
-    longest_first = sorted(shards, key=lambda shard: -len(shard.realisations))
-    for shard in sorted(longest_first, key=lambda shard: shard.realisations.start):
-        start, stop = shard.realisations.start, shard.realisations.stop
-        taken = range(max(position, start), min(stop, n_realisation))
+    # By their first realisation, of those with the same one the longest first.
+    for shard in sorted(shards, key=lambda shard: (shard.realisations[0], -shard.realisations[-1])):
+        block = shard.realisations
+        taken = range(max(position, block.start), min(block.stop, n_realisation))
         if taken:
             chosen.append((shard, taken))
             position = taken.stop
