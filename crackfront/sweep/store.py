@@ -12,7 +12,7 @@ import fcntl
 import itertools
 import time
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import IO, Any
 
@@ -297,16 +297,12 @@ class Store:
         number: int,
         columns: dict[str, NDArray[Any]],
     ) -> None:
-        """Make the rows of a file anew from its states, in columns of the whole shard."""
-        rows = located.files[number]
-        firsts = sweep.one_per_amplitude(shard.item)
+        """Make the rows of a file anew from its states, and put them into columns of the shard."""
         chosen = np.flatnonzero(located.file == number)
-        amplitudes, realisations = np.unravel_index(chosen, located.file.shape)
-        simulations = [
-            replace(firsts[amplitude], realisation=shard.realisations[number])
-            for amplitude, number in zip(amplitudes.tolist(), realisations.tolist(), strict=True)
-        ]
-        results = read_results(rows.path, located.place.ravel()[chosen], simulations)
+        everything = [*sweep.simulations(shard.item, shard.realisations)]
+        simulations = [everything[position] for position in chosen]
+        path = located.files[number].path
+        results = read_results(path, located.place.ravel()[chosen], simulations)
         for position, result in zip(chosen.tolist(), results, strict=True):
             if result is None:
                 continue
