@@ -40,6 +40,13 @@ def check_numbers(**values: object) -> None:
         check_type(name, value, Real, "a number")
 
 
+def check_positive(**values: float) -> None:
+    """Raise ValueError if an argument is not positive and finite."""
+    for name, value in values.items():
+        if not 0 < value < math.inf:
+            raise ValueError(f"{name} is {value}; it must be positive and finite")
+
+
 def nearest_name(name: str, names: Iterable[str], otherwise: str = "choose one of") -> str:
     """What to do about an unknown name: the known one that is near it, or else all of them.
 

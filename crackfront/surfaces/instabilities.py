@@ -13,6 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from crackfront.core.arguments import check_positive
 from crackfront.core.arrays import Array
 from crackfront.core.cycle.energy import dissipated_energy
 from crackfront.core.cycle.follow import Load, follow
@@ -59,9 +60,7 @@ def resolved_motion(
     closer in load come out as one. A tolerance of the solver above the precision delays them.
     ValueError if travel or precision are not positive, or a relaxation fails.
     """
-    for name, value in (("travel", travel), ("precision", precision)):
-        if not 0 < value < math.inf:
-            raise ValueError(f"{name} is {value}; it must be positive and finite")
+    check_positive(travel=travel, precision=precision)
     requested: list[Load] = []
     # Loads are read from the list when a step is wanted: all steps share the samples of the field.
     steps = follow(field, front, iter(requested.pop, None), solver)

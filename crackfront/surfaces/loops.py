@@ -13,7 +13,7 @@ from xarray import DataArray, Dataset
 from crackfront.analysis.estimate import with_error
 from crackfront.analysis.steady_adhesion import SteadyAdhesion, SteadyMeasures
 from crackfront.analysis.table import SweepAxes, SweepRow
-from crackfront.core.arguments import check_numbers, check_type
+from crackfront.core.arguments import check_numbers, check_positive, check_type
 from crackfront.core.cycle.follow import Load, front_at
 from crackfront.core.cycle.load_schedule import LoadSchedule
 from crackfront.core.cycle.record import CycleRecord, Recorder
@@ -274,8 +274,7 @@ def find_instabilities(
         raise ValueError(f"direction is {direction!r}; give 1 for approach or -1 for retraction")
     check_numbers(max_penetration=max_penetration, step=step, travel=travel)
     schedule = LoadSchedule(max_penetration, step)
-    if not 0 < travel < math.inf:
-        raise ValueError(f"travel is {travel:g}; it must be positive and finite")
+    check_positive(travel=travel)
     numerics = LoopNumerics(error, sites, samples, usual_error=0.05)
     contact = PressedSphere(surface, max_penetration).setup(None, step, numerics)
     reach = travel * contact.measures.correlation_length

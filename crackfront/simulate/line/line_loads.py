@@ -22,6 +22,7 @@ from crackfront.core.adhesion import (
     force_correlation_length,
     larkin_length,
 )
+from crackfront.core.arguments import check_positive
 from crackfront.core.arrays import Array
 from crackfront.core.cycle.follow import Load
 from crackfront.core.cycle.record import CycleRecord, Recorder
@@ -98,12 +99,8 @@ class LineSchedule(Schedule, OnSprings):
     load_name = "straight front"
 
     def __post_init__(self) -> None:
-        for name in ("spring", "length", "period", "lead_in", "step"):
-            if not 0 < getattr(self, name) < math.inf:
-                option = name.replace("_", "-")
-                raise ValueError(
-                    f"{option} is {getattr(self, name)}; it must be positive and finite"
-                )
+        lengths = ("spring", "length", "period", "lead_in", "step")
+        check_positive(**{name: getattr(self, name) for name in lengths})
 
     @property
     def n_period(self) -> int:

@@ -16,6 +16,7 @@ import numpy as np
 from crackfront.analysis.standard_error import standard_error
 from crackfront.core import jkr
 from crackfront.core.adhesion import FieldKind
+from crackfront.core.arguments import check_positive
 from crackfront.core.arrays import Array
 from crackfront.core.cycle.follow import Load
 from crackfront.core.cycle.record import CycleRecord, Recorder, columns
@@ -76,10 +77,7 @@ class SteadySchedule(SphereSchedule):
     retraction is taken to scatter as much."""
 
     def __post_init__(self) -> None:
-        for name in ("travel", "standard_error"):
-            if not 0 < getattr(self, name) < math.inf:
-                option = f"steady {name.replace('_', ' ')}"
-                raise ValueError(f"{option} is {getattr(self, name)}; it must be positive")
+        check_positive(travel=self.travel, standard_error=self.standard_error)
         if not 0 <= self.start < self.max_penetration < math.inf:
             raise ValueError(
                 f"steady start is {self.start}; it must be 0 or more, and below the largest "
