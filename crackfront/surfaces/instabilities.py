@@ -16,7 +16,7 @@ import numpy as np
 from crackfront.core.arguments import check_positive
 from crackfront.core.arrays import Array
 from crackfront.core.cycle.energy import dissipated_energy
-from crackfront.core.cycle.follow import Load, follow
+from crackfront.core.cycle.follow import Load, converged_front, follow
 from crackfront.core.field.fields import Field
 from crackfront.core.geometry.base import Geometry, weight, weight_slope
 from crackfront.core.outcome import Direction, Status
@@ -68,12 +68,7 @@ def resolved_motion(
     def front_at(value: float) -> Array | None:
         requested.append(Load(value, direction, front))
         step = next(steps)
-        if step.status is Status.LOST_CONTACT:
-            return None
-        if step.status is not Status.CONVERGED:
-            noun = field.geometry.state_type.load_noun
-            raise ValueError(f"at {noun} {value:.6g}: {step.status.value}")
-        return step.front
+        return None if step.status is Status.LOST_CONTACT else converged_front(step, field)
 
     for load in loads:
         # Fronts that were found from further behind are those that a halved step arrives at.
