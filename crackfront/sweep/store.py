@@ -190,11 +190,8 @@ class Store:
         firsts, series = sweep.one_per_amplitude(item), sweep.series(item)
         costs = sum(expected_cost(first).seconds for first in firsts)
         limit, total, position = sweep.numerics.max_sweeps, Inventory(), 0
-        current = [
-            summary
-            for summary in self.shard_summaries(item)
-            if all(summary.has_states(digest, limit) for digest in series)
-        ]
+        summaries = self.shard_summaries(item)
+        current = [summary for summary in summaries if summary.has_states(series, limit)]
         for summary, taken in covering(current, sweep.n_realisation):
             if gap := range(position, taken.start):
                 total += self.inventory(sweep, item, gap)
