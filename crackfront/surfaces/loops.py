@@ -21,7 +21,6 @@ from crackfront.core.cycle.touch import first_touch
 from crackfront.core.geometry.sphere import ContactState
 from crackfront.core.outcome import Direction
 from crackfront.core.resources import check_memory
-from crackfront.core.solver import DEFAULT_TOLERANCE
 from crackfront.core.solver.relax import Newton, named_solver
 from crackfront.core.variables import variables
 from crackfront.core.versions import PHYSICS_VERSION
@@ -138,7 +137,6 @@ def run_loop(
         max_penetration = 1.0
     if step is None:
         step = 0.02 if visited is None else math.inf
-    solution = named_solver(solver, DEFAULT_TOLERANCE)
     contact = loop_contact(surface, max_penetration)
     setup = contact.setup(visited, step, LoopNumerics(error, sites, samples))
     if fronts:
@@ -149,8 +147,7 @@ def run_loop(
         )
     observers = [] if progress is None else [lambda recorder: progress(recorder.states[-1])]
     recorder = Recorder(fronts=fronts, energy=energy, observers=observers)
-    solution = replace(solution, tolerance=setup.tolerance)
-    recorder.run(setup.field, setup.front, setup.loads, solution)
+    recorder.run(setup.field, setup.front, setup.loads, named_solver(solver, setup.tolerance))
     return loop_dataset(recorder.record(), setup).assign_attrs(
         solver=solver,
         tolerance=setup.tolerance,

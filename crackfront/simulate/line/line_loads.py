@@ -162,7 +162,9 @@ class LineSchedule(Schedule, OnSprings):
 
         e_el decides how far behind the load a branch begins.
         """
-        field, pinned = problem.field, _BEHIND * 4 * problem.elastic_energy * self.spring
+        field = problem.field
+        # The pinning force of second-order theory is w_rms^2 / w_int = 4 e_el.
+        pinned = _BEHIND * 4 * problem.elastic_energy * self.spring
         # As far behind as the field allows, never less than pinning may hold the front.
         inside = min(-first_place(field), last_place(field) - float(self.loads[-1]))
         behind = min(pinned + self.step, max(inside, pinned))
