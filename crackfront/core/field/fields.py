@@ -125,9 +125,9 @@ def tile_field(
     """
     check_interpolation(interpolation)
     values = np.asarray(adhesion.work_of_adhesion, dtype=float)
-    check_field_values(values, names=("x", "y"))
     if values.ndim != 2:
         raise ValueError(f"work of adhesion has shape {values.shape}; a tile must be (x, y)")
+    check_field_values(values, names=("x", "y"))
     check_positive(pixel=adhesion.pixel)
     if geometry.n_site < 4:
         raise ValueError(f"number of angles is {geometry.n_site}; at least 4 are needed")
