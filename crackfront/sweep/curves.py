@@ -219,6 +219,11 @@ class StoredRows:
     columns: dict[str, NDArray[Any]]
     """Their values by the names of `SweepRow`, and `arithmetic`, each (n,)."""
 
+    @property
+    def identities(self) -> set[tuple[str, int]]:
+        """Series and number of each simulation."""
+        return {*zip(self.series.tolist(), self.realisation.tolist(), strict=True)}
+
 
 def stored_rows(path: Path) -> StoredRows:
     """Rows of a file that :func:`write_curves` wrote; its checksum has been looked at."""

@@ -337,19 +337,12 @@ class Store:
             {name: (SIMULATION, values, merged[name].attrs) for name, values in columns.items()}
         )
         merged_path = write_curves(folder, MERGED, shard.name, merged, origin)
+        in_merged = stored_rows(merged_path).identities
         for path in curve_files(folder):
-            if path != merged_path and self._is_replaced(path, merged_path):
+            rows = stored_rows(path)
+            is_replaced = rows.physics_version < PHYSICS_VERSION or rows.identities <= in_merged
+            if is_replaced and path != merged_path:
                 path.unlink()
-
-    def _is_replaced(self, path: Path, merged_path: Path) -> bool:
-        """Whether all simulations of a file are in the merged one, or of older physics."""
-        rows, merged = stored_rows(path), stored_rows(merged_path)
-        if rows.physics_version < PHYSICS_VERSION:
-            return True
-        in_merged = {*zip(merged.series.tolist(), merged.realisation.tolist(), strict=True)}
-        return in_merged.issuperset(
-            zip(rows.series.tolist(), rows.realisation.tolist(), strict=True)
-        )
 
     def result(self, sweep: Sweep, simulation: Simulation) -> SimulationResult:
         """Stored result of a simulation; `UnreadableFileError` where it is not stored."""
