@@ -43,7 +43,7 @@ def check_feasible(sweep: Sweep, path: Path) -> None:
     for every spectrum and amplitude; no surface is made.
     """
     try:
-        _check_numbers(sweep)
+        _check_counts(sweep)
         _check_sizes(sweep)
         _check_costs(sweep)
         for item in sweep.spectra:
@@ -56,7 +56,7 @@ def check_feasible(sweep: Sweep, path: Path) -> None:
         raise ConfigurationError(f"{path}: {error}") from error
 
 
-def _check_numbers(sweep: Sweep) -> None:
+def _check_counts(sweep: Sweep) -> None:
     """Raise TooLargeError if memory cannot contain lists of simulations or bootstrap samples."""
     check_memory(
         f"realisations: {sweep.n_simulation:.3g} simulations",
