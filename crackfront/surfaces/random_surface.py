@@ -9,7 +9,7 @@ import numpy as np
 from xarray import DataArray
 
 from crackfront.core.adhesion import FieldKind, check_kind
-from crackfront.core.arguments import check_numbers, check_type
+from crackfront.core.arguments import check_fractions, check_numbers, check_type
 from crackfront.core.bounds import SEED
 from crackfront.core.resources import check_memory
 from crackfront.core.spectrum import SelfAffineSpectrum, Spectrum
@@ -83,8 +83,7 @@ def random_surface(
     """
     spectrum = _shape(short_cutoff, roll_off, hurst)
     check_kind(kind)
-    check_fraction("error", error)
-    check_fraction("elastic_energy", elastic_energy)
+    check_fractions(error=error, elastic_energy=elastic_energy)
     for name, number in (("seed", seed), ("realisation", realisation)):
         check_type(name, number, Integral, "a whole number")
         if isinstance(number, bool):
@@ -176,13 +175,6 @@ def chosen_simulation(
     remedy = "take a smaller side or a longer short_cutoff"
     check_memory(tiles, expected_cost(simulation).memory, remedy)
     return simulation
-
-
-def check_fraction(name: str, value: float) -> None:
-    """Raise ValueError if a number does not lie between 0 and 1."""
-    check_numbers(**{name: value})
-    if not 0 < value < 1:
-        raise ValueError(f"{name} is {value}; it must lie between 0 and 1")
 
 
 def stated_spectrum(surface: DataArray) -> Spectrum | None:
