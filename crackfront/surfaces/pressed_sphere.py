@@ -34,7 +34,7 @@ from crackfront.surfaces.random_surface import chosen_simulation, stated_spectru
 from crackfront.surfaces.surface_adhesion import surface_adhesion
 from crackfront.surfaces.tile_measures import tile_measures
 
-_SAMPLES = 2.0
+_USUAL_SAMPLES = 2.0
 """Samples a pixel along a ray where no spectrum is stated."""
 
 
@@ -89,7 +89,7 @@ class PressedSphere(LoopContact):
     ) -> SphereSetup:
         """Setup of a run up to a penetration, with its loads and about so many states."""
         adhesion = surface_adhesion(self.surface)
-        radius, samples = jkr.equilibrium_radius(deepest), numerics.samples or _SAMPLES
+        radius, samples = jkr.equilibrium_radius(deepest), numerics.samples or _USUAL_SAMPLES
         seconds = affordable_seconds(
             n_angle=numerics.sites or 2 * math.pi * radius / adhesion.pixel,
             n_point=adhesion.work_of_adhesion.size,
