@@ -6,8 +6,7 @@ import math
 import zlib
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
-from numbers import Real
+from dataclasses import asdict, dataclass, replace
 from typing import Any, ClassVar, Self, cast
 
 import numpy as np
@@ -15,6 +14,7 @@ import scipy
 from numpy.typing import ArrayLike
 from scipy.special import beta, betainc
 
+from crackfront.core.arguments import check_numbers, check_positive
 from crackfront.core.arrays import Array
 from crackfront.core.units import CONTACT_MODULUS
 
@@ -204,20 +204,17 @@ class SelfAffineSpectrum(Spectrum):
     plateau: float = 1.0
 
     def __post_init__(self) -> None:
-        for name in ("short_cutoff", "roll_off", "hurst", "plateau"):
-            if not isinstance(getattr(self, name), Real):
-                raise TypeError(f"{name} is {getattr(self, name)!r}; give a number")
-        for name in ("short_cutoff", "roll_off", "plateau"):
-            value = getattr(self, name)
-            if not (math.isfinite(value) and value > 0):
-                raise ValueError(f"{name} is {value}; it must be positive and finite")
+        numbers = asdict(self)
+        check_numbers(**numbers)
+        hurst = numbers.pop("hurst")
+        check_positive(**numbers)
         if self.roll_off < self.short_cutoff:
             raise ValueError(
                 f"roll_off {self.roll_off} is shorter than short_cutoff {self.short_cutoff}; "
                 "lower the cutoff or raise the roll-off (equal values give a flat spectrum)"
             )
-        if not 0 < self.hurst <= 1:
-            raise ValueError(f"hurst is {self.hurst}; it must lie in (0, 1]")
+        if not 0 < hurst <= 1:
+            raise ValueError(f"hurst is {hurst}; it must lie in (0, 1]")
 
     @property
     def identity(self) -> tuple[tuple[float, ...], tuple[float, ...]]:

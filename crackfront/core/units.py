@@ -6,8 +6,10 @@ Inside the package R = 1, w_int = 1/pi and E' = 3/4 (Barthel, Maugis; supplement
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from enum import StrEnum
+
+from crackfront.core.arguments import check_positive
 
 WORK_OF_ADHESION = 1.0 / math.pi
 """Intrinsic work of adhesion w_int in reduced units."""
@@ -50,10 +52,7 @@ class Scales:
     contact_modulus: float
 
     def __post_init__(self) -> None:
-        for name in ("radius", "work_of_adhesion", "contact_modulus"):
-            value = getattr(self, name)
-            if not (math.isfinite(value) and value > 0):
-                raise ValueError(f"{name} is {value}; it must be positive and finite")
+        check_positive(**asdict(self))
 
     @property
     def lateral(self) -> float:

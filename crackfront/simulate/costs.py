@@ -105,10 +105,9 @@ def affordable_seconds(*, n_angle: float, n_point: float, n_state: float, n_samp
     """
     cost = run_cost(n_site=n_angle, n_point=n_point, n_state=n_state)
     seconds = cost.seconds + _SAMPLE_SECONDS * n_angle * n_sample
-    cycle = f"a cycle of {n_state:.3g} load steps with {n_angle:.3g} sites and"
-    task, remedy = f"{cycle} {n_sample:.3g} samples a ray", "take fewer of them"
-    check_memory(task, cost.memory, remedy)
-    check_time(task, seconds, remedy)
+    counts = f"{n_state:.3g} load steps with {n_angle:.3g} sites and {n_sample:.3g} samples a ray"
+    check_memory(f"a cycle of {counts}", cost.memory, "take fewer of them")
+    check_time(f"a cycle of {counts}", seconds, "take fewer of them")
     return seconds
 
 

@@ -62,7 +62,7 @@ class CycleCheckpoint:
             warn(f"{sentence}; the cycle begins anew")
             return None
         states = self.geometry.state_type
-        checkpoint = known_checkpoint(read_dataset(self.path), self.key, states, self.path)
+        checkpoint = _known_checkpoint(read_dataset(self.path), self.key, states, self.path)
         if checkpoint is None:
             raise ValueError(
                 f"{self.path} has the states of another cycle: the field, an option or the version "
@@ -73,7 +73,7 @@ class CycleCheckpoint:
     def write(self, checkpoint: Checkpoint) -> None:
         """Write a checkpoint, in place of an earlier one."""
         write_derived(
-            self.path, checkpoint_dataset(checkpoint, self.key, self.geometry), provenance()
+            self.path, _checkpoint_dataset(checkpoint, self.key, self.geometry), provenance()
         )
 
     def remove(self) -> None:
@@ -96,13 +96,13 @@ def cycle_key(field_file: Path, *options: object) -> str:
 def write_checkpoint(folder: Path, name: str, partial: PartialRun, origin: Provenance) -> Path:
     """Write the checkpoint of a simulation, from which it goes on later; its name has a digest."""
     simulation = partial.simulation
-    dataset = checkpoint_dataset(partial.checkpoint, simulation.key, simulation.geometry)
+    dataset = _checkpoint_dataset(partial.checkpoint, simulation.key, simulation.geometry)
     costs = {"seconds": partial.seconds, "cpu_seconds": partial.cpu_seconds}
     about = {"simulation": simulation.label} | costs
     return write_named_by_digest(folder, name, dataset.assign_attrs(about), origin)
 
 
-def checkpoint_dataset(checkpoint: Checkpoint, key: str, geometry: Geometry) -> xr.Dataset:
+def _checkpoint_dataset(checkpoint: Checkpoint, key: str, geometry: Geometry) -> xr.Dataset:
     """Dataset of the checkpoint of a key."""
     front, _ = geometry.variables
     fronts = {
@@ -116,17 +116,17 @@ def read_checkpoint(path: Path, simulation: Simulation) -> PartialRun:
     """Stored checkpoint of a simulation; UnreadableFileError if it is of another one."""
     dataset = read_dataset(path)
     states = simulation.geometry.state_type
-    checkpoint = known_checkpoint(dataset, simulation.key, states, path)
+    checkpoint = _known_checkpoint(dataset, simulation.key, states, path)
     if checkpoint is None or dataset.attrs["physics_version"] != PHYSICS_VERSION:
         raise UnreadableFileError(f"{path} is not a checkpoint of {simulation.label}; move it away")
     costs = (float(dataset.attrs[name]) for name in ("seconds", "cpu_seconds"))
     return PartialRun(simulation, checkpoint, *costs)
 
 
-def known_checkpoint(
+def _known_checkpoint(
     dataset: xr.Dataset, key: str, states: type[State], place: Path
 ) -> Checkpoint | None:
-    """Checkpoint that :func:`checkpoint_dataset` made a dataset of; None where its key differs."""
+    """Checkpoint that :func:`_checkpoint_dataset` made a dataset of; None where its key differs."""
     names = {field: name for field, (name, _) in _FRONTS.items()}
     if dataset.attrs.get("key") != key or not dataset.variables.keys() >= {*names.values()}:
         return None

@@ -59,22 +59,16 @@ class LawInterpolation:
         Their axes are bias and scatter, approach and retraction, values.
         """
         # Errors are interpolated, not their logarithms: the geometric mean with a bias of 0 is 0.
-        branches = [
-            np.tensordot(
-                [weight for _, weight in self.weights],
-                [
-                    self._largest_error(error_laws()[shape, setting, direction], values)
-                    for shape, _ in self.weights
-                ],
-                axes=1,
-            )
-            for direction in (1, -1)
-        ]
+        shapes, weights = zip(*self.weights, strict=True)
+        branches = []
+        for direction in (1, -1):
+            laws_of_shapes = [error_laws()[shape, setting, direction] for shape in shapes]
+            errors = [
+                self._largest(laws, np.array([law.parts(values) for law in laws]))
+                for laws in laws_of_shapes
+            ]
+            branches.append(np.tensordot(weights, errors, axes=1))
         return np.stack(branches, axis=1)
-
-    def _largest_error(self, laws: Sequence[ErrorLaw], values: ArrayLike) -> Array:
-        """Bias and scatter of one shape, the largest in the range of amplitudes."""
-        return self._largest(laws, np.array([law.parts(values) for law in laws]))
 
     def avalanche(self) -> float:
         """Change of w_appr by the largest avalanche on fronts of :data:`LAW_SIZE` (Units: e_el)."""

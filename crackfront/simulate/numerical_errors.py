@@ -22,9 +22,8 @@ def numerical_error(
 ) -> tuple[float, float]:
     """Standard errors (w_appr, w_retr) that the numerics leave (Units: w_int).
 
-    The size is the number of states times length of the front over the short cutoff, by default the
-    usual one; the front length is the longest one, by default of a smooth contact.
-    (Units: reduced lateral length)
+    The size of the front, as in :mod:`crackfront.simulate.laws`, is by default the usual one, and
+    the length of the longest front that of a smooth contact (Units: reduced lateral length).
     """
     sizes, cutoff = simulation.resolution, simulation.spectrum.short_cutoff
     if front_length is None:
@@ -53,9 +52,9 @@ def stated_error(
 
     States closer than a correlation length of w_loc count as one.
     """
-    *sizes, longest = simulation.schedule.averaged_sizes(
+    approach, retraction, longest = simulation.schedule.averaged_sizes(
         steady, correlation_length, simulation.spectrum.short_cutoff
     )
-    approach, _ = numerical_error(simulation, sizes[0], longest)
-    _, retraction = numerical_error(simulation, sizes[1], longest)
-    return approach, retraction
+    of_approach, _ = numerical_error(simulation, approach, longest)
+    _, of_retraction = numerical_error(simulation, retraction, longest)
+    return of_approach, of_retraction

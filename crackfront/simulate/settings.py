@@ -145,7 +145,8 @@ def _avalanche_margin(error: float, interpolation: LawInterpolation, size: float
     """Factor by which scatter must be below a requested error: few surfaces have an avalanche."""
     avalanche = interpolation.avalanche() * (LAW_SIZE / size)
     # The mean square of eight surfaces has the mean s^2 and, of avalanches of one size a, the
-    # variance s^2 (a^2 + 2 s^2) / 8: the mean and three standard deviations are the bound.
+    # variance s^2 (a^2 + 2 s^2) / 8. Where the mean and three standard deviations are the bound,
+    # x = s^2 is the positive root of 5/4 x^2 + 2 half x - bound^2.
     bound = (1.5 * error) ** 2
     half = bound + 9 / 16 * avalanche**2
     square = bound**2 / (half + math.sqrt(half**2 + 5 / 4 * bound**2))

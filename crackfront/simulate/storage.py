@@ -33,6 +33,9 @@ PACKED: dict[str, Any] = {"zlib": True, "shuffle": True, "complevel": 1}
 _WRITER_SECONDS = 0.2
 """Time in which a writer has replaced both a file and its checksum. (Units: s)"""
 
+_LOCKING = "HDF5_USE_FILE_LOCKING"
+"""Environment variable by which HDF5 opens files without a lock; the command line sets it."""
+
 NO_ROOM = (errno.ENOSPC, errno.EDQUOT)
 """Numbers of the errors of a full disk and of a used-up quota."""
 
@@ -45,11 +48,7 @@ class FileSystemError(OSError):
     """An operation that the file system does not allow; the message states the remedy."""
 
 
-_LOCKING = "HDF5_USE_FILE_LOCKING"
-"""Environment variable by which HDF5 opens files without a lock, as the command sets it."""
-
-
-def check_system(path: Path, error: Exception) -> None:
+def _check_readable(path: Path, error: Exception) -> None:
     """Raise an OSError if the system cannot read or lock a file that HDF5 did not open."""
     with path.open("rb", buffering=0) as file:
         _check_locks(path, file.fileno(), error)
@@ -58,7 +57,7 @@ def check_system(path: Path, error: Exception) -> None:
 
 
 def _check_locks(path: Path, number: int, error: Exception) -> None:
-    """Raise if HDF5 could not lock an open file, with the path in the message."""
+    """Raise if HDF5 cannot lock the open file of this number, as if it were the one of the path."""
     if os.environ.get(_LOCKING, "").upper() in ("FALSE", "0"):
         return
     try:
@@ -164,7 +163,7 @@ def replace_atomically(
             before_renaming(part)
         part.replace(path)
     except Exception as error:
-        # What netCDF says of a full disk or of locks names anything but these.
+        # netCDF names neither a full disk nor locks when these are the reason.
         _check_folder(path, error)
         raise
     finally:
@@ -224,7 +223,7 @@ def read_dataset(
     except Exception as error:  # a damaged file may be wrong in any way
         if _is_of_system(error):
             raise
-        check_system(path, error)
+        _check_readable(path, error)
         raise UnreadableFileError(
             f"{path} is not a complete netCDF file; write it again, or name another"
         ) from error

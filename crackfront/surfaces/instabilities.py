@@ -13,9 +13,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from crackfront.core.arguments import check_positive
 from crackfront.core.arrays import Array
 from crackfront.core.cycle.energy import dissipated_energy
-from crackfront.core.cycle.follow import Load, follow
+from crackfront.core.cycle.follow import Load, converged_front, follow
 from crackfront.core.field.fields import Field
 from crackfront.core.geometry.base import Geometry, weight, weight_slope
 from crackfront.core.outcome import Direction, Status
@@ -59,21 +60,15 @@ def resolved_motion(
     closer in load come out as one. A tolerance of the solver above the precision delays them.
     ValueError if travel or precision are not positive, or a relaxation fails.
     """
-    for name, value in (("travel", travel), ("precision", precision)):
-        if not 0 < value < math.inf:
-            raise ValueError(f"{name} is {value}; it must be positive and finite")
-    tries: list[Load] = []
-    steps = follow(field, front, iter(tries.pop, None), solver)
+    check_positive(travel=travel, precision=precision)
+    requested: list[Load] = []
+    # Loads are read from the list when a step is wanted: all steps share the samples of the field.
+    steps = follow(field, front, iter(requested.pop, None), solver)
 
     def front_at(value: float) -> Array | None:
-        tries.append(Load(value, direction, front))
+        requested.append(Load(value, direction, front))
         step = next(steps)
-        if step.status is Status.LOST_CONTACT:
-            return None
-        if step.status is not Status.CONVERGED:
-            noun = field.geometry.state_type.load_noun
-            raise ValueError(f"at {noun} {value:.6g}: {step.status.value}")
-        return step.front
+        return None if step.status is Status.LOST_CONTACT else converged_front(step, field)
 
     for load in loads:
         # Fronts that were found from further behind are those that a halved step arrives at.

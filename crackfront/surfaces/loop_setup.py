@@ -23,7 +23,7 @@ from itertools import pairwise
 from numbers import Integral
 
 from crackfront.analysis.steady_adhesion import SteadyAdhesion
-from crackfront.core.arguments import check_numbers, check_type
+from crackfront.core.arguments import check_fractions, check_numbers, check_type
 from crackfront.core.arrays import Array
 from crackfront.core.bounds import (
     DENSITY,
@@ -35,7 +35,6 @@ from crackfront.core.bounds import (
 from crackfront.core.cycle.follow import Load
 from crackfront.core.cycle.record import CycleRecord
 from crackfront.core.field.fields import TileField
-from crackfront.surfaces.random_surface import check_fraction
 from crackfront.surfaces.tile_measures import TileMeasures
 
 
@@ -91,11 +90,10 @@ class LoopNumerics:
 
     def __post_init__(self) -> None:
         if self.error is not None:
-            check_fraction("error", self.error)
-        for name, value in (("sites", self.sites), ("samples", self.samples)):
-            if value is not None and self.error is not None:
+            check_fractions(error=self.error)
+            if self.by_pixels:
                 raise ValueError(
-                    f"error is {self.error:g}, which decides sites and samples; leave out {name}, "
+                    f"error is {self.error:g}, which decides sites and samples; leave these out, "
                     "or the error"
                 )
         if self.sites is not None:
@@ -125,7 +123,7 @@ class LoopContact(ABC):
         """
 
 
-_SITES = 3.0
+_SITES_PER_WAVE = 3.0
 """Sites per correlation length of w_loc from which on hysteresis departs by less than a tenth; with
 2 it is a third too large, with 1 two to four times, on straight fronts at w_rms 0.6 and 0.8."""
 
@@ -133,11 +131,12 @@ _SITES = 3.0
 def remark_on_sites(n_site: int, length: float, measures: TileMeasures) -> str:
     """Sentence on a front of a length whose sites are too few for a tile; else empty."""
     density = n_site * measures.correlation_length / length
-    if measures.w_rms == 0 or density >= _SITES:
+    if measures.w_rms == 0 or density >= _SITES_PER_WAVE:
         return ""
+    needed = math.ceil(_SITES_PER_WAVE * n_site / density)
     return (
         f"the front has {n_site} sites, {density:.2g} per correlation length of w_loc, with which "
-        f"the hysteresis comes out too large; use {math.ceil(_SITES * n_site / density)} or more"
+        f"the hysteresis comes out too large; use {needed} or more"
     )
 
 
@@ -158,7 +157,7 @@ def remark_on_mean(measures: TileMeasures) -> str:
     )
 
 
-_SAMPLES = 2.0
+_SAMPLES_PER_WAVE = 2.0
 """Samples per correlation length of w_loc below which they miss its waves."""
 
 
@@ -169,7 +168,7 @@ def check_samples(
 
     `pixel` is the grid spacing of the tile. (Units: reduced lateral length)
     """
-    waves = 0.0 if measures.w_rms == 0 else _SAMPLES * pixel / measures.correlation_length
+    waves = 0.0 if measures.w_rms == 0 else _SAMPLES_PER_WAVE * pixel / measures.correlation_length
     needed = math.ceil(1000 * max(waves, least)) / 1000
     if numerics.samples is not None and numerics.samples < needed:
         raise ValueError(
@@ -179,7 +178,10 @@ def check_samples(
 
 
 def load_values(loads: Iterable[float | str]) -> tuple[float, ...]:
-    """Loads of a protocol as numbers; a ValueError if there are none, or one is not a number."""
+    """Loads to visit as numbers.
+
+    ValueError if there are none or one is not a number, TypeError if they are not several values.
+    """
     if isinstance(loads, str) or not isinstance(loads, Iterable):
         raise TypeError(f"loads is {loads!r}; give the loads to visit, as in [0, 1, 0.5]")
     values = []
@@ -195,5 +197,5 @@ def load_values(loads: Iterable[float | str]) -> tuple[float, ...]:
 
 
 def state_count(loads: tuple[float, ...], step: float) -> float:
-    """Loads of a protocol, about."""
+    """About how many loads are visited, with steps between those that are further apart."""
     return len(loads) + sum(abs(end - start) for start, end in pairwise(loads)) / step

@@ -13,7 +13,7 @@ from xarray import DataArray, Dataset
 from crackfront.analysis.estimate import with_error
 from crackfront.analysis.steady_adhesion import SteadyAdhesion, SteadyMeasures
 from crackfront.analysis.table import SweepAxes, SweepRow
-from crackfront.core.arguments import check_numbers, check_type
+from crackfront.core.arguments import check_numbers, check_positive, check_type
 from crackfront.core.cycle.follow import Load, front_at
 from crackfront.core.cycle.load_schedule import LoadSchedule
 from crackfront.core.cycle.record import CycleRecord, Recorder
@@ -21,7 +21,6 @@ from crackfront.core.cycle.touch import first_touch
 from crackfront.core.geometry.sphere import ContactState
 from crackfront.core.outcome import Direction
 from crackfront.core.resources import check_memory
-from crackfront.core.solver import DEFAULT_TOLERANCE
 from crackfront.core.solver.relax import Newton, named_solver
 from crackfront.core.variables import variables
 from crackfront.core.versions import PHYSICS_VERSION
@@ -138,7 +137,6 @@ def run_loop(
         max_penetration = 1.0
     if step is None:
         step = 0.02 if visited is None else math.inf
-    solution = named_solver(solver, DEFAULT_TOLERANCE)
     contact = loop_contact(surface, max_penetration)
     setup = contact.setup(visited, step, LoopNumerics(error, sites, samples))
     if fronts:
@@ -149,8 +147,7 @@ def run_loop(
         )
     observers = [] if progress is None else [lambda recorder: progress(recorder.states[-1])]
     recorder = Recorder(fronts=fronts, energy=energy, observers=observers)
-    solution = replace(solution, tolerance=setup.tolerance)
-    recorder.run(setup.field, setup.front, setup.loads, solution)
+    recorder.run(setup.field, setup.front, setup.loads, named_solver(solver, setup.tolerance))
     return loop_dataset(recorder.record(), setup).assign_attrs(
         solver=solver,
         tolerance=setup.tolerance,
@@ -274,8 +271,7 @@ def find_instabilities(
         raise ValueError(f"direction is {direction!r}; give 1 for approach or -1 for retraction")
     check_numbers(max_penetration=max_penetration, step=step, travel=travel)
     schedule = LoadSchedule(max_penetration, step)
-    if not 0 < travel < math.inf:
-        raise ValueError(f"travel is {travel:g}; it must be positive and finite")
+    check_positive(travel=travel)
     numerics = LoopNumerics(error, sites, samples, usual_error=0.05)
     contact = PressedSphere(surface, max_penetration).setup(None, step, numerics)
     reach = travel * contact.measures.correlation_length

@@ -10,6 +10,7 @@ from xarray import DataArray
 
 from crackfront.analysis.steady_adhesion import SteadyAdhesion, steady_adhesion
 from crackfront.core import jkr
+from crackfront.core.adhesion import AdhesionMap, FieldKind
 from crackfront.core.cycle.follow import Load
 from crackfront.core.cycle.load_schedule import LoadSchedule, protocol
 from crackfront.core.cycle.record import CycleRecord
@@ -33,7 +34,7 @@ from crackfront.surfaces.random_surface import chosen_simulation, stated_spectru
 from crackfront.surfaces.surface_adhesion import surface_adhesion
 from crackfront.surfaces.tile_measures import tile_measures
 
-_SAMPLES = 2.0
+_USUAL_SAMPLES = 2.0
 """Samples a pixel along a ray where no spectrum is stated."""
 
 
@@ -69,34 +70,56 @@ class PressedSphere(LoopContact):
     ) -> SphereSetup:
         """As :meth:`crackfront.surfaces.loop_setup.LoopContact.setup`."""
         deepest = self.max_penetration
-        if (loads is None) == (deepest is None):
-            raise ValueError("a sphere needs max_penetration or loads; give one of the two")
-        if deepest is not None:
+        if loads is None and deepest is not None:
             way = LoadSchedule(deepest, step).loads()
             # A smooth sphere comes off there; a rough one goes somewhat further.
             n_state = 3 + (2 * deepest - jkr.pull_off_penetration()) / step
             return self._setup(deepest, way, n_state, numerics)
-        if loads is None or loads[0] < 0:
+        if loads is None or deepest is not None:
+            raise ValueError("a sphere needs max_penetration or loads; give one of the two")
+        if loads[0] < 0:
             raise ValueError(
-                f"loads begin with {(loads or (0.0,))[0]:g}; a sphere touches at penetration 0, so "
-                "begin there or deeper"
+                f"loads begin with {loads[0]:g}; a sphere touches at penetration 0, so begin there "
+                "or deeper"
             )
         return self._setup(max(loads), protocol(loads, step), state_count(loads, step), numerics)
 
     def _setup(
         self, deepest: float, way: Iterator[Load], n_state: float, numerics: LoopNumerics
     ) -> SphereSetup:
-        """Resolve the contact by the measured laws of errors, or else by the pixels of the tile."""
+        """Setup of a run up to a penetration, with its loads and about so many states."""
         adhesion = surface_adhesion(self.surface)
-        radius, samples = jkr.equilibrium_radius(deepest), numerics.samples or _SAMPLES
+        radius, samples = jkr.equilibrium_radius(deepest), numerics.samples or _USUAL_SAMPLES
         seconds = affordable_seconds(
             n_angle=numerics.sites or 2 * math.pi * radius / adhesion.pixel,
             n_point=adhesion.work_of_adhesion.size,
             n_state=n_state,
             n_sample=4 * samples * radius / adhesion.pixel,
         )
-        measures, simulation = tile_measures(adhesion), None
+        measures = tile_measures(adhesion)
         check_samples(numerics, adhesion.pixel, measures)
+        simulation = self._simulation(deepest, adhesion, measures.kind, numerics)
+        if simulation is None:
+            field = contact_field(adhesion, deepest, numerics.sites, adhesion.pixel / samples)
+            few_sites = remark_on_sites(field.geometry.n_site, 2 * math.pi * radius, measures)
+        else:
+            field, few_sites = simulation_field(simulation, adhesion), ""
+        return SphereSetup(
+            field=field,
+            front=checked_touch(field, deepest),
+            loads=way,
+            expected=int(n_state),
+            seconds=seconds,
+            tolerance=simulation.solver.tolerance if simulation else DEFAULT_TOLERANCE,
+            measures=measures,
+            simulation=simulation,
+            remark="; ".join(filter(None, (remark_on_mean(measures), few_sites))),
+        )
+
+    def _simulation(
+        self, deepest: float, adhesion: AdhesionMap, kind: FieldKind, numerics: LoopNumerics
+    ) -> Simulation | None:
+        """Simulation with the numerics that measured laws choose; None where the pixels decide."""
         spectrum = stated_spectrum(self.surface)
         if spectrum is None and numerics.error is not None:
             raise ValueError(
@@ -104,39 +127,18 @@ class PressedSphere(LoopContact):
                 "errors were measured; give sites and samples instead"
             )
         if spectrum is None or adhesion.e_el == 0 or numerics.by_pixels:
-            spacing = adhesion.pixel / samples
-            field = contact_field(adhesion, deepest, numerics.sites, spacing)
-            tolerance = DEFAULT_TOLERANCE
-        else:
-            error = numerics.usual_error if numerics.error is None else numerics.error
-            schedule = FullCycle(deepest, 1.0)  # whose step has no effect on sizes
-            chosen = chosen_simulation(
-                measures.kind, spectrum, adhesion.e_el, schedule, error=error
+            return None
+        error = numerics.usual_error if numerics.error is None else numerics.error
+        schedule = FullCycle(deepest, 1.0)  # whose step has no effect on sizes
+        chosen = chosen_simulation(kind, spectrum, adhesion.e_el, schedule, error=error)
+        n_point = min(adhesion.work_of_adhesion.shape)
+        sizes = replace(chosen.resolution, tile_side=n_point * adhesion.pixel, n_point=n_point)
+        simulation = replace(chosen, resolution=sizes)
+        # Where no error is asked for, the result states the one that is left.
+        if numerics.error is not None and (remaining := missed_error(simulation, error)):
+            pixels = spectrum.short_cutoff / adhesion.pixel
+            raise ValueError(
+                f"error is {error:g}, but the finest numerics on {pixels:.3g} pixels per short "
+                f"cutoff leave {remaining:.2g}; ask for that, or leave error out"
             )
-            n_point = min(adhesion.work_of_adhesion.shape)
-            sizes = replace(chosen.resolution, tile_side=n_point * adhesion.pixel, n_point=n_point)
-            simulation = replace(chosen, resolution=sizes)
-            # Where no error is asked for, the result states the one that is left.
-            if numerics.error is not None and (remaining := missed_error(simulation, error)):
-                pixels = spectrum.short_cutoff / adhesion.pixel
-                raise ValueError(
-                    f"error is {error:g}, but the finest numerics on {pixels:.3g} pixels per short "
-                    f"cutoff leave {remaining:.2g}; ask for that, or leave error out"
-                )
-            field = simulation_field(simulation, adhesion)
-            tolerance = chosen.solver.tolerance
-        remarks = [remark_on_mean(measures)]
-        if simulation is None:
-            length = 2 * math.pi * radius
-            remarks.append(remark_on_sites(field.geometry.n_site, length, measures))
-        return SphereSetup(
-            field=field,
-            front=checked_touch(field, deepest),
-            loads=way,
-            expected=int(n_state),
-            seconds=seconds,
-            tolerance=tolerance,
-            measures=measures,
-            simulation=simulation,
-            remark="; ".join(filter(None, remarks)),
-        )
+        return simulation

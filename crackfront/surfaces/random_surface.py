@@ -9,7 +9,7 @@ import numpy as np
 from xarray import DataArray
 
 from crackfront.core.adhesion import FieldKind, check_kind
-from crackfront.core.arguments import check_numbers, check_type
+from crackfront.core.arguments import check_fractions, check_numbers, check_type
 from crackfront.core.bounds import SEED
 from crackfront.core.resources import check_memory
 from crackfront.core.spectrum import SelfAffineSpectrum, Spectrum
@@ -82,7 +82,14 @@ def random_surface(
     ('height', ('x', 'y'), -2.0)
     """
     spectrum = _shape(short_cutoff, roll_off, hurst)
-    check_fraction("elastic_energy", elastic_energy)
+    check_kind(kind)
+    check_fractions(error=error, elastic_energy=elastic_energy)
+    for name, number in (("seed", seed), ("realisation", realisation)):
+        check_type(name, number, Integral, "a whole number")
+        if isinstance(number, bool):
+            raise TypeError(f"{name} is {number}; give a whole number")
+        if not SEED.least <= number <= SEED.most:
+            raise ValueError(f"{name} is {number}; it must lie between 0 and {SEED.most}")
     least, most = measured_energies()
     if not least <= elastic_energy <= most:
         raise ValueError(
@@ -120,8 +127,8 @@ def _shape(short_cutoff: float | Spectrum, roll_off: float | None, hurst: float 
     optional = {"roll_off": roll_off, "hurst": hurst}
     numbers = {name: value for name, value in optional.items() if value is not None}
     if isinstance(short_cutoff, Spectrum):
-        for name, value in numbers.items():
-            raise ValueError(f"{name} is {value}, but a whole spectrum is given; leave it out")
+        if numbers:
+            raise ValueError(f"a whole spectrum is given; leave out {' and '.join(numbers)}")
         return short_cutoff
     check_numbers(short_cutoff=short_cutoff, **numbers)
     if hurst is not None and roll_off is None:
@@ -144,17 +151,11 @@ def chosen_simulation(
     seed: int = 0,
     realisation: int = 0,
 ) -> Simulation:
-    """Simulation of a surface under some loads; arguments as of :func:`random_surface`."""
-    check_kind(kind)
-    check_fraction("error", error)
-    check_fraction("elastic_energy", elastic_energy)
-    for name, number in (("seed", seed), ("realisation", realisation)):
-        check_type(name, number, Integral, "a whole number")
-        if isinstance(number, bool):
-            raise TypeError(f"{name} is {number}; give a whole number")
-        if not SEED.least <= number <= SEED.most:
-            raise ValueError(f"{name} is {number}; it must lie between 0 and {SEED.most}")
-    numerics, cutoff = Numerics(error), spectrum.short_cutoff
+    """Simulation of a surface under some loads; arguments as of :func:`random_surface`.
+
+    ValueError if the side, the tile or the front is too small or too large.
+    """
+    numerics = Numerics(error)
     if side is not None:
         check_numbers(side=side)
         longest = spectrum.longest_feature
@@ -163,7 +164,7 @@ def chosen_simulation(
                 f"side is {side}; the tile must fit the longest waves of the spectrum, of "
                 f"{longest:g}, or its e_el is not the one that is asked for"
             )
-        numerics = Numerics(error, tile_roll_offs=0.0, tile_cutoffs=side / cutoff)
+        numerics = Numerics(error, tile_roll_offs=0.0, tile_cutoffs=side / spectrum.short_cutoff)
     settings = numerics.settings_of(kind, spectrum, elastic_energy)
     check_sizes(spectrum, numerics, settings, schedule.max_penetration)
     simulation = simulation_of(
@@ -174,13 +175,6 @@ def chosen_simulation(
     remedy = "take a smaller side or a longer short_cutoff"
     check_memory(tiles, expected_cost(simulation).memory, remedy)
     return simulation
-
-
-def check_fraction(name: str, value: float) -> None:
-    """Raise ValueError if a number does not lie between 0 and 1."""
-    check_numbers(**{name: value})
-    if not 0 < value < 1:
-        raise ValueError(f"{name} is {value}; it must lie between 0 and 1")
 
 
 def stated_spectrum(surface: DataArray) -> Spectrum | None:

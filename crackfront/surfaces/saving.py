@@ -81,7 +81,7 @@ def load_result(path: str | Path) -> xr.DataArray | xr.Dataset:
     """
     check_type("path", path, (str, PathLike), "the path of a file")
     dataset = read_dataset(Path(path).expanduser())
-    names = [item.name for item in SURFACES.values()]
-    if len(dataset) == 1 and next(iter(dataset)) in names:
-        return dataset[next(iter(dataset))]
+    for item in SURFACES.values():
+        if [*dataset] == [item.name]:
+            return dataset[item.name]
     return dataset

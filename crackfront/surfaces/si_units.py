@@ -62,11 +62,8 @@ def in_si_units(data: Labelled, scales: units.Scales | None = None) -> Labelled:
             )
     check_scales(scales)
     check_units(data)
-
-    def change(unit: str, _: xr.DataArray | None) -> tuple[float, str]:
-        return _si(unit, scales)
-
-    return _converted(data, change).assign_attrs(sphere_attributes(scales))
+    converted = _converted(data, lambda unit, _: _si(unit, scales))
+    return converted.assign_attrs(sphere_attributes(scales))
 
 
 def stated_scales(data: xr.DataArray | xr.Dataset) -> units.Scales | None:

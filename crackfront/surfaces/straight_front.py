@@ -35,6 +35,7 @@ from crackfront.surfaces.surface_array import surface_kind
 from crackfront.surfaces.tile_measures import tile_measures
 
 _ROUND_OFF = 1e-9
+"""Relative distance by which a front may be shorter than a bound."""
 
 _FEWEST_SAMPLES = 0.5
 """Samples a pixel: the field of a straight front begins two pixels behind its first front."""
@@ -93,7 +94,7 @@ class StraightFront(LoopContact):
                 "were not measured; give sites and samples instead"
             )
         adhesion, way = surface_adhesion(self.surface), protocol(loads, step)
-        remark = self._remark(adhesion)
+        short_front = self._remark_on_length(adhesion)
         values, n_state = adhesion.work_of_adhesion, state_count(loads, step)
         samples, measures = numerics.samples or 1.0, tile_measures(adhesion)
         check_samples(numerics, adhesion.pixel, measures, _FEWEST_SAMPLES)
@@ -126,7 +127,7 @@ class StraightFront(LoopContact):
             tolerance=DEFAULT_TOLERANCE,
             measures=measures,
             load_stiffness=field.geometry.length * field.geometry.stiffness,
-            remark="; ".join(filter(None, (remark, remark_on_mean(measures), few_sites))),
+            remark="; ".join(filter(None, (short_front, remark_on_mean(measures), few_sites))),
         )
 
     def _check_round_off(self, adhesion: AdhesionMap, furthest: float, n_site: int) -> None:
@@ -142,7 +143,7 @@ class StraightFront(LoopContact):
                 f"of the tile, {period:g}, to near 0, or use longer springs or fewer sites"
             )
 
-    def _remark(self, adhesion: AdhesionMap) -> str:
+    def _remark_on_length(self, adhesion: AdhesionMap) -> str:
         """What a short front means for k; ValueError if it is shorter than its springs."""
         length = adhesion.pixel * adhesion.work_of_adhesion.shape[1]
         ratio = length / self.spring

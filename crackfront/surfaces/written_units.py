@@ -66,12 +66,7 @@ def si_value(text: str, unit: str, *, name: str) -> float:
     try:
         value = _converted(float(quantity[1]), _plain(quantity[2]), unit)
     except ValueError as error:
-        wrong = f"whose unit {quantity[2]} is unknown"
-        if isinstance(error, PixelError):
-            wrong = "in pixels, which have no length"
-        elif isinstance(error, DimensionError):
-            wrong = f"whose unit is not a unit of {dimension}"
-        raise ValueError(f"{name} is {text!r}, {wrong}; {example}") from error
+        raise ValueError(f"{name} is {text!r}, whose unit {error}; {example}") from error
     if not (math.isfinite(value) and value > 0):
         raise ValueError(f"{name} is {text!r}; it must be positive and finite")
     if quantity[2].startswith("mPa"):
@@ -99,12 +94,8 @@ def unit_value(written: str, unit: str) -> float:
     """
     try:
         return _converted(1.0, _plain(written), unit)
-    except PixelError as error:
-        raise ValueError(
-            f"the unit {written} is one of pixels, which have no length; give a unit of length"
-        ) from error
     except ValueError as error:
-        raise ValueError(f"the unit {written} cannot be converted to {unit}") from error
+        raise ValueError(f"the unit {written} cannot be converted to {unit}: it {error}") from error
 
 
 def is_unit(written: str, unit: str) -> bool:
@@ -116,28 +107,20 @@ def is_unit(written: str, unit: str) -> bool:
     return True
 
 
-class DimensionError(ValueError):
-    """A unit that is of another dimension than the wanted one."""
-
-
-class PixelError(DimensionError):
-    """A unit of pixels, which say nothing of lengths."""
-
-
 def _converted(value: float, written: str, unit: str) -> float:
-    """Value in a unit of a number in another one; a ValueError where it has none."""
+    """Value in a unit of a number in another one; a ValueError says what is wrong with that."""
     import pint
 
     if _PIXELS.search(written):
-        raise PixelError(written)
+        raise ValueError("is one of pixels, which have no length")
     registry = _registry()
     try:
         return float(registry.Quantity(value, written).to(unit).magnitude)
     except pint.DimensionalityError as error:
-        raise DimensionError(str(error)) from error
+        raise ValueError(f"is not a unit of {_NAMES.get(unit, unit)}") from error
     # A text that is not a unit fails anywhere in pint, whose parser asserts and divides.
     except Exception as error:
-        raise ValueError(str(error)) from error
+        raise ValueError("is unknown") from error
 
 
 @functools.cache

@@ -47,14 +47,14 @@ def expectation(simulation: Simulation) -> Expectation:
     if not isinstance(schedule, Pressed):
         return Expectation(disorder, size, factor)
 
-    def needed_penetration(n_state: int) -> float:
-        works, way = _expected_works(simulation, factor), _steady_travel(simulation, size)
-        return schedule.steady_penetration(simulation.surface, works, way, n_state)
-
-    if needed_penetration(FEWEST_STATES) <= schedule.max_penetration:
-        return Expectation(disorder, size, factor)
+    works, travel = _expected_works(simulation, factor), _steady_travel(simulation, size)
     # Rather some states more than the fewest: surfaces differ.
-    needed = needed_penetration(3 * FEWEST_STATES)
+    fewest, needed = (
+        schedule.steady_penetration(simulation.surface, works, travel, n_state)
+        for n_state in (FEWEST_STATES, 3 * FEWEST_STATES)
+    )
+    if fewest <= schedule.max_penetration:
+        return Expectation(disorder, size, factor)
     return Expectation(disorder, size, factor, float(f"{needed:.2g}"))
 
 
@@ -76,10 +76,9 @@ def expectations(sweep: Sweep) -> dict[str, list[Expectation]]:
     vertical = 1.0 if sweep.scales is None else sweep.scales.vertical
 
     def converted(expected: Expectation) -> Expectation:
-        needed = expected.needed_penetration
-        return (
-            expected if needed is None else replace(expected, needed_penetration=vertical * needed)
-        )
+        if (needed := expected.needed_penetration) is None:
+            return expected
+        return replace(expected, needed_penetration=vertical * needed)
 
     return {
         item.name: [converted(expectation(first)) for first in sweep.one_per_amplitude(item)]

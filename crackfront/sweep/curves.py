@@ -46,6 +46,9 @@ _COUNTS = {"n_state": STATE, "n_front_site": FRONT_SITE}
 
 _CYCLE_STATUSES = tuple(status.name.lower() for status in Status)
 
+_FLAGS = {"status": STATUSES, "cycle_status": _CYCLE_STATUSES}
+"""Words that the numbers in a variable stand for."""
+
 _NO_CYCLE = -1
 """Cycle status of a simulation that failed before its first state."""
 
@@ -189,16 +192,15 @@ def _labelled(columns: dict[str, Any], state_types: Iterable[type[State]]) -> xr
         of_states |= {_state_name(item.name): item for item in variables(kind)}
     labelled: dict[str, Any] = {}
     for item in (*variables(SweepRow, SIMULATION), *IDENTITY, *_CYCLE):
-        about = label(item, STATUSES if item.name == "status" else ())
-        if item.name == "cycle_status":
-            about = label(item, _CYCLE_STATUSES)
+        about = label(item, _FLAGS.get(item.name, ()))
         if item.name in _COUNTS:
             about["sample_dimension"] = _COUNTS[item.name]
         labelled[item.name] = (SIMULATION,), columns[item.name], about
-    for name in [name for name in columns if name not in labelled]:
-        item = _FRONT if name == "front" else of_states[name]
-        dimension = FRONT_SITE if name == "front" else STATE
-        labelled[name] = (dimension,), columns[name], label(item)
+    for name, values in columns.items():
+        if name == "front":
+            labelled[name] = _FRONT.dims, values, label(_FRONT)
+        elif name not in labelled:
+            labelled[name] = (STATE,), values, label(of_states[name])
     return xr.Dataset(labelled)
 
 
@@ -216,6 +218,11 @@ class StoredRows:
     """Parameters of each series."""
     columns: dict[str, NDArray[Any]]
     """Their values by the names of `SweepRow`, and `arithmetic`, each (n,)."""
+
+    @property
+    def identities(self) -> set[tuple[str, int]]:
+        """Series and number of each simulation."""
+        return {*zip(self.series.tolist(), self.realisation.tolist(), strict=True)}
 
 
 def stored_rows(path: Path) -> StoredRows:

@@ -43,7 +43,7 @@ def check_feasible(sweep: Sweep, path: Path) -> None:
     for every spectrum and amplitude; no surface is made.
     """
     try:
-        _check_numbers(sweep)
+        _check_counts(sweep)
         _check_sizes(sweep)
         _check_costs(sweep)
         for item in sweep.spectra:
@@ -56,7 +56,7 @@ def check_feasible(sweep: Sweep, path: Path) -> None:
         raise ConfigurationError(f"{path}: {error}") from error
 
 
-def _check_numbers(sweep: Sweep) -> None:
+def _check_counts(sweep: Sweep) -> None:
     """Raise TooLargeError if memory cannot contain lists of simulations or bootstrap samples."""
     check_memory(
         f"realisations: {sweep.n_simulation:.3g} simulations",
@@ -92,18 +92,17 @@ def _check_costs(sweep: Sweep) -> None:
 
 
 def _check_resolution(simulation: Simulation) -> None:
-    """Raise ValueError if sites, states or samples are too few for the spectrum."""
-    resolution, schedule = simulation.resolution, simulation.schedule
-    name = simulation.spectrum_name
-    short_cutoff, front_length = simulation.spectrum.short_cutoff, schedule.front_length
+    """Raise ValueError if sites or samples are too few for the spectrum."""
+    resolution, name = simulation.resolution, simulation.spectrum_name
+    short_cutoff, front_length = simulation.spectrum.short_cutoff, simulation.schedule.front_length
     if (density := resolution.n_angle * short_cutoff / front_length) < _FEWEST_SITES:
         raise ValueError(
             f"numerics: {resolution.n_angle} sites of a front are {density:.2g} per short cutoff "
             f"of {name}, with which k comes out too large; use "
             f"{math.ceil(2 * front_length / short_cutoff)} or more, as angles_per_cutoff: 2 does"
         )
-    fewest, density = _FEWEST_SAMPLES[resolution.interpolation], short_cutoff / resolution.spacing
-    if density < fewest * (1 - _ROUND_OFF):
+    fewest = _FEWEST_SAMPLES[resolution.interpolation]
+    if (density := short_cutoff / resolution.spacing) < fewest * (1 - _ROUND_OFF):
         raise ValueError(
             f"numerics: samples_per_cutoff is {density:.3g}, with which {resolution.interpolation} "
             f"pieces miss waves of {name} and k comes out too small; use {fewest:g} or more"

@@ -136,6 +136,7 @@ class LocatedRows:
     def column(self, name: str) -> NDArray[Any]:
         """Values of a column of the simulations that are there, series by series."""
         parts = [rows.columns[name] for rows in self.files]
+        # Where each file begins in the columns of all files, one after the other.
         starts = np.cumsum([0, *map(len, parts)])
         there = ~self.missing
         return np.asarray(np.concatenate(parts)[starts[self.file[there]] + self.place[there]])
@@ -203,7 +204,7 @@ def _unused(
     missing: NDArray[np.bool_],
     realisations: range,
 ) -> tuple[int, Counter[str]]:
-    """How many missing simulations are stored of older physics, and what others differ in."""
+    """Simulations stored of older physics that are missing, and of other parameters, by these."""
     older, changed = 0, Counter[str]()
     requested = {first.series for first in firsts}
     for stored in rows:
@@ -218,7 +219,7 @@ def _unused(
                 names = min((_differences(first, parameters) for first in firsts), key=len)
                 count = int(np.count_nonzero(within & (stored.series == series)))
                 changed[" and ".join(names)] += count
-    return older, +changed
+    return older, +changed  # without counts of 0
 
 
 def _differences(simulation: Simulation, parameters: dict[str, Any]) -> list[str]:

@@ -40,7 +40,8 @@ def sweep_row(result: SimulationResult) -> SweepRow:
     length = simulation.correlation_length
     steady = result.steady_adhesion
     status, sentence = _status(record, steady)
-    complete, cycle = status in COMPLETE, status == COMPLETE[0]
+    complete = status in COMPLETE
+    is_cycle = status == Status.LOST_CONTACT.name.lower()
     numerical = stated_error(simulation, steady, length) if complete else (np.nan, np.nan)
     measures: dict[str, Any] = {
         item.name: getattr(steady, item.name) if complete or item.units != ADHESION else np.nan
@@ -52,7 +53,7 @@ def sweep_row(result: SimulationResult) -> SweepRow:
         w_retr_numerical_error=numerical[1],
         iterations=int(np.sum(record.states.iterations)),
         n_step=record.states.direction.size,
-        pull_off_force=float(np.min(record.states.force, initial=np.inf)) if cycle else np.nan,
+        pull_off_force=float(np.min(record.states.force, initial=np.inf)) if is_cycle else np.nan,
         end_penetration=record.end_load,
         status=status,
         status_sentence=sentence,
@@ -63,11 +64,11 @@ def sweep_row(result: SimulationResult) -> SweepRow:
 
 def failed_row(simulation: Simulation, status: str, sentence: str) -> SweepRow:
     """Row of a simulation that failed, with its status and the reason as a sentence."""
-    unknown: dict[str, Any] = {item.name: math.nan for item in fields(SweepRow)}
-    nothing = dict.fromkeys(("iterations", "n_step", "n_approach", "n_retraction"), 0)
-    ending = {"status": status, "status_sentence": sentence, "seed": simulation.seed}
-    limit = {"max_sweeps": simulation.solver.max_sweeps}
-    return SweepRow(**(unknown | nothing | ending | limit))
+    values: dict[str, Any] = {item.name: math.nan for item in fields(SweepRow)}
+    values |= dict.fromkeys(("iterations", "n_step", "n_approach", "n_retraction"), 0)
+    values |= {"status": status, "status_sentence": sentence}
+    values |= {"seed": simulation.seed, "max_sweeps": simulation.solver.max_sweeps}
+    return SweepRow(**values)
 
 
 def _status(record: CycleRecord, steady: SteadyAdhesion) -> tuple[str, str]:

@@ -108,8 +108,8 @@ def validated(path: Path, content: object, schema: type[Kind]) -> Kind:
         return schema.model_validate(content, context=folder)
     except ValidationError as error:
         errors = error.errors(include_url=False)
-        around = {item["loc"][:depth] for item in errors for depth in range(len(item["loc"]))}
         # pydantic also calls a list with wrong entries too short.
+        around = {item["loc"][:depth] for item in errors for depth in range(len(item["loc"]))}
         errors = [
             item for item in errors if item["type"] != "too_short" or item["loc"] not in around
         ]
@@ -209,22 +209,21 @@ def _sentence(error: ErrorDetails, schema: type[Section]) -> str:
         return f"unknown key {place}; {_known_keys(error['loc'], schema)}"
     if error["type"] == "missing":
         return f"key {place} is missing; add it"
-    must = re.sub(r"^(Input|String|Tuple|Value) should", "it must", error["msg"])
-    must = _SHORT.get(error["type"], must)
+    value = list(error["input"]) if isinstance(error["input"], tuple) else error["input"]
+    shown = f"{place} is {_SHOWN.repr(value)}"
     if error["type"] == "too_short":
         least = error["ctx"]["min_length"]
-        must = f"it must have at least {'one entry' if least == 1 else f'{least} entries'}"
-    value = list(error["input"]) if isinstance(error["input"], tuple) else error["input"]
+        return f"{shown}; it must have at least {'one entry' if least == 1 else f'{least} entries'}"
+    must = re.sub(r"^(Input|String|Tuple|Value) should", "it must", error["msg"])
     key = next((part for part in reversed(error["loc"]) if isinstance(part, str)), "")
-    meaning = "" if error["type"] == "too_short" else _MEANING.get(key, "")
-    return f"{place} is {_SHOWN.repr(value)}; {must}{meaning}"
+    return f"{shown}; {_EXPECTED.get(error['type'], must)}{_MEANING.get(key, '')}"
 
 
 _SHOWN = reprlib.Repr()
 _SHOWN.maxlist, _SHOWN.maxstring, _SHOWN.maxother = 8, 80, 80
 """How a value is shown that may be long."""
 
-_SHORT = {
+_EXPECTED = {
     "model_type": "it must be a mapping of keys",
     "model_attributes_type": "it must be a mapping of keys",
     "tuple_type": "it must be a list",
@@ -232,11 +231,13 @@ _SHORT = {
     "finite_number": "it must be finite",
     "path_type": "it must be the name of a file",
 }
+"""Expectations in place of the messages of pydantic, by the types of its errors."""
 
 _MEANING = {
     "elastic_energy": " (in units of w_int: full conformity needs an energy below w_int)",
     "work_of_adhesion_rms": " (in units of w_int: at 2 the energy of full conformity is w_int)",
 }
+"""What the bounds of a key are for."""
 
 
 def _known_keys(location: tuple[int | str, ...], schema: type[BaseModel]) -> str:

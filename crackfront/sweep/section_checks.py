@@ -33,8 +33,8 @@ def check_not_overruled(section: Section, decider: str, keys: Iterable[str]) -> 
         )
 
 
-def check_exactly_one(problem: str, values: tuple[Any, Any], otherwise: str = "give one") -> None:
-    """Raise unless exactly one of two values is there."""
+def check_exactly_one(problem: str, values: Iterable[Any], otherwise: str = "give one") -> None:
+    """Raise unless exactly one of some values is there."""
     n_value = sum(value is not None for value in values)
     if n_value != 1:
         raise section_error(f"{problem}; {'remove one' if n_value else otherwise}")

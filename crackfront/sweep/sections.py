@@ -62,14 +62,14 @@ class AmplitudesSection(Section):
 
     @model_validator(mode="after")
     def _one_measure(self) -> AmplitudesSection:
-        measures = [values for _, values in self if values is not None]
-        if len(measures) != 1:
-            raise section_error(
-                "amplitudes need exactly one of elastic_energy, work_of_adhesion_rms and measured; "
-                + ("remove one" if measures else "give one")
-            )
-        # Texts have six digits.
-        check_distinct("amplitude", [float(f"{value:g}") for value in measures[0]])
+        measures = (self.elastic_energy, self.work_of_adhesion_rms, self.measured)
+        check_exactly_one(
+            "amplitudes need exactly one of elastic_energy, work_of_adhesion_rms and measured",
+            measures,
+        )
+        for values in filter(None, measures):
+            # Texts have six digits.
+            check_distinct("amplitude", [float(f"{value:g}") for value in values])
         return self
 
     def elastic_energies(self, measured: float) -> tuple[float, ...]:
@@ -81,7 +81,7 @@ class AmplitudesSection(Section):
             return self.elastic_energy
         if self.work_of_adhesion_rms is not None:
             return tuple(rms**2 / 4 for rms in self.work_of_adhesion_rms)
-        factors: Any = self.measured
+        factors = self.measured or ()
         energies = tuple(float(f"{factor**2 * measured:.4g}") for factor in factors)
         if max(energies) >= 1:
             raise ConfigurationError(
@@ -198,7 +198,7 @@ class LoadSection(Section):
         """Penetrations to visit, lengths divided by a unit, or straight fronts."""
         if self.line is not None:
             return LineLoad(**self.line.model_dump(exclude={"springs"}))
-        lengths: Any = self
+        lengths: Any = self  # required by validation where there is no line
         max_penetration, steady = lengths.max_penetration / vertical, self.steady
         if steady is None:
             return FullCycle(max_penetration, lengths.step / vertical)

@@ -56,15 +56,15 @@ class ShardSummary:
     parameters: dict[str, dict[str, Any]]
     """Parameters of each series."""
 
-    def has_states(self, series: str, max_sweeps: int) -> bool:
-        """Whether it was derived from states of a series as they are today, at such a limit."""
+    def has_states(self, series: Iterable[str], max_sweeps: int) -> bool:
+        """Whether it was derived from states of all these series as of today, at such a limit."""
         within = self.limit == NO_LIMIT or self.limit >= max_sweeps
-        return self.physics_version == PHYSICS_VERSION and within and series in self.series
+        has_series = {*self.series}.issuperset(series)
+        return self.physics_version == PHYSICS_VERSION and within and has_series
 
     def has_rows(self, series: Iterable[str], max_sweeps: int) -> bool:
-        """Whether it has rows of all these series, of today's versions and at such a limit."""
-        has_states = all(self.has_states(digest, max_sweeps) for digest in series)
-        return has_states and self.rows_version == ROWS_VERSION
+        """Whether its rows of all these series are as of today as well."""
+        return self.has_states(series, max_sweeps) and self.rows_version == ROWS_VERSION
 
 
 def write_shard(
@@ -152,10 +152,10 @@ def covering(
     No realisation is taken twice, and none beyond the requested number.
     """
     chosen, position = [], 0
-    longest_first = sorted(shards, key=lambda shard: -len(shard.realisations))
-    for shard in sorted(longest_first, key=lambda shard: shard.realisations.start):
-        start, stop = shard.realisations.start, shard.realisations.stop
-        taken = range(max(position, start), min(stop, n_realisation))
+    # By their first realisation, of those with the same one the longest first.
+    for shard in sorted(shards, key=lambda shard: (shard.realisations[0], -shard.realisations[-1])):
+        block = shard.realisations
+        taken = range(max(position, block.start), min(block.stop, n_realisation))
         if taken:
             chosen.append((shard, taken))
             position = taken.stop

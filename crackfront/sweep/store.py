@@ -12,7 +12,7 @@ import fcntl
 import itertools
 import time
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import IO, Any
 
@@ -190,11 +190,8 @@ class Store:
         firsts, series = sweep.one_per_amplitude(item), sweep.series(item)
         costs = sum(expected_cost(first).seconds for first in firsts)
         limit, total, position = sweep.numerics.max_sweeps, Inventory(), 0
-        current = [
-            summary
-            for summary in self.shard_summaries(item)
-            if all(summary.has_states(digest, limit) for digest in series)
-        ]
+        summaries = self.shard_summaries(item)
+        current = [summary for summary in summaries if summary.has_states(series, limit)]
         for summary, taken in covering(current, sweep.n_realisation):
             if gap := range(position, taken.start):
                 total += self.inventory(sweep, item, gap)
@@ -297,16 +294,12 @@ class Store:
         number: int,
         columns: dict[str, NDArray[Any]],
     ) -> None:
-        """Make the rows of a file anew from its states, in columns of the whole shard."""
-        rows = located.files[number]
-        firsts = sweep.one_per_amplitude(shard.item)
+        """Make the rows of a file anew from its states, and put them into columns of the shard."""
         chosen = np.flatnonzero(located.file == number)
-        amplitudes, realisations = np.unravel_index(chosen, located.file.shape)
-        simulations = [
-            replace(firsts[amplitude], realisation=shard.realisations[number])
-            for amplitude, number in zip(amplitudes.tolist(), realisations.tolist(), strict=True)
-        ]
-        results = read_results(rows.path, located.place.ravel()[chosen], simulations)
+        everything = [*sweep.simulations(shard.item, shard.realisations)]
+        simulations = [everything[position] for position in chosen]
+        path = located.files[number].path
+        results = read_results(path, located.place.ravel()[chosen], simulations)
         for position, result in zip(chosen.tolist(), results, strict=True):
             if result is None:
                 continue
@@ -344,19 +337,12 @@ class Store:
             {name: (SIMULATION, values, merged[name].attrs) for name, values in columns.items()}
         )
         merged_path = write_curves(folder, MERGED, shard.name, merged, origin)
+        in_merged = stored_rows(merged_path).identities
         for path in curve_files(folder):
-            if path != merged_path and self._is_replaced(path, merged_path):
+            rows = stored_rows(path)
+            is_replaced = rows.physics_version < PHYSICS_VERSION or rows.identities <= in_merged
+            if is_replaced and path != merged_path:
                 path.unlink()
-
-    def _is_replaced(self, path: Path, merged_path: Path) -> bool:
-        """Whether all simulations of a file are in the merged one, or of older physics."""
-        rows, merged = stored_rows(path), stored_rows(merged_path)
-        if rows.physics_version < PHYSICS_VERSION:
-            return True
-        in_merged = {*zip(merged.series.tolist(), merged.realisation.tolist(), strict=True)}
-        return in_merged.issuperset(
-            zip(rows.series.tolist(), rows.realisation.tolist(), strict=True)
-        )
 
     def result(self, sweep: Sweep, simulation: Simulation) -> SimulationResult:
         """Stored result of a simulation; `UnreadableFileError` where it is not stored."""

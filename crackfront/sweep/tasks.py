@@ -140,7 +140,7 @@ def run_and_store(
             for writer in writers.values():
                 writer.flush_in_time()
         except _WRITING_ERRORS as error:
-            raise NotStoredError(_not_stored(error).sentence) from error
+            raise NotStoredError(_not_stored_sentence(error)) from error
 
     def keep(task: _Task, result: _TaskResult) -> SimulationOutcome:
         try:
@@ -148,7 +148,7 @@ def run_and_store(
                 writers[task.folder].add(result.finished)
             write_in_time()
         except _WRITING_ERRORS as error:
-            return _not_stored(error)
+            return SimulationOutcome(_NOT_STORED, sentence=_not_stored_sentence(error))
         return result.outcome
 
     runs, done = ranks.run(_run_task, tasks, keep, write_in_time), 0
@@ -183,7 +183,7 @@ def _flush_all(writers: Iterable[BatchWriter]) -> str:
         try:
             writer.flush()
         except _WRITING_ERRORS as error:
-            sentence = _not_stored(error).sentence
+            sentence = _not_stored_sentence(error)
     return sentence
 
 
@@ -206,39 +206,44 @@ class _TaskResult:
     """What is to be stored; None where the simulation has not ended."""
 
 
-def _not_stored(error: Exception) -> SimulationOutcome:
-    """Outcome of a simulation that the machine could not compute or store."""
-    if isinstance(error, NotStoredError):
-        return SimulationOutcome(_NOT_STORED, sentence=str(error))
-    sentence = f"the machine could not compute or store it ({error}); free disk, memory or "
-    return SimulationOutcome(
-        _NOT_STORED, sentence=f"{sentence}threads and run the same command again"
+def _not_stored_sentence(error: Exception) -> str:
+    """Why a simulation could not be computed or stored, and what to do."""
+    if isinstance(error, NotStoredError):  # by another simulation, whose sentence it has
+        return str(error)
+    return (
+        f"the machine could not compute or store it ({error}); free disk, memory or threads and "
+        "run the same command again"
     )
 
 
-def _result(task: _Task, between: Callable[[], None]) -> tuple[SimulationResult, str]:
-    """Result of a task, and why its checkpoint could not be used; empty where it was or is none."""
+def _result(task: _Task, idle: Callable[[], None]) -> tuple[SimulationResult, str]:
+    """Result of a task, and why it did not go on from its checkpoint; empty if nothing was wrong.
+
+    `idle` is called at every new state, as of :meth:`crackfront.sweep.parallel.Ranks.run`.
+    """
     simulation, wrong = task.simulation, ""
     timer = CheckpointTimer(task.folder, task.checkpoint_seconds)
 
     def keep(make: Callable[[], PartialRun]) -> None:
-        between()
+        idle()
         if timer.keep(lambda folder: _write_checkpoint(folder, make(), task.origin)):
             raise _StopRequestedError
 
     for path in reversed(checkpoint_files(task.folder, simulation)):
+        if sentence := set_aside_if_damaged(path):
+            wrong = sentence
+            continue
         try:
-            if sentence := set_aside_if_damaged(path):
-                raise ValueError(sentence)
             resume = read_checkpoint(path, simulation)
             return run_simulation(simulation, resume=resume, keep=keep), ""
         except TooLargeError:  # the checkpoint serves where there is more memory
             raise
         except (*_REPRODUCIBLE_ERRORS, LookupError, TypeError) as error:
-            wrong = f"begun anew without its checkpoint: {error}"
-            if path.exists():
+            wrong = str(error) or type(error).__name__
+            if path.exists():  # unless a later one has replaced it before the error
                 set_aside(path)
-    return run_simulation(simulation, keep=keep), wrong
+    result = run_simulation(simulation, keep=keep)
+    return result, f"begun anew without its checkpoint: {wrong}" if wrong else ""
 
 
 def _write_checkpoint(folder: Path, partial: PartialRun, origin: Provenance) -> None:
@@ -251,30 +256,30 @@ def _write_checkpoint(folder: Path, partial: PartialRun, origin: Provenance) -> 
             path.unlink(missing_ok=True)
 
 
-def _run_task(task: _Task, between: Callable[[], None]) -> _TaskResult:
+def _run_task(task: _Task, idle: Callable[[], None]) -> _TaskResult:
     """Run one simulation; failures of the machine (memory, disk) are not stored as results."""
     if parallel.stop_is_requested():
         return _TaskResult(SimulationOutcome(_STOPPED))
     try:
-        return _run(task, between)
+        return _run(task, idle)
     except _StopRequestedError:
         return _TaskResult(SimulationOutcome(_STOPPED))
     except (MemoryError, TooLargeError):
         sentence = "the memory does not suffice; start fewer ranks"
-        return _TaskResult(SimulationOutcome(_NOT_STORED, sentence=sentence))
     except (OSError, RuntimeError, SystemError, NumbaError) as error:
-        return _TaskResult(_not_stored(error))
+        sentence = _not_stored_sentence(error)
+    return _TaskResult(SimulationOutcome(_NOT_STORED, sentence=sentence))
 
 
 _REPRODUCIBLE_ERRORS = (ValueError, ArithmeticError, DefectError)
 """Errors that end a simulation in the same way on every machine."""
 
 
-def _run(task: _Task, between: Callable[[], None]) -> _TaskResult:
+def _run(task: _Task, idle: Callable[[], None]) -> _TaskResult:
     """Run one simulation to its row and its states."""
     simulation, arithmetic = task.simulation, task.origin.here().arithmetic
     try:
-        result, wrong = _result(task, between)
+        result, wrong = _result(task, idle)
     except TooLargeError:
         raise
     except _REPRODUCIBLE_ERRORS as error:

@@ -80,8 +80,8 @@ class SweepBar:
     """Bar of the simulations of a sweep, drawn by a thread of the process that runs the workflow.
 
     It counts lines in the logs of the jobs; `sizes` are the numbers of simulations of the shards by
-    their names. Nothing is drawn if standard error is not a terminal:
-    jobs print the lines there.
+    their names. If standard error is not a terminal, jobs print the lines there, and nothing is
+    drawn.
     """
 
     def __init__(self, sizes: Mapping[str, int], results: Path) -> None:

@@ -100,7 +100,7 @@ def test_a_cycle_that_ends_early_is_written_and_has_exit_code_one(
     ("options", "sentence"),
     [
         (("--max-penetration", -1), "max penetration -1.0 never makes contact"),
-        (("--step", 0), "load step is 0.0; it must be positive"),
+        (("--step", 0), "step is 0.0; it must be positive"),
         (("--step", "nan"), "'--step': nan is not a number"),
         (("--solver", "none"), "solver"),
         (("--field", "none.nc"), "none.nc does not exist"),

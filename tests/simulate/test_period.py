@@ -219,5 +219,5 @@ def test_bad_lines_are_refused_with_a_sentence(tmp_path, case):
 
 
 def test_a_schedule_without_extent_is_refused():
-    with pytest.raises(ValueError, match=r"lead-in is 0\.0; it must be positive and finite"):
+    with pytest.raises(ValueError, match=r"lead_in is 0\.0; it must be positive and finite"):
         replace(ONE.schedule, lead_in=0.0)

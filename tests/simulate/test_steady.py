@@ -224,8 +224,8 @@ def test_a_rough_front_has_to_pass_three_times_its_depth():
 @pytest.mark.parametrize(
     ("change", "sentence"),
     [
-        ({"travel": 0.0}, "steady travel is 0.0; it must be positive"),
-        ({"standard_error": math.inf}, "steady standard error is inf; it must be positive"),
+        ({"travel": 0.0}, "travel is 0.0; it must be positive"),
+        ({"standard_error": math.inf}, "standard_error is inf; it must be positive"),
         (
             {"start": 1.0},
             "start is 1.0; it must be 0 or more, and below the largest penetration 1.0",

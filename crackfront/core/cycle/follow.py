@@ -60,7 +60,7 @@ def follow(
         Loads to visit. The next one is read after the step before it was used, so that it may
         depend on that step.
     solver : Solver, optional
-        How each front is relaxation.
+        How each front is found.
 
     Yields
     ------
@@ -88,8 +88,12 @@ def front_at(field: Field, front: Array, load: Load, solver: Solver | None = Non
     ValueError
         If there is none, with the reason.
     """
-    step = next(follow(field, front, [load], solver))
+    return converged_front(next(follow(field, front, [load], solver)), field)
+
+
+def converged_front(step: Step, field: Field) -> Array:
+    """Front of a step; ValueError, with the reason, if it did not converge."""
     if step.status is not Status.CONVERGED:
         noun = field.geometry.state_type.load_noun
-        raise ValueError(f"at {noun} {load.value:.6g}: {step.status.value}")
+        raise ValueError(f"at {noun} {step.load.value:.6g}: {step.status.value}")
     return step.front

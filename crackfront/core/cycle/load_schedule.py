@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
+from crackfront.core.arguments import check_positive
 from crackfront.core.cycle.follow import Load
 from crackfront.core.outcome import Direction
 
@@ -45,8 +46,7 @@ class LoadSchedule:
     step: float
 
     def __post_init__(self) -> None:
-        if not (math.isfinite(self.step) and self.step > 0):
-            raise ValueError(f"load step is {self.step}; it must be positive")
+        check_positive(step=self.step)
         if not (math.isfinite(self.max_penetration) and self.max_penetration >= 0):
             raise ValueError(
                 f"max penetration {self.max_penetration} never makes contact; the sphere touches "
@@ -96,7 +96,7 @@ def protocol(loads: Sequence[float], step: float = math.inf) -> Iterator[Load]:
     [1.0, 2.0, 1.25, 0.5]
     """
     if not step > 0:
-        raise ValueError(f"load step is {step}; it must be positive")
+        raise ValueError(f"step is {step}; it must be positive")
     if not len(loads):
         raise ValueError("there are no loads; give one or more")
     return _way(loads, step)

@@ -104,28 +104,26 @@ class Recorder:
         """
         self._field, self.front, self._turn = field, front, front
         coming = iter(loads)
-        for load in self._recalled(coming):
-            self.status, self.load = Status.CONVERGED, load.value
+        if self._resume is not None:
+            self._recall(self._resume, coming)
         for step in follow(field, self.front, coming, solver):
             self.status, self.load = step.status, step.load.value
             if step.status is Status.CONVERGED:
                 self._add(step)
 
-    def _recalled(self, loads: Iterator[Load]) -> Iterator[Load]:
-        """Yield the loads whose states are in the checkpoint, then restore its front."""
-        if self._resume is None:
-            return
-        for state in rows(self._resume.record.states):
+    def _recall(self, checkpoint: Checkpoint, loads: Iterator[Load]) -> None:
+        """Take the states of a checkpoint and as many loads, which may depend on these states."""
+        for state in rows(checkpoint.record.states):
             load = next(loads)
-            load_value = getattr(state, fields(state)[0].name)
+            load_value = getattr(state, self.load_name)
             if (load_value, state.direction) != (load.value, load.direction):
                 raise ValueError(
                     f"the checkpoint goes to {state.load_noun} {load_value} where this run goes to "
                     f"{load.value}; it belongs to other loads"
                 )
             self.states.append(state)
-            yield load
-        self.front, self._turn = self._resume.front, self._resume.turn
+            self.status, self.load = Status.CONVERGED, load.value
+        self.front, self._turn = checkpoint.front, checkpoint.turn
 
     def _add(self, step: Step) -> None:
         """Record a state."""

@@ -9,6 +9,7 @@ from scipy.fft import fftfreq, irfft2, rfft2, rfftfreq
 from scipy.ndimage import spline_filter
 
 from crackfront.core.adhesion import AdhesionMap
+from crackfront.core.arguments import check_positive
 from crackfront.core.arrays import Array
 
 Interpolation = Literal["cubic", "linear"]
@@ -124,11 +125,10 @@ def tile_field(
     """
     check_interpolation(interpolation)
     values = np.asarray(adhesion.work_of_adhesion, dtype=float)
-    check_field_values(values, names=("x", "y"))
     if values.ndim != 2:
         raise ValueError(f"work of adhesion has shape {values.shape}; a tile must be (x, y)")
-    if not 0 < adhesion.pixel < np.inf:
-        raise ValueError(f"pixel is {adhesion.pixel}; it must be positive and finite")
+    check_field_values(values, names=("x", "y"))
+    check_positive(pixel=adhesion.pixel)
     if geometry.n_site < 4:
         raise ValueError(f"number of angles is {geometry.n_site}; at least 4 are needed")
     if not 0 < spacing < (largest_place - origin) / 2 < np.inf:

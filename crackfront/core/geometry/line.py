@@ -18,6 +18,7 @@ import numpy as np
 from scipy.fft import rfft
 
 from crackfront.core.adhesion import AdhesionMap
+from crackfront.core.arguments import check_positive
 from crackfront.core.arrays import Array
 from crackfront.core.compiled import implements
 from crackfront.core.field.fields import Interpolation, TileField, tile_field
@@ -173,8 +174,7 @@ def line_field(
         If the length of the spring is not positive, or as in
         :func:`crackfront.core.field.fields.tile_field`.
     """
-    if not 0 < spring < np.inf:
-        raise ValueError(f"spring is {spring}; its length must be positive and finite")
+    check_positive(spring=spring)
     values, pixel = adhesion.work_of_adhesion, adhesion.pixel
     stiffness, mean = WORK_OF_ADHESION / spring, float(np.mean(values))
     count = n_site or values.shape[1]

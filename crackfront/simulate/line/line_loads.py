@@ -22,6 +22,7 @@ from crackfront.core.adhesion import (
     force_correlation_length,
     larkin_length,
 )
+from crackfront.core.arguments import check_positive
 from crackfront.core.arrays import Array
 from crackfront.core.cycle.follow import Load
 from crackfront.core.cycle.record import CycleRecord, Recorder
@@ -98,12 +99,8 @@ class LineSchedule(Schedule, OnSprings):
     load_name = "straight front"
 
     def __post_init__(self) -> None:
-        for name in ("spring", "length", "period", "lead_in", "step"):
-            if not 0 < getattr(self, name) < math.inf:
-                option = name.replace("_", "-")
-                raise ValueError(
-                    f"{option} is {getattr(self, name)}; it must be positive and finite"
-                )
+        lengths = ("spring", "length", "period", "lead_in", "step")
+        check_positive(**{name: getattr(self, name) for name in lengths})
 
     @property
     def n_period(self) -> int:
@@ -165,7 +162,9 @@ class LineSchedule(Schedule, OnSprings):
 
         e_el decides how far behind the load a branch begins.
         """
-        field, pinned = problem.field, _BEHIND * 4 * problem.elastic_energy * self.spring
+        field = problem.field
+        # The pinning force of second-order theory is w_rms^2 / w_int = 4 e_el.
+        pinned = _BEHIND * 4 * problem.elastic_energy * self.spring
         # As far behind as the field allows, never less than pinning may hold the front.
         inside = min(-first_place(field), last_place(field) - float(self.loads[-1]))
         behind = min(pinned + self.step, max(inside, pinned))

@@ -16,6 +16,7 @@ import numpy as np
 from crackfront.analysis.standard_error import standard_error
 from crackfront.core import jkr
 from crackfront.core.adhesion import FieldKind
+from crackfront.core.arguments import check_positive
 from crackfront.core.arrays import Array
 from crackfront.core.cycle.follow import Load
 from crackfront.core.cycle.record import CycleRecord, Recorder, columns
@@ -44,8 +45,9 @@ Single sites may move back: where some repel, no circle with an open edge drives
 """
 
 _LARGEST_FACTOR, _FAR_BEHIND = 2.6, 20.0
-"""A circle may also be a start this many correlation lengths behind where the largest k holds one:
-on fine spectra the drive above needs hundreds; fronts deviate by 7 at most."""
+"""Largest factor k that may hold a front, and distance behind such a front, in correlation lengths,
+at which a circle may be a start too: on fine spectra the drive above needs hundreds of them, and
+fronts deviate from a circle by 7 at most."""
 
 _FEWEST_STATES = 9.0
 """States of an approach that turns as early as it may: one before it is steady."""
@@ -75,10 +77,7 @@ class SteadySchedule(SphereSchedule):
     retraction is taken to scatter as much."""
 
     def __post_init__(self) -> None:
-        for name in ("travel", "standard_error"):
-            if not 0 < getattr(self, name) < math.inf:
-                option = f"steady {name.replace('_', ' ')}"
-                raise ValueError(f"{option} is {getattr(self, name)}; it must be positive")
+        check_positive(travel=self.travel, standard_error=self.standard_error)
         if not 0 <= self.start < self.max_penetration < math.inf:
             raise ValueError(
                 f"steady start is {self.start}; it must be 0 or more, and below the largest "
@@ -206,29 +205,29 @@ def own_part(values: Array, shared: Array) -> Array:
 def forward_circle(
     field: Field, penetration: float, direction: Direction, near: float, correlation_length: float
 ) -> Array:
-    """The first circle behind a radius that moves forward even against 1.5 times the rms of w_loc.
+    """Circle, (n_angle,), behind which no front can rest at a penetration.
 
-    Nearer, where that is 20 correlation lengths behind a front that is pinned by k = 2.6: its drive
-    is k e_el, and the rms of w_loc 2 (e_el w_int)^(1/2). Behind is inside in approach (direction
-    +1), outside in retraction (-1); `near` is the radius of the first circle that is tried. Where
-    none is found, the front (n_angle,) is, in approach, that within which the edge is in
-    compression, so that no front can rest inside; in retraction the end of the field. (Units:
-    reduced lateral length, the penetration reduced vertical length)
+    Circles are tried from the radius `near` on backwards: inwards in approach (direction +1),
+    outwards in retraction (-1). The first is taken that :data:`_LEAST_DRIVE` allows, or that lies
+    :data:`_FAR_BEHIND` the first circle that pinning by the largest k cannot hold. Without any it
+    is the last: in approach that within which the edge is in compression, in retraction the end of
+    the field. (Units: reduced lateral length, the penetration reduced vertical length)
     """
     furthest = last_place(field)
     if direction > 0:
         furthest = max(math.sqrt(max(penetration, 0.0)), first_place(field))
     if direction * (furthest - near) > 0:
         return np.full(field.geometry.n_site, furthest)
-    resting = None
+    unheld = None
     for radius in np.linspace(near, furthest, _N_CIRCLE):
         circle = np.full(field.geometry.n_site, radius)
         adhesion = front_adhesion(circle, field)
         drive = direction * (np.mean(adhesion) - jkr.energy_release_rate(radius, penetration))
         if drive > _LEAST_DRIVE * np.std(adhesion):
             return circle
-        if resting is None and drive > _LARGEST_FACTOR * np.var(adhesion) / (4 * WORK_OF_ADHESION):
-            resting = radius
-        if resting is not None and abs(radius - resting) > _FAR_BEHIND * correlation_length:
+        # The drive of a front that is held is at most k e_el, with w_rms^2 = 4 e_el w_int.
+        if unheld is None and drive > _LARGEST_FACTOR * np.var(adhesion) / (4 * WORK_OF_ADHESION):
+            unheld = radius
+        if unheld is not None and abs(radius - unheld) > _FAR_BEHIND * correlation_length:
             return circle
     return np.full(field.geometry.n_site, furthest)

@@ -44,7 +44,7 @@ def test_a_schedule_to_zero_penetration_only_touches():
 
 @pytest.mark.parametrize("step", [0.0, -0.1, float("nan"), float("inf")])
 def test_a_load_step_that_is_not_positive_is_refused(step):
-    with pytest.raises(ValueError, match=f"load step is {step}; it must be positive"):
+    with pytest.raises(ValueError, match=f"step is {step}; it must be positive"):
         LoadSchedule(1.0, step)
 
 

@@ -132,6 +132,12 @@ def test_a_field_with_too_few_samples_or_angles_is_refused(n_sample, n_angle):
 # --- periodic tiles
 
 
+@pytest.mark.parametrize("shape", [(4,), (4, 4, 4)])
+def test_a_tile_without_values_and_of_another_shape_is_refused_by_its_shape(shape):
+    with pytest.raises(ValueError, match=r"a tile must be \(x, y\)"):
+        tile_field(tile(np.full(shape, np.nan)), sphere(8), 0.05, 1.0)
+
+
 def test_a_tile_is_met_at_its_own_points_along_both_axes(rng):
     values = 1 + 0.3 * rng.standard_normal((10, 10))
     field = tile_field(tile(values), geometry=sphere(4), spacing=0.1, largest_place=1.2)

@@ -258,7 +258,7 @@ def test_the_command_writes_a_cycle_of_the_line(command):
         ({"spring": -2}, "Invalid value for '--spring': -2.0 is not in the range"),
         ({"loads": None}, "a straight front needs loads"),
         ({"loads": "3,x"}, "a load is 'x'; write numbers alone"),
-        ({"step": 0}, "load step is 0.0; it must be positive"),
+        ({"step": 0}, "step is 0.0; it must be positive"),
         ({"max_penetration": 1}, "max_penetration is 1, but only a sphere has one; give loads"),
     ],
 )
