@@ -44,6 +44,13 @@ def test_a_file_is_whole_if_its_name_or_the_file_next_to_it_states_its_checksum(
 
 
 @pytest.mark.parametrize("values", ["numbers", "counts"])
+def test_a_checksum_that_was_cut_short_confirms_nothing(tmp_path):
+    path = tmp_path / "table.nc"
+    path.write_bytes(b"rows")
+    digest_path(path).write_text(hashlib.sha256(b"rows").hexdigest()[:3])
+    assert not is_whole(path)
+
+
 def test_no_flipped_bit_of_an_array_in_a_netcdf_file_is_believed(tmp_path, rng, values):
     known = {
         "numbers": rng.standard_normal(4000),
