@@ -395,7 +395,7 @@ class SelfAffineOptions(Options):
 
 
 class SphereOptions(Options):
-    """Sphere of a command; the library and configurations have :class:`Scales` instead."""
+    """Sphere of a command; configurations and the library have :class:`crackfront.Scales`."""
 
     modulus: Annotated[float, quantity("Pa", "pressure", "0.7MPa")] | None = None
     """Young's modulus, as in 0.7MPa."""

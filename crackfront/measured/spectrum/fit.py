@@ -124,7 +124,7 @@ class Fit:
 class Continuation:
     """The likelihood of models of one surface and the instruments of its densities.
 
-    It has the interface :class:`crackfront.measured.spectrum.quadrature.Likelihood`. The outer
+    It has the interface `Likelihood` of `spectrum.quadrature`. The outer
     parameters are the logarithm of the roll-off's wavevector, the position of the bend between it
     and the highest wavevector, and the sharpness of the first instrument with attenuation. The
     inner parameters are the two Hurst exponents, the other parameters of instruments that vary,
