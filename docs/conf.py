@@ -17,7 +17,7 @@ import crackfront
 from crackfront.core.geometry.line import LineState
 from crackfront.core.geometry.sphere import ContactState
 from crackfront.core.variables import variables
-from crackfront.measured.loops.result import MeasuredLoop
+from crackfront.measured.loops.loop_result import MeasuredLoop
 from crackfront.measured.options import Options, ReadingOptions
 from crackfront.measured.prediction.prediction import Prediction
 from crackfront.sweep.configuration import Configuration

@@ -9,7 +9,7 @@ import click
 
 from crackfront.cli import Commands
 from crackfront.cli.answers import announce_compilation
-from crackfront.cli.parameters import examples
+from crackfront.cli.option_types import examples
 from crackfront.simulate.run_simulation import compile_solver
 from crackfront.simulate.sphere.full_cycle import FullCycle
 from crackfront.simulate.storage import write_text

@@ -10,7 +10,7 @@ from typing import Any
 import click
 
 from crackfront.analysis.estimate import with_error
-from crackfront.cli.parameters import FILE
+from crackfront.cli.option_types import FILE
 from studies.numbers import STORED, Number, Origin, Stored, store
 
 _BLOCK = re.compile(

@@ -13,8 +13,8 @@ from crackfront.cli.checksum_commands import checksums, verify
 from crackfront.cli.cycle_command import cycle
 from crackfront.cli.law_command import law
 from crackfront.cli.loop_command import loop
+from crackfront.cli.option_types import examples
 from crackfront.cli.output import output_that_may_close
-from crackfront.cli.parameters import examples
 from crackfront.cli.result_commands import (
     aggregate,
     archive,

@@ -8,7 +8,7 @@ from pathlib import Path
 import click
 
 from crackfront.cli.answers import echo_answer
-from crackfront.cli.parameters import FILE, as_json, examples
+from crackfront.cli.option_types import FILE, as_json, examples
 from crackfront.core.words import counted
 
 _REMEDY = (

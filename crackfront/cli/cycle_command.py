@@ -12,8 +12,14 @@ from typing import TYPE_CHECKING
 import click
 
 from crackfront.cli.answers import StoppedError, announce_compilation, announce_cost, echo_answer
+from crackfront.cli.option_types import (
+    FILE,
+    Number,
+    as_json,
+    examples,
+    whole,
+)
 from crackfront.cli.output_files import check_overwriting, check_replaced_netcdf, check_writable
-from crackfront.cli.parameters import FILE, Number, as_json, examples, whole
 from crackfront.core.arguments import regular_file
 from crackfront.core.bounds import (
     DENSITY,

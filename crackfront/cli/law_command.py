@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from crackfront.cli.answers import echo_answer
-from crackfront.cli.parameters import as_json, examples
+from crackfront.cli.option_types import as_json, examples
 from crackfront.core.bounds import LENGTH, check_within
 
 if TYPE_CHECKING:

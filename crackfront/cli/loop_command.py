@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from crackfront.cli.answers import echo_json
-from crackfront.cli.output_files import check_overwriting, check_writable
-from crackfront.cli.parameters import (
+from crackfront.cli.option_types import (
     FILE,
     Number,
     as_json,
@@ -19,6 +18,7 @@ from crackfront.cli.parameters import (
     option_name,
     options_of,
 )
+from crackfront.cli.output_files import check_overwriting, check_writable
 from crackfront.core.bounds import Range
 from crackfront.measured.options import (
     ReadingOptions,
@@ -29,7 +29,7 @@ from crackfront.measured.options import (
 from crackfront.surfaces.written_units import si_value
 
 if TYPE_CHECKING:
-    from crackfront.measured.loops.result import MeasuredLoop
+    from crackfront.measured.loops.loop_result import MeasuredLoop
     from crackfront.measured.prediction.prediction import Prediction
 
 _ERROR = Number(Range(0.0, 0.99))

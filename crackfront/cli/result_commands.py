@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import click
 
 from crackfront.cli.answers import announce_cost, warn
-from crackfront.cli.parameters import FILE, as_json, examples
+from crackfront.cli.option_types import FILE, as_json, examples
 from crackfront.cli.sweep_commands import configuration_argument, output_option
 from crackfront.sweep.watching import with_progress
 

@@ -10,8 +10,13 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from crackfront.cli.option_types import (
+    FILE,
+    check_together,
+    examples,
+    options_of,
+)
 from crackfront.cli.output_files import check_overwriting, check_replaced_table, check_writable
-from crackfront.cli.parameters import FILE, check_together, examples, options_of
 from crackfront.measured.options import PredictionOptions, ReadingOptions, SphereOptions
 
 if TYPE_CHECKING:
@@ -129,7 +134,7 @@ def write_samples(path: Path, samples: Sequence[Sample], first: str) -> list[Sam
 
 def _line(result: SampleResult) -> str:
     """What came of a sample."""
-    from crackfront.measured.prediction.texts import ENERGY, estimate_text
+    from crackfront.measured.prediction.prediction_texts import ENERGY, estimate_text
 
     if result.prediction is None:
         return f"{result.sample.name}: {result.outcome}"

@@ -9,13 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from crackfront.cli.answers import announce_compilation, echo_answer, echo_json
-from crackfront.cli.output_files import (
-    check_overwriting,
-    check_replaced_netcdf,
-    check_replaced_table,
-    check_writable,
-)
-from crackfront.cli.parameters import (
+from crackfront.cli.option_types import (
     FILE,
     Command,
     as_json,
@@ -25,6 +19,12 @@ from crackfront.cli.parameters import (
     option_name,
     options_of,
     whole,
+)
+from crackfront.cli.output_files import (
+    check_overwriting,
+    check_replaced_netcdf,
+    check_replaced_table,
+    check_writable,
 )
 from crackfront.cli.samples_command import exit_code, write_samples
 from crackfront.core.bounds import SEED, Range

@@ -13,7 +13,13 @@ from typing import TYPE_CHECKING
 import click
 
 from crackfront.cli.answers import announce_compilation, announce_cost, echo_answer, table, warn
-from crackfront.cli.parameters import FILE, Number, as_json, examples, whole
+from crackfront.cli.option_types import (
+    FILE,
+    Number,
+    as_json,
+    examples,
+    whole,
+)
 from crackfront.core.bounds import COUNT, Range
 from crackfront.core.resources import check_memory
 from crackfront.core.words import counted, in_bytes

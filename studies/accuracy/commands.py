@@ -8,8 +8,8 @@ from pathlib import Path
 import click
 
 from crackfront.cli.answers import announce_compilation, announce_cost
+from crackfront.cli.option_types import FILE, examples, whole
 from crackfront.cli.output_files import check_writable
-from crackfront.cli.parameters import FILE, examples, whole
 from crackfront.core.arguments import nearest_name
 from crackfront.core.bounds import Range
 from crackfront.measured.scan.reading import read_measurements

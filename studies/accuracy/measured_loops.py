@@ -15,8 +15,8 @@ from xarray import Dataset
 from crackfront.core.arrays import Array
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.measured.loops.analysis import analyse_loop
+from crackfront.measured.loops.loop_result import MeasuredLoop
 from crackfront.measured.loops.recording import Recording
-from crackfront.measured.loops.result import MeasuredLoop
 from crackfront.measured.loops.rig import Rig
 from crackfront.measured.loops.simulated_loop import simulated_loop
 from crackfront.surfaces.loops import run_loop

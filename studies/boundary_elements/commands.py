@@ -7,8 +7,8 @@ from pathlib import Path
 import click
 
 from crackfront.cli.answers import StoppedError, announce_compilation
+from crackfront.cli.option_types import FILE, examples
 from crackfront.cli.output_files import check_writable
-from crackfront.cli.parameters import FILE, examples
 from crackfront.sweep.watching import with_progress
 from studies.pages import keep_option, tell
 

@@ -11,8 +11,8 @@ from typing import cast
 import click
 import xarray as xr
 
+from crackfront.cli.option_types import FILE, examples
 from crackfront.cli.output_files import check_writable
-from crackfront.cli.parameters import FILE, examples
 from crackfront.plots.style import save_picture
 from crackfront.simulate.sphere.steady_branches import SteadySchedule
 from crackfront.simulate.storage import read_dataset, write_text
@@ -22,7 +22,7 @@ from crackfront.sweep.sweep import Sweep
 from studies.law.cells import LawCell, Row, csv_rows, csv_text, law_cells, measured_cells
 from studies.law.drawing import law_figure, spectra_points
 from studies.law.fitting import fitted_law
-from studies.law.fronts import write_configurations
+from studies.law.front_sweeps import write_configurations
 from studies.law.page import law_numbers, law_parts
 from studies.law.spheres import (
     read_spheres,
@@ -64,7 +64,7 @@ def _rows(configuration: Path, rows: Callable[[Sweep, xr.Dataset], Iterable[Row]
 def configurations(output: Path) -> None:
     """Write the configurations of the straight fronts other than config/line.yaml.
 
-    They are in the subfolder configurations; studies/law/fronts.yaml states their differences.
+    They are in the subfolder configurations. Their differences are in front_sweeps.yaml.
     """
     for path in write_configurations(output / "configurations"):
         click.echo(f"configuration: {path}")

@@ -11,8 +11,8 @@ from typing import Any, get_args
 import click
 
 from crackfront.cli.answers import announce_compilation, announce_cost
+from crackfront.cli.option_types import FILE, examples
 from crackfront.cli.output_files import check_writable
-from crackfront.cli.parameters import FILE, examples
 from crackfront.cli.result_commands import fit_of_sweep
 from crackfront.plots.style import save_figure, save_picture
 from crackfront.simulate.checksums import forget_sums

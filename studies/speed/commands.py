@@ -8,8 +8,8 @@ from typing import Any, get_args
 
 import click
 
+from crackfront.cli.option_types import examples
 from crackfront.cli.output_files import check_writable
-from crackfront.cli.parameters import examples
 from crackfront.simulate.provenance import provenance
 from crackfront.simulate.storage import write_text
 from studies.numbers import Number

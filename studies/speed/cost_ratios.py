@@ -12,7 +12,7 @@ from crackfront.simulate.costs import expected_cost
 from crackfront.simulate.run_simulation import run_simulation
 from crackfront.sweep.parameters import load_sweep
 from crackfront.sweep.sweep import Sweep
-from studies.law.fronts import front_sweeps
+from studies.law.front_sweeps import front_sweeps
 from studies.pages import markdown_table
 
 _CONFIG = Path(__file__).parents[2] / "config"

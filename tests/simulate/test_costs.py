@@ -16,7 +16,7 @@ from crackfront.simulate.run_simulation import run_simulation
 from crackfront.simulate.sphere.full_cycle import FullCycle
 from crackfront.simulate.sphere.steady_branches import integral_breadth
 from crackfront.sweep.parameters import load_sweep
-from studies.law.fronts import front_sweeps
+from studies.law.front_sweeps import front_sweeps
 
 ROOT = Path(__file__).parents[2]
 SWEEP = load_sweep(ROOT / "config/test.yaml")

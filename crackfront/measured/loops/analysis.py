@@ -14,13 +14,13 @@ from crackfront.measured.loops.baseline import baseline
 from crackfront.measured.loops.branches import SteadyPart, branches, check_sign, steady_part
 from crackfront.measured.loops.calibration import CalibratedLoop, Contact
 from crackfront.measured.loops.contact_rows import rows_in_contact
-from crackfront.measured.loops.energy import lost_energy
-from crackfront.measured.loops.fit import fitted_modulus, fitted_zero
 from crackfront.measured.loops.intervals import Works, machine_stiffness, works_of_adhesion
+from crackfront.measured.loops.loop_fit import fitted_modulus, fitted_zero
+from crackfront.measured.loops.loop_remarks import loop_remarks
+from crackfront.measured.loops.loop_result import MeasuredLoop
+from crackfront.measured.loops.lost_energy import lost_energy
 from crackfront.measured.loops.pull_off import PullOff, pull_off
 from crackfront.measured.loops.recording import Recording
-from crackfront.measured.loops.remarks import loop_remarks
-from crackfront.measured.loops.result import MeasuredLoop
 from crackfront.measured.loops.rig import Rig
 from crackfront.surfaces.written_units import prefixed
 

@@ -9,7 +9,7 @@ import numpy as np
 from crackfront.core import jkr
 from crackfront.core.arrays import Array
 from crackfront.core.units import Scales
-from crackfront.measured.loops.contact import penetration_at, radius_at
+from crackfront.measured.loops.contact_relations import penetration_at, radius_at
 from crackfront.measured.loops.recording import Recording
 from crackfront.measured.loops.rig import Rig
 

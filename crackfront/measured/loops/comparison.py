@@ -7,8 +7,8 @@ from collections.abc import Iterator
 from typing import Any
 
 from crackfront.analysis.estimate import UNKNOWN, Estimate
-from crackfront.measured.loops.page import loop_json
-from crackfront.measured.loops.result import MeasuredLoop
+from crackfront.measured.loops.loop_page import loop_json
+from crackfront.measured.loops.loop_result import MeasuredLoop
 from crackfront.measured.prediction.prediction import Prediction
 from crackfront.measured.prediction.remarks import remark_text
 from crackfront.simulate.jsonable import to_jsonable

@@ -14,7 +14,7 @@ from crackfront.analysis.standard_error import FEWEST_STATES
 from crackfront.analysis.steady_adhesion import Branches, Rows, branch_means, within
 from crackfront.core.arrays import Array
 from crackfront.measured.loops.calibration import CalibratedLoop, Contact
-from crackfront.measured.loops.fit import fitted_modulus, fitted_zero
+from crackfront.measured.loops.loop_fit import fitted_modulus, fitted_zero
 
 _BLOCKS = 10
 """Blocks of a branch, each of which is left out once to measure the errors by noise."""

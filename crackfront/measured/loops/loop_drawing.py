@@ -9,7 +9,7 @@ import numpy as np
 from crackfront.core import jkr
 from crackfront.core.units import WORK_OF_ADHESION, Scales
 from crackfront.core.variables import FORCE, LATERAL
-from crackfront.measured.loops.result import MeasuredLoop
+from crackfront.measured.loops.loop_result import MeasuredLoop
 from crackfront.measured.prediction.prediction import Prediction
 from crackfront.plots.axis_units import AxisUnits
 from crackfront.plots.style import BLUE, COLUMN, VERMILION, blank_figure, house_style

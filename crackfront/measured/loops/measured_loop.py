@@ -13,8 +13,8 @@ from xarray import DataArray, Dataset
 from crackfront.core.arguments import check_numbers, check_type
 from crackfront.core.arrays import Array
 from crackfront.measured.loops.analysis import analyse_loop
+from crackfront.measured.loops.loop_result import MeasuredLoop
 from crackfront.measured.loops.recording import UNITS, Recording, read_recording
-from crackfront.measured.loops.result import MeasuredLoop
 from crackfront.measured.loops.rig import Rig
 from crackfront.measured.loops.simulated_loop import simulated_loop
 from crackfront.measured.scan.netcdf import is_netcdf

@@ -12,7 +12,7 @@ import numpy as np
 from crackfront.core.arrays import Array
 from crackfront.measured.tables.headed_table import table_of_numbers
 from crackfront.measured.tables.headings import Heading, listed, matching
-from crackfront.measured.tables.table import Table
+from crackfront.measured.tables.parsed_table import Table
 from crackfront.surfaces.written_units import is_unit, unit_value
 
 UNITS = {"force": "N", "radius": "m", "displacement": "m"}

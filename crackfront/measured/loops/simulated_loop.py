@@ -18,8 +18,8 @@ from crackfront.core.geometry.sphere import ContactState
 from crackfront.core.outcome import Status
 from crackfront.core.spectrum import Spectrum
 from crackfront.core.units import CONTACT_MODULUS, WORK_OF_ADHESION, Scales
-from crackfront.measured.loops.energy import work_per_area
-from crackfront.measured.loops.result import MeasuredLoop
+from crackfront.measured.loops.loop_result import MeasuredLoop
+from crackfront.measured.loops.lost_energy import work_per_area
 from crackfront.simulate.cycle_files import cycle_record
 from crackfront.surfaces.si_units import in_reduced_units, stated_scales
 

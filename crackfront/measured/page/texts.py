@@ -13,6 +13,7 @@ from crackfront.core.variables import variables
 from crackfront.core.words import counted
 from crackfront.measured.density.bands import BandLimit, Scan
 from crackfront.measured.prediction.prediction import Prediction
+from crackfront.measured.prediction.prediction_texts import ENERGY, estimate_text, wavelengths_text
 from crackfront.measured.prediction.remarks import (
     Remark,
     Verdict,
@@ -20,9 +21,8 @@ from crackfront.measured.prediction.remarks import (
     remark_text,
 )
 from crackfront.measured.prediction.surface_remarks import is_lower_bound, surface_remarks
-from crackfront.measured.prediction.texts import ENERGY, estimate_text, wavelengths_text
-from crackfront.measured.spectrum.fit import Fit
 from crackfront.measured.spectrum.joining import part_of_energy
+from crackfront.measured.spectrum.joint_fit import Fit
 from crackfront.measured.spectrum.measured_surface import MeasuredSurface
 from crackfront.measured.spectrum.stated import StatedSurface, Surface
 from crackfront.simulate.jsonable import to_jsonable

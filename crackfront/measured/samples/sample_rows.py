@@ -11,10 +11,10 @@ from ruamel.yaml import YAML
 from ruamel.yaml.error import MarkedYAMLError
 
 from crackfront.measured.scan.scan_files import check_readable
-from crackfront.measured.tables.cells import decimal_sign, is_number
 from crackfront.measured.tables.headed_table import table_of_texts
 from crackfront.measured.tables.headings import Heading, heading
-from crackfront.measured.tables.table import Table
+from crackfront.measured.tables.number_cells import decimal_sign, is_number
+from crackfront.measured.tables.parsed_table import Table
 
 _YAML = {".yaml", ".yml"}
 

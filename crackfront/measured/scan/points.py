@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from crackfront.core.arrays import Array
 from crackfront.measured.tables.headings import Heading, listed, matching
-from crackfront.measured.tables.table import Table
+from crackfront.measured.tables.parsed_table import Table
 
 _UNEVEN = 0.05
 """Distance of a point from its place, in spacings, that positions may have beyond their digits."""

@@ -19,7 +19,7 @@ from crackfront.measured.options import PsdOptions
 from crackfront.measured.scan.psd_convention import stated_convention
 from crackfront.measured.scan.scan_files import check_readable, checksum
 from crackfront.measured.tables.number_tables import number_tables
-from crackfront.measured.tables.table import Table
+from crackfront.measured.tables.parsed_table import Table
 
 _BINS_PER_DECADE = 20
 """Bins that values are averaged in, as many as densities of scans have."""

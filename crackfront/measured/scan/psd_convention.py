@@ -13,7 +13,7 @@ import numpy as np
 
 from crackfront.core.arrays import Array
 from crackfront.measured.options import PsdAbscissa, PsdKind, PsdOptions
-from crackfront.measured.tables.table import Table
+from crackfront.measured.tables.parsed_table import Table
 from crackfront.surfaces.written_units import is_unit, unit_value
 
 _ABSCISSAS: dict[PsdAbscissa, str] = {

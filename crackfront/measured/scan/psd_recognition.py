@@ -10,7 +10,7 @@ import numpy as np
 from crackfront.core.arrays import Array
 from crackfront.measured.scan.psd_convention import GWYDDION, dimension, written_unit
 from crackfront.measured.tables.number_tables import NumberTables
-from crackfront.measured.tables.table import Table
+from crackfront.measured.tables.parsed_table import Table
 
 _DENSITY = rf"\bpsd\b|\bc[_ ]?(1d|2d|iso)\b|spectral density|power spectrum|{GWYDDION}"
 """What headings call the second column."""

@@ -19,7 +19,12 @@ from crackfront.analysis.estimate import Estimate, quantiles
 from crackfront.core.arrays import Array
 from crackfront.measured.density.bands import Scan
 from crackfront.measured.density.densities import Density, bin_numbers
-from crackfront.measured.spectrum.fit import INTERVAL, Continuation, Fit, fit_of
+from crackfront.measured.spectrum.joint_fit import (
+    INTERVAL,
+    Continuation,
+    Fit,
+    fit_of,
+)
 from crackfront.measured.spectrum.quadrature import Quadrature
 
 ORDERS = (0.0, 0.5, 1.0)

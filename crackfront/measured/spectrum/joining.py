@@ -22,7 +22,7 @@ from crackfront.measured.spectrum.draws import (
     batches,
     drawn,
 )
-from crackfront.measured.spectrum.fit import Fit, quadrature_of
+from crackfront.measured.spectrum.joint_fit import Fit, quadrature_of
 
 _CONTINUED_BINS = 6
 """Points of a continuation in a decade."""

@@ -8,7 +8,6 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from crackfront.measured.tables.cells import is_number, is_without_value
 from crackfront.measured.tables.encodings import decoded
 from crackfront.measured.tables.headings import (
     Heading,
@@ -17,7 +16,8 @@ from crackfront.measured.tables.headings import (
     heading_cells,
     headings_with_units,
 )
-from crackfront.measured.tables.table import Table
+from crackfront.measured.tables.number_cells import is_number, is_without_value
+from crackfront.measured.tables.parsed_table import Table
 
 _SEPARATORS = ("\t", ";", ",", None)
 """Separators of cells, None for blanks."""

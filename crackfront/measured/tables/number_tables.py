@@ -11,10 +11,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from crackfront.measured.tables.cells import decimal_sign, is_number, splitter
 from crackfront.measured.tables.encodings import decoded
 from crackfront.measured.tables.headings import headings_above
-from crackfront.measured.tables.table import Table
+from crackfront.measured.tables.number_cells import decimal_sign, is_number, splitter
+from crackfront.measured.tables.parsed_table import Table
 
 if TYPE_CHECKING:
     from pandas import DataFrame

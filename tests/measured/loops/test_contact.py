@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from crackfront.measured.loops.contact import penetration_at, radius_at
+from crackfront.measured.loops.contact_relations import penetration_at, radius_at
 
 
 def test_edges_of_all_kinds_have_the_radius_of_their_force_and_penetration():

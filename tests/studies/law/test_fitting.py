@@ -17,7 +17,7 @@ from crackfront.sweep.rows import failed_row
 from studies.__main__ import main
 from studies.law.cells import MEASURED, LawCell, _without_spacing, csv_rows, measured_cells
 from studies.law.fitting import fitted_law
-from studies.law.fronts import front_sweeps
+from studies.law.front_sweeps import front_sweeps
 from tests.commands import dataset_of_rows
 
 ROOT = Path(__file__).parents[3]

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from crackfront.core.variables import variables
-from crackfront.measured.loops.result import MeasuredLoop
+from crackfront.measured.loops.loop_result import MeasuredLoop
 from crackfront.simulate.jsonable import to_jsonable
 from crackfront.surfaces.written_units import prefixed
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from crackfront.analysis.estimate import REACH
 from crackfront.measured.loops.calibration import CalibratedLoop
-from crackfront.measured.loops.result import MeasuredLoop
+from crackfront.measured.loops.loop_result import MeasuredLoop
 from crackfront.surfaces.written_units import prefixed
 
 _LARGE = 0.3

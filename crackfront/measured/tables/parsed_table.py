@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from crackfront.core.arrays import Array
-from crackfront.measured.tables.cells import decimal_sign, is_number, is_without_value
 from crackfront.measured.tables.headings import Heading
+from crackfront.measured.tables.number_cells import decimal_sign, is_number, is_without_value
 
 if TYPE_CHECKING:
     from pandas import DataFrame

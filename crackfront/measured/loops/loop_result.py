@@ -44,6 +44,6 @@ class MeasuredLoop:
 
     def __repr__(self) -> str:
         """The page that the command `crackfront loop` prints."""
-        from crackfront.measured.loops.page import loop_lines
+        from crackfront.measured.loops.loop_page import loop_lines
 
         return "\n".join(loop_lines(self))

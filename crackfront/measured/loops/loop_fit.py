@@ -11,7 +11,7 @@ import scipy
 from crackfront.analysis.standard_error import FEWEST_STATES
 from crackfront.analysis.steady_adhesion import Branches, Rows
 from crackfront.measured.loops.calibration import CalibratedLoop
-from crackfront.measured.loops.contact import force_at
+from crackfront.measured.loops.contact_relations import force_at
 from crackfront.measured.loops.recording import Recording
 from crackfront.measured.loops.rig import Rig
 
