@@ -19,6 +19,12 @@ def test_a_mean_has_the_textbook_interval():
     assert estimate.high - 3.0 == pytest.approx(3.182446305284263 * np.sqrt(14 / 3 / 4))
 
 
+def test_a_mean_of_two_values_has_an_error_and_no_interval_which_would_be_13_errors_wide():
+    estimate, _ = mean_estimate(np.array([1.0, 3.0]))
+    assert estimate.standard_error == pytest.approx(1.0)
+    assert np.isnan([estimate.low, estimate.high]).all()
+
+
 def test_bootstrap_samples_of_n_minus_one_give_the_standard_error_of_a_mean(rng):
     values = rng.standard_normal(4)
     counts = resample_counts(200_000, 4, rng)

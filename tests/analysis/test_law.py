@@ -9,6 +9,7 @@ from scipy.integrate import quad
 
 from crackfront.analysis.law import (
     LEAST_SIZE,
+    TYPICAL_BREADTH,
     WEAKEST,
     infinite_ratio,
     law_value,
@@ -85,11 +86,15 @@ def test_the_springs_of_a_sphere_are_a_half_a_third_and_a_fifth_of_its_radius(ra
     assert radius / jkr.spring(radius) == pytest.approx(ratio)
 
 
-def test_the_interval_holds_the_three_errors():
+def test_the_interval_holds_the_three_errors(law):
     found = pinning_factor(0.3, 5.0)
     expected = np.sqrt(found.statistical**2 + found.numerical**2 + found.model**2)
     assert found.factor.standard_error == pytest.approx(expected)
     assert found.warning == ""
+    # Without a breadth the law's error is that between the narrowest and the broadest spectrum too.
+    known = pinning_factor(0.3, 5.0, breadth=TYPICAL_BREADTH)
+    ends = law_value(law.coefficients, 0.3, 5.0, np.array(law.breadth))
+    assert found.model == pytest.approx(np.hypot(known.model, np.ptp(ends) / np.sqrt(12)))
     assert pinning_factor(0.3, np.inf).factor.value > found.factor.value
 
 
@@ -152,9 +157,9 @@ def test_a_sphere_has_the_k_of_the_straight_front_at_the_springs_of_either_branc
         size = jkr.spring(1.9, adhesion) / larkin_length("roughness", FLAT, w_rms)
         k = law_value(law.coefficients, w_rms, size, spectral_breadth("roughness", FLAT))
         assert branch.factor.value == pytest.approx(float(k))
-    assert found.both.value == pytest.approx(
-        (found.approach.factor.value + found.retraction.factor.value) / 2
-    )
+    # The errors of both branches are those of one law.
+    branches = [astuple(branch.factor) for branch in (found.approach, found.retraction)]
+    assert astuple(found.both) == pytest.approx(np.mean(branches, axis=0))
     assert found.size == pytest.approx(found.spring / found.larkin_length)
 
 

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from crackfront.analysis.steady_adhesion import steady_adhesion
+from crackfront.analysis.steady_adhesion import steady_adhesion, steady_means
 from crackfront.core import jkr
 from crackfront.core.cycle.record import CycleRecord
 from crackfront.core.geometry.sphere import ContactState
@@ -63,6 +63,14 @@ def test_both_branches_are_averaged_over_one_window_of_radii_without_transients(
     assert steady.w_appr == pytest.approx(np.mean(radius[approach]))
     assert steady.w_appr < 1.6
     assert steady.n_approach == np.count_nonzero(approach)
+
+
+def test_places_of_a_tile_count_once():
+    states = smooth_record(0.8, 1.3).states
+    columns = states.apparent_work_of_adhesion, states.mean_radius, states.rms_radius
+    whole, cut = (steady_means(states, columns, "radii", 0.1, period) for period in (1.0, 0.25))
+    assert (whole.n_approach, whole.n_retraction) == (6, 5)
+    assert (cut.n_approach, cut.n_retraction) == (3, 3)
 
 
 @pytest.mark.parametrize(

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.special import stdtr
 
 from crackfront.analysis.estimate import Estimate, mean_estimate
 from crackfront.analysis.fit_text import fit_notes, fit_table, trend_sentence
@@ -87,7 +88,11 @@ def test_without_noise_the_fit_returns_the_planted_law_to_round_off(rng):
             estimate = getattr(law, name)
             np.testing.assert_allclose(estimate.value, np.full(shape, truth), atol=1e-11)
             np.testing.assert_allclose(estimate.high - estimate.low, np.zeros(shape), atol=1e-9)
+    for branch, apart in (("approach", 0.001), ("retraction", -0.002)):
+        for name, expected in ((branch, apart), (f"{branch}_largest", abs(apart))):
+            assert getattr(fit.from_force, name) == pytest.approx([expected] * 3)
     assert fit.pooled_size_slope.value == pytest.approx(0.0, abs=1e-11)
+    assert any("Numerical errors: up to 0.015 of k" in note for note in fit_notes(fit))
 
 
 def test_a_planted_exponent_is_recovered(rng):
@@ -168,6 +173,9 @@ def test_a_constant_midpoint_shift_is_found_and_is_improbable():
     assert as_planted.midpoint_probability > 0.01
     assert fit.midpoint_probability < 1e-4
     assert fit.midpoint_largest > as_planted.midpoint_largest
+    # Of 15 cells with four realisations each, by Bonferroni.
+    by_chance = 15 * 2 * stdtr(3, -fit.midpoint_largest)
+    assert fit.midpoint_probability == pytest.approx(by_chance)
     assert np.all(fit.spectra.midpoint_slope.low > 1)
 
 

@@ -321,6 +321,8 @@ def test_the_table_of_a_fit_is_what_the_file_holds(hysteresis):
     assert np.array_equal(table.amplitude, dataset["amplitude"])
     assert np.array_equal(table.w_appr, dataset["w_appr"], equal_nan=True)
     assert table.correlation_length[0] == pytest.approx(0.1 * 4 / 3)
+    middle = (dataset["lowest_radius"] + dataset["highest_radius"]) / 2
+    np.testing.assert_allclose(table.contact_radius, middle)
 
 
 def test_a_fit_is_written_for_machines_and_for_people(tmp_path, hysteresis):

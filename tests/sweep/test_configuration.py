@@ -795,3 +795,13 @@ def test_many_realisations_are_no_reason_to_refuse_but_samples_that_no_memory_ho
     assert load_sweep(written(tmp_path, text)).n_simulation == 400_000
     message = refusal(tmp_path, text.replace("p: 5000", "p: 10000000"))
     assert "fit: 10000000 bootstrap samples would need 2 GB of memory" in message
+
+
+def test_realisations_that_together_take_longer_than_anybody_waits_are_refused(
+    tmp_path, monkeypatch
+):
+    monkeypatch.setattr("crackfront.core.resources.MOST_SECONDS", 100.0)
+    path = written(tmp_path, GOOD)
+    check_feasible(load_sweep(path), path)
+    message = refusal(tmp_path, changed("realisations: 2", "realisations: 100000"))
+    assert "the simulations would take" in message

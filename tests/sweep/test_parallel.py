@@ -5,7 +5,9 @@ import os
 import signal
 import subprocess
 import sys
+import threading
 import time
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
@@ -171,6 +173,25 @@ def test_a_batch_script_with_several_tasks_is_one_process(monkeypatch):
     with parallel.ranks() as workers:
         kept = list(workers.run(lambda task, _: 2 * task, [3, 1], lambda task, result: result))
     assert kept == [(3, 6), (1, 2)]
+
+
+def test_a_task_that_ends_while_the_others_are_given_up_is_kept():
+    began, go_on, kept = threading.Event(), threading.Event(), []
+
+    def wait(task, idle):
+        if task == "long":
+            began.set()
+            assert go_on.wait(10)
+
+    with ThreadPoolExecutor(2) as pool:
+        runs = parallel.Ranks(pool, 2).run(
+            wait, ["long", "short"], lambda task, result: kept.append(task)
+        )
+        next(runs)
+        assert began.wait(10)
+        go_on.set()
+        runs.close()
+    assert kept == ["short", "long"]
 
 
 def test_a_container_with_too_little_shared_memory_is_told_the_remedy(monkeypatch):

@@ -316,6 +316,15 @@ def test_plan_and_status_open_shards_and_no_curves_of_finished_ones(configuratio
     assert damaged_curves.exists()
 
 
+def test_a_part_of_a_shard_has_its_part_of_the_processor_time(made):
+    whole, half = (
+        made.progress(sweep, SWEEP.spectra[0]) for sweep in (SWEEP, replace(SWEEP, n_realisation=1))
+    )
+    assert (whole.done, half.done) == (4, 2)
+    for name in ("cpu_seconds", "expected_seconds"):
+        assert getattr(half, name) == pytest.approx(getattr(whole, name) / 2)
+
+
 SECTOR = 512
 
 

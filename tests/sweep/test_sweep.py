@@ -7,6 +7,7 @@ import pytest
 
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.sweep.parameters import load_sweep
+from crackfront.sweep.requests import fit_request, table_request
 from crackfront.sweep.sweep import NamedSpectrum
 
 SWEEP = load_sweep(Path(__file__).parents[2] / "config/test.yaml")
@@ -32,6 +33,13 @@ def test_additions_and_order_leave_all_other_simulations_as_they_are():
 def test_the_fit_range_changes_no_simulation():
     narrower = replace(SWEEP, fit=replace(SWEEP.fit, lowest_elastic_energy=0.05))
     assert stems(narrower) == stems(SWEEP)
+
+
+@pytest.mark.parametrize("name", ["lowest_elastic_energy", "highest_elastic_energy", "n_bootstrap"])
+def test_another_fit_is_another_request_of_the_same_table(name):
+    changed = replace(SWEEP, fit=replace(SWEEP.fit, **{name: 2 * getattr(SWEEP.fit, name)}))
+    assert fit_request(changed) != fit_request(SWEEP)
+    assert table_request(changed) == table_request(SWEEP)
 
 
 @pytest.mark.parametrize("block", [None, 1, 3, 10, 11])

@@ -20,6 +20,8 @@ def test_a_bent_drift_widens_the_intervals():
     for name, truth in TRUTH.items():
         estimate = getattr(found, name)
         assert estimate.low <= truth <= estimate.high
+    pull = -np.min(loop(0, force_noise=0.0).force)
+    assert found.pull_off_force.low < pull < found.pull_off_force.high
 
 
 def test_a_spike_out_of_contact_is_no_contact():

@@ -3,6 +3,7 @@
 from dataclasses import replace
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
 from crackfront.analysis.estimate import Estimate
@@ -37,5 +38,9 @@ def test_the_ratio_has_the_intervals_of_both():
     one = SimpleNamespace(hysteresis=known)
     ratio = hysteresis_ratio(one, SimpleNamespace(hysteresis=known))
     assert (ratio.low, ratio.high) == pytest.approx((0.5**2**0.5, 2**2**0.5))
+    narrower = SimpleNamespace(hysteresis=replace(known, low=1.8, high=2.5))
+    ratio = hysteresis_ratio(one, narrower)
+    reaches = np.hypot(np.log(2), np.log([2.5 / 2, 2 / 1.8]))
+    assert (ratio.low, ratio.high) == pytest.approx(np.exp(reaches * [-1, 1]))
     none = SimpleNamespace(hysteresis=replace(known, low=0.0))
     assert hysteresis_ratio(none, one).low == 0

@@ -52,6 +52,15 @@ def test_a_crop_is_the_map_of_a_part(tmp_path, noise):
         assert refusal(path, crop=text).startswith("crop is ")
 
 
+def test_a_periodic_map_is_periodic_as_a_whole_and_without_a_tilt_taken_off(tmp_path, noise):
+    path = tmp_path / "scan.nc"
+    library = surface_library().Topography(noise, (SIDE, SIDE), periodic=True, unit="m")
+    library.to_netcdf(str(path))
+    assert read(path, detrend="center").periodic
+    assert not read(path, detrend="center", crop="2um:18um,2um:18um").periodic
+    assert not read(path, detrend="height").periodic
+
+
 def test_a_mask_is_left_out_of_the_levelling_and_stays_in_the_map(tmp_path, noise):
     bump = np.zeros(noise.shape)
     bump[6:18, 24:36] = 5e-6
