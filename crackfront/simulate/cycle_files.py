@@ -17,7 +17,7 @@ from crackfront.core.geometry.sphere import ContactState
 from crackfront.core.outcome import Status
 from crackfront.core.variables import STEP, Variable, variables
 from crackfront.core.versions import PHYSICS_VERSION
-from crackfront.simulate.checksums import digest_path, file_digest
+from crackfront.simulate.checksums import digest_path, file_digest, sums_text
 from crackfront.simulate.labels import labelled, labelled_fields
 from crackfront.simulate.provenance import Provenance, provenance
 from crackfront.simulate.run_simulation import PartialRun
@@ -26,8 +26,9 @@ from crackfront.simulate.storage import (
     UnreadableFileError,
     read_dataset,
     set_aside_if_damaged,
-    write_derived,
+    write_dataset,
     write_named_by_digest,
+    write_text,
 )
 
 _FRONTS = {
@@ -58,7 +59,7 @@ class CycleCheckpoint:
         """
         if not self.path.exists():
             return None
-        if sentence := set_aside_if_damaged(self.path):
+        if digest_path(self.path).exists() and (sentence := set_aside_if_damaged(self.path)):
             warn(f"{sentence}; the cycle begins anew")
             return None
         states = self.geometry.state_type
@@ -71,10 +72,15 @@ class CycleCheckpoint:
         return checkpoint
 
     def write(self, checkpoint: Checkpoint) -> None:
-        """Write a checkpoint, in place of an earlier one."""
-        write_derived(
-            self.path, _checkpoint_dataset(checkpoint, self.key, self.geometry), provenance()
-        )
+        """Write a checkpoint, in place of an earlier one.
+
+        The checksum is absent meanwhile: after a kill, whichever file is there is whole.
+        """
+        dataset = _checkpoint_dataset(checkpoint, self.key, self.geometry)
+        digest = digest_path(self.path)
+        digest.unlink(missing_ok=True)
+        write_dataset(self.path, dataset, provenance())
+        write_text(digest, sums_text({self.path.name: file_digest(self.path)}))
 
     def remove(self) -> None:
         """Remove the file and its checksum."""

@@ -1,5 +1,6 @@
 """A simulation that ends at any state and goes on later is the undisturbed one, bit for bit."""
 
+import contextlib
 import functools
 from dataclasses import asdict, replace
 from pathlib import Path
@@ -8,7 +9,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from crackfront.simulate.cycle_files import read_checkpoint, write_checkpoint
+from crackfront.simulate.cycle_files import CycleCheckpoint, read_checkpoint, write_checkpoint
 from crackfront.simulate.provenance import provenance
 from crackfront.simulate.run_simulation import run_simulation
 from crackfront.simulate.sphere.full_cycle import FullCycle
@@ -88,3 +89,24 @@ def test_a_truncated_checkpoint_and_that_of_another_simulation_are_refused(tmp_p
     path.write_bytes(path.read_bytes()[:3000])
     with pytest.raises(UnreadableFileError, match="is not a complete netCDF file"):
         read_checkpoint(path, CYCLE)
+
+
+@pytest.mark.parametrize("n_rename", [0, 1, 2])
+def test_a_kill_while_states_of_a_cycle_are_replaced_leaves_some(tmp_path, monkeypatch, n_rename):
+    _, found = checkpoints(CYCLE)
+    stored = CycleCheckpoint(tmp_path / "out.checkpoint.nc", "key", CYCLE.geometry)
+    stored.write(found[0].checkpoint)
+    rename, renamed = Path.replace, []
+
+    def killed(path, target):
+        if len(renamed) == n_rename:
+            raise KeyboardInterrupt
+        renamed.append(target)
+        return rename(path, target)
+
+    with monkeypatch.context() as patched, contextlib.suppress(KeyboardInterrupt):
+        patched.setattr(Path, "replace", killed)
+        stored.write(found[1].checkpoint)
+    checkpoint = stored.read(pytest.fail)
+    assert checkpoint is not None
+    assert checkpoint.record.states.direction.size == (1 if n_rename == 0 else 2)
