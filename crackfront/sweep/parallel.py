@@ -212,7 +212,9 @@ class Ranks:
             for future in running:
                 future.cancel()
             while running:
-                idle()
+                # What it cannot store now is still there, and so are the results to come.
+                with contextlib.suppress(OSError):
+                    idle()
                 with contextlib.suppress(queue.Empty):
                     future = ended.get(timeout=_SECONDS)
                     task = running.pop(future)

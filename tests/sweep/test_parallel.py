@@ -194,6 +194,27 @@ def test_a_task_that_ends_while_the_others_are_given_up_is_kept():
     assert kept == ["short", "long"]
 
 
+def test_a_result_is_kept_although_others_cannot_be_written_meanwhile():
+    began, given_up, kept = threading.Event(), threading.Event(), []
+
+    def wait(task, idle):
+        began.set()
+        assert given_up.wait(10)
+
+    def fail():
+        if began.is_set():
+            given_up.set()
+            raise OSError("no space left")
+
+    with ThreadPoolExecutor(1) as pool:
+        runs = parallel.Ranks(pool, 1).run(
+            wait, ["task"], lambda task, result: kept.append(task), fail
+        )
+        with pytest.raises(OSError, match="no space left"):
+            list(runs)
+    assert kept == ["task"]
+
+
 def test_a_container_with_too_little_shared_memory_is_told_the_remedy(monkeypatch):
     monkeypatch.setenv("PMI_SIZE", "3")
     monkeypatch.setattr(parallel, "_SHARED_BYTES", 1e15)
