@@ -342,6 +342,7 @@ def test_a_surface_that_cannot_be_used_is_refused(surface, change, sentence):
         (lambda: cf.read_scan(SCAN, SPHERE, mask=np.ones(3)), "mask is a numpy.ndarray; give a pa"),
         (lambda: cf.in_si_units(tile(np.zeros((4, 4))), 1e-3), "sphere is 0.001; give crackf"),
         (lambda: cf.in_si_units([1], SPHERE), "data is a list; give an xarray.DataArray or"),
+        (lambda: cf.in_reduced_units([1], SPHERE), "data is a list; give an xarray.DataArray or"),
         (lambda: cf.plot_loop(tile(np.zeros((4, 4)))), "loop is a xarray.DataArray; give an"),
         (lambda: cf.plot_instabilities(None), "jumps is None; give what find_instabilities"),
         (lambda: cf.read_scan(7, SPHERE), "path is 7; give the path of a file"),

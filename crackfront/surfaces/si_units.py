@@ -9,6 +9,7 @@ from typing import Any, TypeVar
 import xarray as xr
 
 from crackfront.core import units
+from crackfront.core.arguments import check_type
 from crackfront.core.units import ReducedUnit
 from crackfront.simulate.labels import stated_unit, unit_attributes
 from crackfront.surfaces.labelled import (
@@ -112,6 +113,7 @@ def in_reduced_units(data: Labelled, scales: units.Scales) -> Labelled:
     True
     """
     check_scales(scales)
+    check_type("data", data, (xr.DataArray, xr.Dataset), "an xarray.DataArray or xarray.Dataset")
     stated_sphere = attributes_sphere(data.attrs, CONVERTED_FOR)
     if stated_sphere is not None and not are_equal(stated_sphere, scales):
         sphere = ", ".join(f"{name} {value:g}" for name, value in asdict(stated_sphere).items())
