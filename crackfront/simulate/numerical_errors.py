@@ -52,9 +52,9 @@ def stated_error(
 
     States closer than a correlation length of w_loc count as one.
     """
-    approach, retraction, longest = simulation.schedule.averaged_sizes(
+    approach_size, retraction_size, longest = simulation.schedule.averaged_sizes(
         steady, correlation_length, simulation.spectrum.short_cutoff
     )
-    of_approach, _ = numerical_error(simulation, approach, longest)
-    _, of_retraction = numerical_error(simulation, retraction, longest)
-    return of_approach, of_retraction
+    approach, _ = numerical_error(simulation, approach_size, longest)
+    _, retraction = numerical_error(simulation, retraction_size, longest)
+    return approach, retraction

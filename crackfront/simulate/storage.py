@@ -148,8 +148,8 @@ def replace_atomically(
     """Let a function write a temporary file, and rename it to the final path once it is on disk.
 
     The folder of the final file is created. Another function may be called with the written file
-    just before it is renamed. OSError if the place is none for a file, or the disk is
-    full; what was there before stays.
+    just before it is renamed. OSError if the path cannot be a file, or the disk is full; what was
+    there before stays.
     """
     check_regular_file(path)
     path.parent.mkdir(parents=True, exist_ok=True)

@@ -1,4 +1,4 @@
-"""Work of adhesion of a surface, and which surfaces have none that is possible."""
+"""Work of adhesion of a surface, and checks that it is possible."""
 
 from __future__ import annotations
 

@@ -45,9 +45,12 @@ _CHECKPOINT = "checkpoint"
 _WRITING_ERRORS = (OSError, RuntimeError)
 """What writing a file raises where the machine cannot; netCDF has errors of its own."""
 
-_MOST_WAITING, _MOST_WAITING_BYTES = 2000, 2e8
-"""Finished simulations, and bytes of their fronts, that are written at once, however short the time
-since the last batch: fronts of a minute of many ranks would fill the memory of the manager."""
+_MOST_WAITING = 2000
+"""Finished simulations that are written at once, however short the time since the last batch."""
+
+_MOST_WAITING_BYTES = 2e8
+"""Size of the fronts of finished simulations that are written at once: the fronts of a minute of
+many ranks would fill the memory of the manager. (Units: byte)"""
 
 
 @dataclass(frozen=True, slots=True)
