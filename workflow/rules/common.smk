@@ -85,7 +85,7 @@ try:
     SHARDS = {shard.name: shard for shard in SWEEP.shards(config.get("block"))}
     VALIDATED = str(results_folder(Path(VALIDATION)))
     check_configuration(Path(VALIDATION), Path(VALIDATED))
-except ValueError as error:
+except (OSError, ValueError) as error:
     raise WorkflowError(str(error)) from None
 
 SHARD_REQUESTS = {
