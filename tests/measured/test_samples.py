@@ -80,6 +80,24 @@ def test_a_sample_may_have_several_scans_psds_and_units(tmp_path):
     assert (three.psd, three.density.psd_sides) == (tmp_path / "psd.csv", "one")
 
 
+def test_headings_and_cells_in_quotes_may_have_several_lines(tmp_path):
+    for name in ("a.txt", "b.txt"):
+        (tmp_path / name).write_text("1 2\n")
+    path = tmp_path / "samples.csv"
+    path.write_text('sample,scans,"radius\n(mm)"\nA,"a.txt\nb.txt",2\n')
+    [sample] = read_samples(path, SPHERE)
+    assert sample.scans == (tmp_path / "a.txt", tmp_path / "b.txt")
+    assert sample.scales.radius == pytest.approx(2e-3)
+
+
+@pytest.mark.parametrize("row", ['A,"a.txt,2\n', 'A,a.txt,"2\n'])
+def test_a_quote_that_is_not_closed_is_refused(tmp_path, row):
+    path = tmp_path / "samples.csv"
+    path.write_text("sample,scans,radius (mm)\n" + row + "B,b.txt,2\n" * 20_000)
+    with pytest.raises(ValueError, match=r"samples.csv, line \d+: .*close the quote"):
+        read_samples(path, SPHERE)
+
+
 def test_a_pattern_of_a_psd_stands_for_one_file(tmp_path):
     path = tmp_path / "samples.csv"
     path.write_text("sample,psd\nA,psd-*.csv\n")

@@ -49,7 +49,8 @@ def table_of_numbers(path: Path) -> Table:
     Raises
     ------
     ValueError
-        If the file is not a text or lacks such a row, or a row has more cells than headings.
+        If the file is not a text or lacks such a row, a row has more cells than headings, or a
+        quote is not closed.
     OSError
         If the file cannot be opened.
     """
@@ -64,7 +65,7 @@ def table_of_numbers(path: Path) -> Table:
         named = _names(lines[filled[place - 2]], separator, len(names))
         if len(named) == len(names):
             headings = headings_with_units(named, names)
-    return _table(path, lines, separator, first, headings)
+    return _table(path, _rows(path, lines, first, separator), separator, headings)
 
 
 def table_of_texts(path: Path) -> Table:
@@ -83,7 +84,8 @@ def table_of_texts(path: Path) -> Table:
     Raises
     ------
     ValueError
-        If the file is not a text, or a row has more cells than there are headings.
+        If the file is not a text, a row has more cells than there are headings, or a quote is not
+        closed.
     OSError
         If the file cannot be opened.
     """
@@ -91,11 +93,11 @@ def table_of_texts(path: Path) -> Table:
     above = tuple(itertools.takewhile(lambda line: not line.strip() or line[0] == _COMMENT, lines))
     first = len(above)
     if first == len(lines):
-        return _table(path, [], ",", 0, ())
+        return _table(path, iter(()), ",", ())
     separator = max("\t;,", key=lines[first].count)
-    names = next(csv.reader(lines[first:], delimiter=separator))
-    table = _table(path, lines, separator, first + 1, tuple(map(heading, names)))
-    return replace(table, above=above)
+    rows = _rows(path, lines, first, separator)
+    _, names = next(rows)
+    return replace(_table(path, rows, separator, tuple(map(heading, names))), above=above)
 
 
 def _text_lines(path: Path) -> list[str]:
@@ -107,9 +109,8 @@ def _text_lines(path: Path) -> list[str]:
 
 def _table(
     path: Path,
-    lines: Sequence[str],
+    numbered_rows: Iterator[tuple[int, list[str]]],
     separator: str | None,
-    first: int,
     headings: tuple[Heading, ...],
 ) -> Table:
     """Rows below the headings, without comments and empty ones, filled up with empty cells."""
@@ -117,30 +118,38 @@ def _table(
 
     width = len(headings)
     rows, numbers = [], []
-    for number, cells in _rows(lines[first:], separator):
+    for number, cells in numbered_rows:
         if not any(cells) or cells[0].startswith(_COMMENT):
             continue
         if any(cells[width:]):
             sign = "blanks" if separator is None else repr(separator)
             raise ValueError(
-                f"{path}, line {first + number}: the row has {len(cells)} cells and there are "
+                f"{path}, line {number}: the row has {len(cells)} cells and there are "
                 f"{width} headings; write a heading for every column, and quotes around cells that "
                 f"contain {sign}"
             )
         rows.append((cells + [""] * width)[:width])
-        numbers.append(first + number)
+        numbers.append(number)
     frame = pandas.DataFrame(rows, columns=range(width), dtype=object)
     return Table(path, (), (), headings, frame, tuple(numbers), separator)
 
 
-def _rows(lines: Sequence[str], separator: str | None) -> Iterator[tuple[int, list[str]]]:
+def _rows(
+    path: Path, lines: Sequence[str], first: int, separator: str | None
+) -> Iterator[tuple[int, list[str]]]:
     """Number of the last line of every row, from 1, and its cells; cells in quotes may have two."""
     if separator is None:
-        yield from enumerate((_cells(line, None) for line in lines), 1)
+        yield from enumerate((_cells(line, None) for line in lines[first:]), first + 1)
         return
-    reader = csv.reader(lines, delimiter=separator)
-    for cells in reader:
-        yield reader.line_num, [cell.strip() for cell in cells]
+    reader = csv.reader((f"{line}\n" for line in lines[first:]), delimiter=separator)
+    try:
+        for cells in reader:
+            yield first + reader.line_num, [cell.strip() for cell in cells]
+    except csv.Error as error:
+        raise ValueError(
+            f"{path}, line {first + reader.line_num}: {error}; close the quote in this line or "
+            "above it"
+        ) from error
 
 
 def _cells(line: str, separator: str | None) -> list[str]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import collections
+import csv
 import itertools
 import re
 import statistics
@@ -118,7 +119,8 @@ def number_tables(path: Path) -> NumberTables | None:
     Raises
     ------
     ValueError
-        If a row is damaged, or numbers have two decimal signs; it names the line.
+        If a row is damaged, or numbers have two decimal signs; it names the line. Or if a quote is
+        not closed.
     OSError
         If the file cannot be opened.
     """
@@ -127,7 +129,10 @@ def number_tables(path: Path) -> NumberTables | None:
         return None
     lines = text.split("\n")
     split = splitter(lines)
-    table = [split(line) for line in lines]
+    try:
+        table = [split(line) for line in lines]
+    except csv.Error as error:
+        raise ValueError(f"{path}: {error}; close all quotes, or leave them out") from error
     is_row = [_is_row_of_numbers(cells) for cells in table]
     if not any(is_row):
         return None

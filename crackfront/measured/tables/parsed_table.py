@@ -76,7 +76,7 @@ class Table:
             for row in np.flatnonzero(np.isnan(values)):
                 if not is_without_value(column.iat[row]):
                     raise ValueError(
-                        f"{self.path}, line {self.lines[row]}: {column.iat[row]!r} in column "
+                        f"{self.path}, line {self.lines[row]}: {column.iat[row][:40]!r} in column "
                         f"{place + 1} is not a number; correct or remove the row"
                     )
             columns.append(np.where(np.isfinite(values), values, np.nan))

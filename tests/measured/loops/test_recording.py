@@ -117,6 +117,7 @@ def test_columns_are_named_and_units_given_by_options(tmp_path):
         (table(head=("Force (mN)", "Contact area (um)")), "unit um cannot be converted to m.2"),
         (table(head=("Force (mN)", "Radius (um^2)")), "unit um.2 cannot be converted to m"),
         ("", "lacks a line with two numbers"),
+        (table() + '"' + "1,2\n" * 40_000, "close the quote"),
     ],
 )
 def test_what_is_no_table_of_a_loop_is_refused_with_what_to_do(content, sentence, tmp_path):
