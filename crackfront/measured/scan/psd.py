@@ -126,6 +126,10 @@ def _positive_columns(series: Table) -> tuple[Array, Array]:
     """Both columns, without rows that have no wave or no value."""
     place, value = series.numbers((0, 1))
     is_used = np.isfinite(value) & np.isfinite(place) & (place != 0)
+    if not np.any(is_used):
+        raise ValueError(
+            f"{series.path} lacks rows with a wavevector and a finite density; export it again"
+        )
     for name, column in (("first column", place), ("density", value)):
         bad = np.flatnonzero(is_used & ~(column > 0))
         if bad.size:

@@ -232,6 +232,7 @@ def test_sides_of_a_density_that_is_none_of_profiles_are_refused(tmp_path, head,
         (contact_engineering(), {"psd_series": "3"}, "lacks a series '3'"),
         ("q (1/m),PSD (m^3)\n" + columns(Q, profile()), {"psd_units": "1/m"}, "both columns"),
         ("nothing\n", {}, "lacks rows of numbers"),
+        ("q (1/m),PSD (m^3)\n" + columns(Q, np.nan * Q), {}, "lacks rows with a wavevector"),
         ('q (1/m),PSD (m^3)\n"1","2"\n"3","4"\n"' + "5," * 70_000, {}, "close all quotes"),
     ],
 )
