@@ -273,6 +273,8 @@ def test_a_row_that_cannot_be_used_is_refused_with_its_line(tmp_path, old, new, 
         ("measured_hysteresis: 2mJ/m2", "measured_hysteresis: 2", "is '2', without a unit"),
         ("hurst: 0.8", "hurst: [0.8]", "line 2: hurst is [0.8]; it must be a valid number"),
         ("samples:", "sphere: 1\nsamples:", "has 'sphere' next to samples; remove it"),
+        ("sample: A", "sample: \x01", "samples.yaml is not YAML"),
+        ("sample: A", "sample: 2020-99-99", "samples.yaml is not YAML"),
     ],
 )
 def test_yaml_is_read_as_strictly_as_cells(tmp_path, old, new, sentence):

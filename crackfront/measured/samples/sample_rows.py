@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from ruamel.yaml import YAML
-from ruamel.yaml.error import MarkedYAMLError
+from ruamel.yaml.error import MarkedYAMLError, YAMLError
 
 from crackfront.measured.scan.scan_files import check_readable
 from crackfront.measured.tables.headed_table import table_of_texts
@@ -123,6 +123,9 @@ def _yaml_rows(path: Path) -> Iterator[tuple[int, dict[str, Any]]]:
     except MarkedYAMLError as error:
         where = "" if error.problem_mark is None else f", line {error.problem_mark.line + 1}"
         raise ValueError(f"{path}{where}: this is not YAML: {error.problem}; correct it") from error
+    except (YAMLError, ValueError) as error:
+        # A sign that YAML does not allow, or a date or a number that cannot be read.
+        raise ValueError(f"{path} is not YAML: {str(error).splitlines()[0]}; correct it") from error
     rows = content.get("samples") if isinstance(content, dict) else content
     further = [name for name in content if name != "samples"] if isinstance(content, dict) else []
     if rows is not None and further:
