@@ -11,7 +11,7 @@ from scipy.special import stdtrit
 
 from crackfront.analysis.steady_adhesion import Rows
 from crackfront.core.arrays import Array
-from crackfront.measured.loops.recording import Recording
+from crackfront.measured.loops.recording import UNITS, Recording
 
 FEWEST_FREE_ROWS = 5
 """Rows out of contact that determine a zero of the force; a line through fewer lacks an error."""
@@ -57,7 +57,7 @@ def rows_in_contact(recording: Recording) -> NDArray[np.bool_]:
     """Whether each row is in contact: its radius is positive, or, without radii, a force acts.
 
     A force acts from the first to the last row that departs from the line through the rows before
-    or after it. Raises ValueError if no row is in contact.
+    or after it. Raises ValueError if no row is in contact, or a column has no value in contact.
     """
     if recording.radius is not None:
         touches = recording.radius > 0
@@ -68,6 +68,12 @@ def rows_in_contact(recording: Recording) -> NDArray[np.bool_]:
             "no row is in contact: no contact radius is above zero, or no force beyond its noise; "
             "check the columns"
         )
+    for name in UNITS:
+        column = getattr(recording, name)
+        if column is not None and not np.any(np.isfinite(column[touches])):
+            raise ValueError(
+                f"the {name} has no value in contact; leave its column out, or check the file"
+            )
     return touches
 
 

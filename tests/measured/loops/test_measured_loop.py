@@ -7,6 +7,11 @@ import xarray as xr
 from crackfront import measured_loop
 from tests.measured.loops.made import MODULUS, RADIUS, W_RETR, in_contact, loop
 
+_TOUCHING = np.repeat([0.0, 1e-5, 0.0], 20)
+"""Contact radius of a loop with rows out of contact. (Units: m)"""
+
+_LOST_IN_CONTACT = np.where(_TOUCHING > 0, np.nan, 0.0)
+
 
 def test_arrays_and_their_table_are_the_same_loop(tmp_path):
     whole = loop(0)
@@ -28,6 +33,11 @@ def test_arrays_and_their_table_are_the_same_loop(tmp_path):
         ({"force": np.full(50, np.nan), "radius": np.ones(50)}, "force lacks finite values"),
         ({"force": np.zeros(50)}, "needs two of"),
         ({"force": np.zeros(50), "radius": np.ones(49)}, "not of one length"),
+        ({"force": _LOST_IN_CONTACT, "radius": _TOUCHING}, "force has no value in contact"),
+        (
+            {"displacement": _LOST_IN_CONTACT, "radius": _TOUCHING},
+            "displacement has no value in contact",
+        ),
     ],
 )
 def test_what_is_no_loop_is_refused(columns, sentence):
