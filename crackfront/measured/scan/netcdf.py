@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from crackfront.core.arguments import regular_file
 from crackfront.measured.scan.grids_reader import Grid
 from crackfront.measured.scan.points import Points, even_line
 from crackfront.surfaces.written_units import unit_value
@@ -19,8 +20,8 @@ _SUFFIXES = {".nc", ".nc4", ".cdf", ".netcdf"}
 
 
 def is_netcdf(path: Path) -> bool:
-    """Whether a file is netCDF; OSError if it cannot be opened."""
-    with path.open("rb") as file:
+    """Whether a file is netCDF; OSError if it cannot be opened, ValueError if it is a pipe."""
+    with regular_file(path).open("rb") as file:
         return file.read(4) in _BEGINS
 
 
