@@ -728,6 +728,13 @@ def test_the_loop_of_a_surface_without_an_error_has_the_one_that_is_left():
     assert cf.run_loop(coarse, step=0.5).attrs["status"] == "lost_contact"
 
 
+def test_a_home_folder_is_that_of_the_user(surface, tmp_path, monkeypatch):
+    monkeypatch.setenv("HOME", str(tmp_path))
+    cf.save_result(surface, "~/surface.nc")
+    xr.testing.assert_equal(cf.load_result(tmp_path / "surface.nc"), surface)
+    xr.testing.assert_equal(cf.load_result("~/surface.nc"), surface)
+
+
 def test_the_pixels_of_a_map_lie_around_their_places(surface):
     [image] = cf.plot_surface(surface).images
     pixel = float(surface.x[1] - surface.x[0])

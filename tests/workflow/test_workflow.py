@@ -149,7 +149,9 @@ NOT_FOLLOWED = {
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("verb", ["dry-run", "list-rules", "lint", "dag", "summary"])
+@pytest.mark.parametrize(
+    "verb", ["dry-run", "list-rules", "lint", "dag", "summary", "report=a.html"]
+)
 def test_reading_the_workflow_changes_nothing_even_where_files_are_damaged(tmp_path, whole, verb):
     shutil.copytree(whole, tmp_path, dirs_exist_ok=True)
     harm(tmp_path / "results/test")

@@ -334,9 +334,11 @@ def test_a_front_on_which_every_site_is_driven_ends_with_no_site_pushed_back(
 
 
 @every_solver
-def test_the_same_call_gives_the_same_bits(solver):
+def test_the_same_call_gives_the_same_bits_and_leaves_its_front_as_it_was(solver):
     case = Rays(4, n_angle=24)
-    first, again = (tight(case.circle(), 0.8, 1, case.field, solver) for _ in range(2))
+    start = case.circle()
+    first, again = (tight(start, 0.8, 1, case.field, solver) for _ in range(2))
+    assert np.array_equal(start, case.circle())
     assert np.array_equal(first.front, again.front)
     assert (first.sweeps, first.residual) == (again.sweeps, again.residual)
 
