@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from zipfile import ZIP_DEFLATED, BadZipFile, ZipFile, ZipInfo
 
+from crackfront.core.words import in_bytes
 from crackfront.simulate.checksums import (
     SUMS,
     file_digest,
@@ -26,6 +27,9 @@ from crackfront.simulate.storage import replace_atomically, write_text
 
 _DERIVED = "hysteresis.nc", "fit.nc"
 """Files of a sweep that must have a checksum next to them, as those in its shards."""
+
+_MOST_EXPANSION = 1000
+"""Largest ratio of the size of unpacked files to their archive; sweeps have about 2."""
 
 _UNREADABLE = BadZipFile, EOFError, NotImplementedError, RuntimeError, zlib.error
 """What a damaged, encrypted or unusual archive raises."""
@@ -62,6 +66,7 @@ def verification(place: Path) -> Verification:
         raise ValueError(f"{place} is neither a folder of results nor its archive (ZIP)")
     try:
         with ZipFile(place) as archive:
+            _check_unpacked_size(place, archive)
             digests = _archive_digests(archive)
             members = {_name(member): member for member in archive.infolist()}
             if SUMS not in members:
@@ -82,6 +87,16 @@ def _compared(sums: Mapping[str, str], digests: Mapping[str, str]) -> Verificati
         missing=tuple(missing),
         unlisted=tuple(name for name in digests if name not in sums),
     )
+
+
+def _check_unpacked_size(place: Path, archive: ZipFile) -> None:
+    """Raise ValueError if an archive is small and its files are not."""
+    packed, size = place.stat().st_size, sum(member.file_size for member in archive.infolist())
+    if size > _MOST_EXPANSION * packed:
+        raise ValueError(
+            f"{place} would grow from {in_bytes(packed)} to {in_bytes(size)}, which results do "
+            "not; do not unpack it"
+        )
 
 
 def _archive_digests(archive: ZipFile) -> dict[str, str]:
@@ -117,6 +132,10 @@ def write_sums(folder: Path) -> Path:
     digests = {}
     for name in names:
         path = folder / name
+        if not name.isprintable():
+            raise ValueError(
+                f"{folder} has a file {name!r}, whose name no list can state; rename it"
+            )
         derived = is_sweep and (name in _DERIVED or path.parent == folder / "shards")
         needs_digest = derived and path.suffix == ".nc"
         if (needs_digest or stated_digest(path) is not None) and not is_whole(path):

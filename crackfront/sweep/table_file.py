@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 from crackfront.analysis.steady_adhesion import STEADY_DEFINITION
 from crackfront.analysis.table import SweepAxes, SweepRow, SweepTable
 from crackfront.core.spectrum import SelfAffineSpectrum
+from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.core.variables import variables
 from crackfront.simulate.contact import OnSprings, Schedule
 from crackfront.simulate.labels import flag_words, labelled_fields
@@ -31,6 +32,9 @@ from crackfront.sweep.sweep import Sweep
 
 TABLE_REQUEST = "request"
 """Attribute that says what a table was asked for, by the digest of its request."""
+
+_MOST_ADHESION = 100.0
+"""Works of adhesion and energies above this are damage. (Units: w_int)"""
 
 _WINDOW = ("lowest_radius", "highest_radius")
 """Ends of the steady window."""
@@ -87,11 +91,20 @@ def _small_chunk_caches() -> Iterator[None]:
 def read_table(path: Path) -> SweepTable:
     """Arrays of a sweep that a fit needs, from a file that :func:`write_hysteresis` wrote.
 
-    UnreadableFileError if the file is missing, truncated, or not the table of a sweep.
+    UnreadableFileError if the file is missing, truncated, or not the table of a sweep, or if a
+    value is far from that of any contact.
     """
     names = sorted(set(SweepTable.__dataclass_fields__) - {"contact_radius", "parameters"})
     dataset = _read(path, (*names, *_WINDOW))
     columns = {name: np.asarray(dataset[name]) for name in names}
+    for name in ("e_el", "w_rms", "w_appr", "w_retr"):
+        values = np.abs(columns[name])
+        largest = np.max(values, where=np.isfinite(values), initial=0.0) / WORK_OF_ADHESION
+        if largest > _MOST_ADHESION:
+            raise UnreadableFileError(
+                f"{path}: {name} is up to {largest:.3g} w_int, a value that no contact can have; "
+                "aggregate the sweep again"
+            )
     if "parameters" in dataset:  # of spectra that are not self-affine
         columns["parameters"] = np.asarray(dataset["parameters"])
     columns["contact_radius"] = np.mean([dataset[name] for name in _WINDOW], axis=0)

@@ -155,6 +155,12 @@ def test_strange_names_are_listed_and_archived(running, name):
     assert verified(running.with_name("default.zip"))[0] == 0
 
 
+@pytest.mark.parametrize("name", [b"two\nlines", b"\xff"])
+def test_a_name_that_no_list_can_state_is_rejected(running, name):
+    write(running / os.fsdecode(name), b"content")
+    assert "; rename it" in refused("checksums", running)
+
+
 def test_an_archive_without_curves_is_whole(finished):
     assert run("archive", finished, "--no-curves").exit_code == 0
     code, found = verified(finished.with_name("default.zip"))
@@ -176,3 +182,11 @@ def test_no_damage_of_an_archive_passes_or_crashes_its_verification(archive):
         assert result.exception is None or isinstance(result.exception, SystemExit)
     archive.write_bytes(content[: len(content) // 2])
     assert "cannot be read as an archive" in refused("verify", archive)
+
+
+def test_a_small_archive_that_would_become_huge_is_not_read(tmp_path):
+    path = tmp_path / "bomb.zip"
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as packed:
+        for name in "abc":
+            packed.writestr(f"bomb/{name}", bytes(2 * 10**7))
+    assert "would grow from" in refused("verify", path)

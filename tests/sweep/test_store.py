@@ -23,6 +23,8 @@ from crackfront.simulate.provenance import Provenance, provenance
 from crackfront.simulate.run_simulation import run_simulation
 from crackfront.simulate.storage import (
     UnreadableFileError,
+    read_dataset,
+    write_derived,
     write_named_by_digest,
 )
 from crackfront.sweep import tasks
@@ -482,6 +484,20 @@ def test_a_checkpoint_that_is_of_no_use_costs_time_and_is_no_refusal(made, tmp_p
     assert force.tobytes() == expected.tobytes()
     assert not [*folder.glob("checkpoint-*.nc")]
     assert len([*folder.glob("checkpoint-*.nc.damaged")]) == 1
+
+
+@pytest.mark.parametrize(
+    ("name", "value"), [("w_appr", 9.97e36), ("w_retr", -1e3), ("e_el", 9.97e36)]
+)
+def test_a_fit_rejects_rows_with_values_that_no_contact_can_have(folder, name, value):
+    path = folder / "hysteresis.nc"
+    dataset = read_dataset(path)
+    dataset[name][1, 0, 1] = value
+    write_derived(path, dataset, provenance())
+    sentence = refused("fit", TEST, "--output", folder)
+    assert f"{name} is up to" in sentence
+    assert "aggregate the sweep again" in sentence
+    assert not (folder / "fit.nc").exists()
 
 
 MADE = {"shard-flat": "shards/flat.nc", "shard-rough": "shards/rough.nc"}
