@@ -159,7 +159,6 @@ benchmark: env  ## Solvers against the reference, what requests cost, how sweeps
 
 timings: env  ## For a release: what depends on the machine (an hour)
 	$(IN_ENV) .venv/bin/python -m studies speed solvers --keep
-	$(IN_ENV) .venv/bin/python -m studies speed profile --keep
 	$(IN_ENV) .venv/bin/python -m studies speed needs --keep
 	$(IN_ENV) .venv/bin/python -m studies speed costs --keep
 	$(IN_ENV) .venv/bin/python -m studies speed scaling --keep

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import math
 from contextlib import AbstractContextManager, nullcontext
-from numbers import Integral
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -15,7 +14,6 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from xarray import DataArray, Dataset
 
-from crackfront.core.arguments import check_type
 from crackfront.core.arrays import Array
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.plots.axis_units import REDUCED, AxisUnits
@@ -30,6 +28,7 @@ from crackfront.surfaces.si_units import Labelled, in_reduced_units, stated_scal
 from crackfront.surfaces.surface_adhesion import surface_adhesion
 from crackfront.surfaces.surface_array import surface_kind
 from crackfront.surfaces.tile_measures import tile_modes
+from crackfront.validation import Count, checked_call
 
 _ORDERS = (0.0, 0.5, 1.0)
 """Orders of the derivatives whose dominant scales are drawn: heights, half-derivatives, slopes."""
@@ -43,7 +42,6 @@ _BINS_A_DECADE = 20
 
 def _drawing(axes: Axes | None) -> AbstractContextManager[Axes]:
     """The user's axes as they are, or new axes in the style of the package."""
-    check_type("axes", axes, (Axes, type(None)), "one Axes of matplotlib, as axes[0] of several")
     return shown_axes() if axes is None else nullcontext(axes)
 
 
@@ -53,12 +51,6 @@ def _reduced(data: Labelled) -> tuple[Labelled, AxisUnits]:
     if scales is None:
         return data, REDUCED
     return in_reduced_units(data, scales), AxisUnits(scales)
-
-
-def _check_loop(loop: object) -> None:
-    """Raise TypeError unless an argument is a dataset."""
-    remedy = "an xarray.Dataset, as run_loop returns it or crackfront cycle has written it"
-    check_type("loop", loop, Dataset, remedy)
 
 
 def _check_states(loop: Dataset, name: str) -> None:
@@ -85,6 +77,7 @@ def _fronts(loop: Dataset, name: str, site: str) -> tuple[Array, Array, NDArray[
     return loop[site].values, fronts.values, direction.values
 
 
+@checked_call
 def plot_surface(surface: DataArray, axes: Axes | None = None) -> Axes:
     """Heights, or works of adhesion, on the tile.
 
@@ -120,6 +113,7 @@ def plot_surface(surface: DataArray, axes: Axes | None = None) -> Axes:
     return drawn
 
 
+@checked_call
 def plot_spectrum(surface: DataArray, axes: Axes | None = None) -> Axes:
     """Isotropic power spectrum of a rough surface, with the scales that dominate it.
 
@@ -171,6 +165,7 @@ def plot_spectrum(surface: DataArray, axes: Axes | None = None) -> Axes:
     return drawn
 
 
+@checked_call
 def plot_loop(loop: Dataset, axes: Axes | None = None) -> Axes:
     """Force against mean radius, with the JKR curves of both branches and of the paper.
 
@@ -195,7 +190,6 @@ def plot_loop(loop: Dataset, axes: Axes | None = None) -> Axes:
     TypeError
         If an argument is of another type.
     """
-    _check_loop(loop)
     if "pinning_force" in loop:
         states = cycle_record(loop).states
         _check_states(loop, "pinning_force")
@@ -223,8 +217,9 @@ def loop_figure(loop: Dataset) -> Figure:
         return figure
 
 
+@checked_call
 def plot_fronts(
-    loop: Dataset, surface: DataArray | None = None, axes: Axes | None = None, most: int = 12
+    loop: Dataset, surface: DataArray | None = None, axes: Axes | None = None, most: Count = 12
 ) -> Axes:
     """Fronts of both branches, drawn over the work of adhesion if the surface is given.
 
@@ -251,17 +246,11 @@ def plot_fronts(
     TypeError
         If an argument is of another type.
     """
-    _check_loop(loop)
-    if isinstance(surface, Axes):
-        raise TypeError("surface is an Axes of matplotlib; give axes by name, as axes=...")
     if ("radius" not in loop and "position" not in loop) or loop.sizes.get("step") == 0:
         raise ValueError(
             "the loop has no fronts; run it with fronts=True, or crackfront cycle with "
             "--record fronts"
         )
-    check_type("most", most, Integral, "a whole number")
-    if most < 1:
-        raise ValueError(f"most is {most}; draw 1 front or more")
     if "position" in loop:
         if surface is not None:
             raise ValueError("straight fronts are drawn without a surface; leave it out")
@@ -288,6 +277,7 @@ def _draw_pinning_field(axes: Axes, surface: DataArray, units: AxisUnits) -> Non
     draw_field(axes, x, y, values, float(np.mean(values)), reach, units)
 
 
+@checked_call
 def plot_instabilities(jumps: Dataset, axes: Axes | None = None) -> Axes:
     """Area that each instability of a branch swept, coloured by the dissipated energy.
 
@@ -310,7 +300,6 @@ def plot_instabilities(jumps: Dataset, axes: Axes | None = None) -> Axes:
     TypeError
         If an argument is of another type.
     """
-    check_type("jumps", jumps, Dataset, "what find_instabilities returns")
     if "before" not in jumps or "travel" not in jumps.attrs:
         raise ValueError("jumps is another dataset; give what find_instabilities returns")
     if jumps.before.size == 0:

@@ -28,7 +28,7 @@ class Expectation:
     size: float
     """g, L_kappa over the Larkin length, of a sphere at its largest penetration."""
     factor: float | None
-    """k by the law; None so close to pull-off that nothing holds the edge."""
+    """k by the law; None near pull-off, where the edge is unstable."""
     needed_penetration: float | None = None
     """Set if the largest one leaves no steady part. (Units: reduced vertical length, or as in
     the configuration)"""

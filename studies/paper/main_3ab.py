@@ -27,7 +27,8 @@ from crackfront.surfaces.instabilities import (
     resolved_motion,
     shortest_instability,
 )
-from crackfront.sweep.section import Count, Positive, section_error
+from crackfront.sweep.section import section_error
+from crackfront.validation import Count, Positive
 from studies.paper.drawing import BRANCHES, draw_jump, name_panels, write_beside
 from studies.paper.figure import Check, Figure, Integers, Progress, close_to
 from studies.paper.rough import STRONG, WEAK, DisorderParameters, RoughContact, flat_spectrum

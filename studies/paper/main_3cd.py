@@ -29,7 +29,7 @@ from crackfront.plots.parts import ADHESION_LABEL, field_colours
 from crackfront.plots.style import BLACK, BLUE, PAGE, VERMILION, blank_figure, explain, house_style
 from crackfront.simulate.numerical_errors import stated_error
 from crackfront.simulate.simulation import simulation_adhesion, simulation_field
-from crackfront.sweep.section import Positive
+from crackfront.validation import Positive
 from studies.paper.drawing import name_panels
 from studies.paper.figure import Check, Figure, Integers, Progress, close_to, values_of
 from studies.paper.rough import (

@@ -18,7 +18,8 @@ from crackfront.core.units import Scales
 from crackfront.core.variables import variable
 from crackfront.simulate.simulation import Simulation
 from crackfront.simulate.sphere.full_cycle import FullCycle
-from crackfront.sweep.section import Positive, section_error
+from crackfront.sweep.section import section_error
+from crackfront.validation import Positive
 from studies.paper.figure import Integers
 from studies.paper.film import FilmSection
 from studies.paper.measured import ForceRadius, read_force_radius

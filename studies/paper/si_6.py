@@ -26,12 +26,8 @@ from crackfront.plots.style import (
     explain,
     house_style,
 )
-from crackfront.sweep.section import (
-    Count,
-    Positive,
-    Seed,
-    section_error,
-)
+from crackfront.sweep.section import section_error
+from crackfront.validation import Count, Positive, Seed
 from studies.paper.drawing import DOTTED, write_beside
 from studies.paper.figure import Check, Figure, Progress, close_to, values_of
 from studies.paper.film import CONVERTED_LABEL, POINTS_PER_DECADE, FilmDensities, FilmParameters

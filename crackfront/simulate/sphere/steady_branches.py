@@ -44,10 +44,16 @@ _LEAST_DRIVE = 1.5
 Single sites may move back: where some repel, no circle with an open edge drives all forward.
 """
 
-_LARGEST_FACTOR, _FAR_BEHIND = 2.6, 20.0
-"""Largest factor k that may hold a front, and distance behind such a front, in correlation lengths,
-at which a circle may be a start too: on fine spectra the drive above needs hundreds of them, and
-fronts deviate from a circle by 7 at most."""
+_LARGEST_FACTOR = 2.6
+"""Largest factor k that may pin a front."""
+
+_FAR_BEHIND = 20.0
+"""Distance behind a front pinned by the largest k at which a circle may be a start too.
+(Units: correlation length)
+
+On fine spectra the drive above needs hundreds of them, and fronts deviate from a circle by 7 at
+most.
+"""
 
 _FEWEST_STATES = 9.0
 """States of an approach that turns as early as it may: one before it is steady."""
@@ -209,7 +215,7 @@ def forward_circle(
 
     Circles are tried from the radius `near` on backwards: inwards in approach (direction +1),
     outwards in retraction (-1). The first is taken that :data:`_LEAST_DRIVE` allows, or that lies
-    :data:`_FAR_BEHIND` the first circle that pinning by the largest k cannot hold. Without any it
+    :data:`_FAR_BEHIND` the first circle that pinning by the largest k cannot stop. Without any it
     is the last: in approach that within which the edge is in compression, in retraction the end of
     the field. (Units: reduced lateral length, the penetration reduced vertical length)
     """
@@ -218,16 +224,21 @@ def forward_circle(
         furthest = max(math.sqrt(max(penetration, 0.0)), first_place(field))
     if direction * (furthest - near) > 0:
         return np.full(field.geometry.n_site, furthest)
-    unheld = None
+    beyond_pinning = None
     for radius in np.linspace(near, furthest, _N_CIRCLE):
         circle = np.full(field.geometry.n_site, radius)
         adhesion = front_adhesion(circle, field)
         drive = direction * (np.mean(adhesion) - jkr.energy_release_rate(radius, penetration))
         if drive > _LEAST_DRIVE * np.std(adhesion):
             return circle
-        # The drive of a front that is held is at most k e_el, with w_rms^2 = 4 e_el w_int.
-        if unheld is None and drive > _LARGEST_FACTOR * np.var(adhesion) / (4 * WORK_OF_ADHESION):
-            unheld = radius
-        if unheld is not None and abs(radius - unheld) > _FAR_BEHIND * correlation_length:
+        # The drive of a pinned front is at most k e_el, with w_rms^2 = 4 e_el w_int.
+        if beyond_pinning is None and drive > _LARGEST_FACTOR * np.var(adhesion) / (
+            4 * WORK_OF_ADHESION
+        ):
+            beyond_pinning = radius
+        if (
+            beyond_pinning is not None
+            and abs(radius - beyond_pinning) > _FAR_BEHIND * correlation_length
+        ):
             return circle
     return np.full(field.geometry.n_site, furthest)
