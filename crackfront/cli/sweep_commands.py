@@ -313,8 +313,9 @@ def run_missing(
             tqdm(total=total, unit="simulation", disable=not terminal, file=sys.stderr) as bar,
         ):
             for count, (simulation, finished) in enumerate(outcomes, start=1):
-                line = f"{simulation.label}: {finished.status}"
-                line += f", {finished.sentence or f'{finished.seconds:.2f} s'}"
+                ended = "complete" if finished.status in COMPLETE else finished.status
+                details = finished.sentence or f"{finished.seconds:.2f} s"
+                line = f"{simulation.label}: {ended}, {details}"
                 if not terminal:
                     click.echo(f"[{count}/{total}] {line}")
                 elif finished.status not in COMPLETE:

@@ -214,7 +214,7 @@ def test_the_report_is_one_page_that_a_browser_shows_without_a_network(tmp_path,
     for page in (seen, summary):
         assert first[0] in page
         assert 'alt="loop"' in page
-    assert "<td>lost_contact</td><td>8</td>" in summary
+    assert "<td>lost_contact (complete)</td><td>8</td>" in summary
     assert "<th>midpoint slope m</th>" in summary
     for item in ("git_commit", "command", "platform", "seed of the sweep"):
         assert f"<td>{item}</td>" in summary
