@@ -74,6 +74,7 @@ def plan(
     makes them again.
     """
     from crackfront.sweep.advice import expectations, steady_part_warnings
+    from crackfront.sweep.changed_keys import change_sentence
     from crackfront.sweep.run_sweep import opened
     from crackfront.sweep.sweep_cost import error_costs
 
@@ -85,6 +86,7 @@ def plan(
     n_missing = sum(inventory.n_missing for inventory in progress.values())
     warnings = [*steady_part_warnings(sweep)]
     prices = [*error_costs(sweep, errors or ())]
+    changed = change_sentence(store.configuration, configuration)
     content = {
         "results": store.folder,
         "spectra": [item.name for item in sweep.spectra],
@@ -97,11 +99,13 @@ def plan(
         "unit_of_lengths": "reduced" if sweep.scales is None else "m",
         "expected": expected,
         "doubts": warnings,
+        "changed": changed,
         **asdict(_cost(missing)),
     }
     if prices:
         content["errors"] = prices
-    lines = _plan_lines(sweep, store, shards, progress, expected)
+    lines = [*_plan_lines(sweep, store, shards, progress, expected)]
+    lines += [changed] if changed else []
     echo_answer(content, [*lines, *_price_lines(prices), *warnings], as_json=as_json)
 
 
@@ -256,6 +260,7 @@ def _simulate(
 ) -> None:
     """Run what some shards lack, and derive their rows."""
     from crackfront.sweep.advice import steady_part_warnings
+    from crackfront.sweep.changed_keys import change_sentence
     from crackfront.sweep.inventory import Inventory
     from crackfront.sweep.run_sweep import opened, write_source
 
@@ -269,7 +274,8 @@ def _simulate(
         inventory = sum(inventories, Inventory())
         total = inventory.stored + inventory.n_missing
         click.echo(f"{configuration}: {inventory.stored} of {total} simulations are stored")
-        for sentence in inventory.sentences():
+        changed = change_sentence(store.configuration, configuration)
+        for sentence in filter(None, (changed, *inventory.sentences())):
             click.echo(sentence)
         if inventory.missing:
             cost = _cost(inventory.missing)
