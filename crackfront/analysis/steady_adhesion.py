@@ -78,14 +78,25 @@ class SteadyAdhesion(SteadyMeasures):
     sentence: str = ""
 
 
-def steady_adhesion(record: CycleRecord, correlation_length: float) -> SteadyAdhesion:
+DEEPER = "penetrate deeper or use a smaller load step"
+"""What gives a sphere more steady states, if its loads are steps."""
+
+_FURTHER = "load further or use a smaller load step"
+"""What gives a straight front more steady states."""
+
+
+def steady_adhesion(
+    record: CycleRecord, correlation_length: float, remedy: str = DEEPER
+) -> SteadyAdhesion:
     """Mean apparent work of adhesion over the steady part of each branch of a sphere.
 
     A branch is steady once every site has travelled the correlation length of w_loc (Units:
-    reduced lateral length).
+    reduced lateral length). The remedy says what gives more steady states if there are too few.
     """
     states, radius = record.states, record.states.mean_radius
-    branches, window, sentence = steady_branches(states, radius, "radii", correlation_length)
+    branches, window, sentence = steady_branches(
+        states, radius, "radii", correlation_length, remedy=remedy
+    )
     if sentence:
         return _no_value(branches, sentence)
     from_force = [_adhesion_from_force(radius[branch], states.force[branch]) for branch in branches]
@@ -104,6 +115,7 @@ def steady_branches(
     name: str,
     correlation_length: float,
     period: float = math.inf,
+    remedy: str = _FURTHER,
 ) -> tuple[Branches, tuple[float, float], str]:
     """Steady states of both branches, the window of positions that they share, and a sentence.
 
@@ -121,8 +133,7 @@ def steady_branches(
     pairs: list[Branches] = list(itertools.product(forward, back))
     branches = max(pairs, key=n_shared) if len(pairs) > 1 else pairs[0]
     approach, retraction = branches
-    deeper = "penetrate deeper" if isinstance(states, ContactState) else "load further"
-    needed = f"{FEWEST_STATES} each are needed, so {deeper} or use a smaller load step"
+    needed = f"{FEWEST_STATES} each are needed, so {remedy}"
     if min(approach.size, retraction.size) < FEWEST_STATES:
         counts = f"{approach.size} steady states in approach and {retraction.size}"
         return branches, (math.nan, math.nan), f"{counts} in retraction; {needed}"

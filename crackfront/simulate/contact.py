@@ -189,6 +189,25 @@ class Pressed(ABC):
         branch is steady (Units: length) are expected ones. (Units: reduced vertical length)
         """
 
+    def steadier_start(
+        self, surface: RandomSurface, works: tuple[float, float], travel: float, n_state: int
+    ) -> float | None:
+        """Start that leaves so many steady states without a deeper contact, as above.
+
+        None if no start does, or the loads always begin at first contact. (Units: reduced vertical
+        length)
+        """
+        return None
+
+    def steadier_travel(
+        self, surface: RandomSurface, works: tuple[float, float], travel: float, n_state: int
+    ) -> float | None:
+        """Way from state to state that leaves so many steady ones, as above.
+
+        None if no way does, or the loads are steps. (Units: correlation length)
+        """
+        return None
+
 
 class OnSprings(ABC):
     """A front on springs of a constant length."""

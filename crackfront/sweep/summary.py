@@ -9,6 +9,8 @@ from pathlib import Path
 
 from markdown_it import MarkdownIt
 
+from crackfront.sweep.rows import COMPLETE
+
 _STYLE = (
     "body{font:15px/1.5 sans-serif;max-width:75em;margin:2em auto;padding:0 1em;color:#222}"
     "table{border-collapse:collapse;margin:1em 0;font-size:90%}"
@@ -43,7 +45,7 @@ def summary_page(
             "</section>",
             markdown.render(heading + rest),
             "<h2>Simulations</h2>",
-            _table(("status", "simulations"), {k: str(n) for k, n in sorted(statuses.items())}),
+            _table(("status", "simulations"), _endings(statuses)),
             "<h2>Origin</h2>",
             _table(("", ""), origin),
             "<h2>Configuration</h2>",
@@ -51,6 +53,14 @@ def summary_page(
             "</body></html>\n",
         ]
     )
+
+
+def _endings(statuses: Mapping[str, int]) -> dict[str, str]:
+    """Numbers of simulations by how they ended; a complete cycle ends when contact is lost."""
+    return {
+        f"{status} (complete)" if status in COMPLETE else status: str(number)
+        for status, number in sorted(statuses.items())
+    }
 
 
 def _picture(caption: str, path: Path) -> str:

@@ -10,10 +10,12 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from crackfront.analysis.standard_error import standard_error
+from crackfront.analysis.steady_adhesion import SteadyAdhesion, steady_adhesion
 from crackfront.core import jkr
 from crackfront.core.adhesion import FieldKind
 from crackfront.core.arguments import check_positive
@@ -31,6 +33,9 @@ from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.simulate.contact import ExpectedMotion, Problem
 from crackfront.simulate.sphere.full_cycle import SphereSchedule
 from crackfront.simulate.tiles import RandomSurface
+
+if TYPE_CHECKING:
+    from crackfront.simulate.run_simulation import SimulationResult
 
 _FEWEST_TO_TURN = 8
 """Steady states before the approach may turn."""
@@ -57,6 +62,9 @@ most.
 
 _FEWEST_STATES = 9.0
 """States of an approach that turns as early as it may: one before it is steady."""
+
+_LEAST_TRAVEL = 0.1
+"""Least way from state to state that is advised, in correlation lengths: shorter ones cost time."""
 
 _VARIANCE = 0.6
 """Variance of k from state to state, times e_el and the independent pieces of the front."""
@@ -139,6 +147,12 @@ class SteadySchedule(SphereSchedule):
             penetration -= step
             yield Load(penetration, -1)
 
+    def steady_adhesion(self, result: SimulationResult) -> SteadyAdhesion:
+        """Means over the steady states, as of full cycles, with the keys that give more of them."""
+        length = result.simulation.correlation_length
+        remedy = "lower start or travel, or raise max_penetration"
+        return steady_adhesion(result.record, length, remedy)
+
     def expected_motion(self, surface: RandomSurface) -> ExpectedMotion:
         """States of both branches until k has the requested standard error."""
         length = surface.correlation_length
@@ -155,11 +169,37 @@ class SteadySchedule(SphereSchedule):
     ) -> float:
         """Penetration that leaves the approach so many steady states."""
         low, _ = works
-        length = surface.correlation_length
-        # It begins a correlation length behind, and the retraction behind the end.
-        begin = jkr.equilibrium_radius(self.start, low) - length
-        needed = travel + n_state * self.travel * length
-        return float(jkr.equilibrium_penetration(begin + needed, low))
+        end = self._begin(surface, low) + self._way(surface, travel, n_state)
+        return float(jkr.equilibrium_penetration(end, low))
+
+    def steadier_start(
+        self, surface: RandomSurface, works: tuple[float, float], travel: float, n_state: int
+    ) -> float | None:
+        """Start from which the approach has so many steady states; None below first contact."""
+        low, _ = works
+        end = jkr.equilibrium_radius(self.max_penetration, low)
+        begin = end - self._way(surface, travel, n_state) + surface.correlation_length
+        if begin < jkr.equilibrium_radius(0.0, low):
+            return None
+        return float(jkr.equilibrium_penetration(begin, low))
+
+    def steadier_travel(
+        self, surface: RandomSurface, works: tuple[float, float], travel: float, n_state: int
+    ) -> float | None:
+        """Travel with which the approach has so many steady states; None if it is too small."""
+        low, _ = works
+        whole = jkr.equilibrium_radius(self.max_penetration, low) - self._begin(surface, low)
+        shorter = float(whole - travel) / (n_state * surface.correlation_length)
+        return shorter if shorter > _LEAST_TRAVEL else None
+
+    def _begin(self, surface: RandomSurface, work_of_adhesion: float) -> float:
+        """Radius of the circle at which the approach begins, a correlation length behind."""
+        radius = jkr.equilibrium_radius(self.start, work_of_adhesion)
+        return float(radius) - surface.correlation_length
+
+    def _way(self, surface: RandomSurface, travel: float, n_state: int) -> float:
+        """Way of the approach until it has so many steady states (Units: length)."""
+        return travel + n_state * self.travel * surface.correlation_length
 
 
 def integral_breadth(kind: FieldKind, spectrum: Spectrum) -> float:
