@@ -29,8 +29,9 @@ _ROUND_OFF = 1e-5
 STEADY_DEFINITION = (
     "w_appr and w_retr are means of the apparent work of adhesion, <a G> / <a> with the mean over "
     "the front, over the steady states of a branch. A state is steady once every site of the "
-    "front has travelled at least one correlation length of w_loc since its branch began, so that "
-    "the start and the transient after reversal are left out. Both branches are averaged over the "
+    "front has travelled at least one correlation length of w_loc since its branch began; the jump "
+    "into contact counts as travel, from the first touch. So the transient after reversal is left "
+    "out. Both branches are averaged over the "
     "same window of mean radii, the overlap of the ranges of their steady states; under loads that "
     "turn several times a branch is one way without a turn. All states of "
     f"the load schedule in it have equal weight; each branch needs at least {FEWEST_STATES}. An "
@@ -81,7 +82,7 @@ def steady_adhesion(record: CycleRecord, correlation_length: float) -> SteadyAdh
     """Mean apparent work of adhesion over the steady part of each branch of a sphere.
 
     A branch is steady once every site has travelled the correlation length of w_loc (Units:
-    reduced lateral length).
+    reduced lateral length). The jump into contact counts as travel.
     """
     states, radius = record.states, record.states.mean_radius
     branches, window, sentence = steady_branches(states, radius, "radii", correlation_length)
