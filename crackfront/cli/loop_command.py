@@ -93,6 +93,16 @@ def _window(
 )
 @click.option("--stiffness", callback=_in_si("N/m"), help="Stiffness of the machine, as in 200N/m.")
 @click.option("--window", callback=_window, help="Contact radii to average over, as in 50um:150um.")
+@click.option("--loop", type=click.IntRange(min=1), help="Which of several loops, from 1.")
+@click.option(
+    "--segment", type=click.Choice(("approach", "retract")), help="Branch to evaluate alone."
+)
+@click.option(
+    "--invert",
+    type=click.Choice(("force", "displacement")),
+    multiple=True,
+    help="Column with the opposite sign, as a force that is positive if it pulls.",
+)
 @click.option("--force", help="Heading of the column of the force.")
 @click.option("--force-unit", help="Unit of the force, as in mN.")
 @click.option("--contact-radius", help="Heading of the column of the radius.")
@@ -190,7 +200,8 @@ def _measured(
 ) -> MeasuredLoop:
     """Loop of a table, with the options of the rig and of the columns."""
     from crackfront.measured.loops.analysis import analyse_loop
-    from crackfront.measured.loops.recording import read_recording
+    from crackfront.measured.loops.loop_choice import chosen_loop
+    from crackfront.measured.loops.loop_table import read_recording
     from crackfront.measured.loops.rig import Rig
 
     heads = {name: options[option] for name, option in _COLUMNS.items() if options[option]}
@@ -198,8 +209,9 @@ def _measured(
     recording = read_recording(path, heads, units)
     if radius is None:
         raise ValueError(f"{path} does not state the sphere; give its --radius, as in 1.25mm")
-    rig_options = ("modulus_error", "radius_error", "stiffness", "window")
+    rig_options = ("modulus_error", "radius_error", "stiffness", "window", "segment")
     rig = Rig(radius, contact_modulus, **{name: options[name] for name in rig_options})
+    recording = chosen_loop(recording.inverted(options["invert"]), options["loop"])
     return analyse_loop(recording, rig)
 
 
