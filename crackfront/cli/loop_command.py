@@ -18,7 +18,7 @@ from crackfront.cli.option_types import (
     option_name,
     options_of,
 )
-from crackfront.cli.output_files import check_overwriting, check_writable
+from crackfront.cli.output_files import check_overwriting, check_replaced_page, check_writable
 from crackfront.core.bounds import Range
 from crackfront.measured.options import (
     ReadingOptions,
@@ -122,6 +122,7 @@ def _window(
     help="w_int of the prediction, as in 63mJ/m2.",
 )
 @click.option("--figure", type=FILE, help="Figure of the loop; without suffix PDF and PNG.")
+@click.option("--report", type=FILE, help="Page of HTML to send: numbers, reservations and figure.")
 @as_json
 @click.pass_context
 def loop(
@@ -134,6 +135,7 @@ def loop(
     scans: tuple[Path, ...],
     work_of_adhesion: float | None,
     figure: Path | None,
+    report: Path | None,
     as_json: bool,
     **options: Any,
 ) -> None:
@@ -155,9 +157,10 @@ def loop(
     reading = _reading(scans, options)
     rig = {name: options[name] for name in options if name not in ReadingOptions.model_fields}
     check_needed_option(context, "modulus", "poisson")
-    check_overwriting([path, *scans], {"--figure": figure})
-    if figure is not None:
-        check_writable(figure.parent)
+    check_overwriting([path, *scans], {"--figure": figure, "--report": report})
+    check_replaced_page("--report", report)
+    for output in filter(None, (figure, report)):
+        check_writable(output.parent)
     contact_modulus = None if modulus is None else modulus / (1 - poisson**2)
     if is_netcdf(path):
         if names := [name for name, value in rig.items() if value]:
@@ -181,6 +184,12 @@ def loop(
 
         for file in save_figure(loop_figure(result, prediction), figure):
             click.echo(f"figure: {file}", err=as_json)
+    if report is not None:
+        from crackfront.measured.loops.loop_report import loop_report
+        from crackfront.simulate.storage import write_text
+
+        write_text(report, loop_report(result, prediction, path.name))
+        click.echo(f"report: {report}", err=as_json)
     if failure is not None:
         raise failure
 
