@@ -61,7 +61,8 @@ def loop_remarks(
             "The hysteresis is negative, as in a loop whose rows are not in the order of time: "
             "check the order and the sign of the columns."
         )
-    yield from _modulus_and_trends(loop, result, averaged)
+    if not _has_radii_elsewhere(loop, touches):
+        yield from _modulus_and_trends(loop, result, averaged)
     yield from _stiffness(loop, result)
     yield from _pull_off(result)
 
@@ -97,6 +98,12 @@ def _size(result: MeasuredLoop) -> Iterator[str]:
             "paraboloid misses there; the works of adhesion and the modulus are those of a "
             "paraboloid."
         )
+
+
+def _has_radii_elsewhere(loop: CalibratedLoop, touches: NDArray[np.bool_]) -> bool:
+    """Whether rows out of contact have a radius: it is late, and fits no modulus."""
+    radius = loop.recording.radius
+    return radius is not None and bool(np.any(radius[~touches] > 0))
 
 
 def _modulus_and_trends(

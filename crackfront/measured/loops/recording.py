@@ -50,11 +50,11 @@ class Recording:
 
     def rows(self, chosen: slice) -> Recording:
         """Some successive rows."""
-        columns = {name: getattr(self, name) for name in UNITS}
-        parts = {
-            name: None if column is None else column[chosen] for name, column in columns.items()
-        }
-        return replace(self, **parts)
+        force, radius, displacement = (
+            None if column is None else column[chosen]
+            for column in (self.force, self.radius, self.displacement)
+        )
+        return replace(self, force=force, radius=radius, displacement=displacement)
 
     def inverted(self, names: Iterable[str]) -> Recording:
         """The recording with the opposite sign of some columns.

@@ -66,9 +66,10 @@ def without_saturated_rows(recording: Recording) -> Saturation:
             if rows.size:
                 value = prefixed(unit, float(column[rows[0]]))
                 end = _LIMITED.get(name, "the travel of the mount")
+                unknown = "; the energy lost is unknown" if name == "force" else ""
                 remarks.append(
                     f"{rows.size} rows in contact have the {extreme} {name}, {value}, where {end} "
-                    "seems to end. These rows are not used."
+                    f"seems to end. These rows are not used{unknown}."
                 )
     return Saturation(replace(recording, **columns), pull_rows, lost_force, tuple(remarks))
 
@@ -84,7 +85,7 @@ def _rows_before_turn(recording: Recording, name: str, touching: Rows) -> Rows:
         if column is not None and column is not getattr(recording, name)
     )
     turn = touching[np.nanargmax(other[touching])]
-    return touching[touching < turn]
+    return touching[touching < int(turn)]
 
 
 def _rows_at_end(column: Array, touching: Rows, compared: Rows) -> Rows:
@@ -97,8 +98,8 @@ def _rows_at_end(column: Array, touching: Rows, compared: Rows) -> Rows:
     for n_level in _LEVELS:
         # Half a step allows for the last bits.
         lowest = end - (n_level - 0.5) * step
-        n_end = np.count_nonzero(values >= lowest)
-        n_next = np.count_nonzero(values >= lowest - n_level * step) - n_end
+        n_end = int(np.sum(values >= lowest))
+        n_next = int(np.sum(values >= lowest - n_level * step)) - n_end
         usual = values.size * n_level * step / float(np.ptp(values))
         if n_end >= max(_FEWEST, _STEEPNESS * n_next, _FEWEST * usual):
             return touching[column[touching] >= lowest]

@@ -57,6 +57,7 @@ def test_a_radius_that_is_recorded_late_is_named_with_its_lag():
     [remark] = [remark for remark in result.remarks if "recorded late" in remark]
     assert "in 5 rows after the pull-off" in remark
     assert "5 rows after the jump" in remark
+    assert not any("leave out --modulus" in remark for remark in result.remarks)
     assert result.pull_off_force.value == pytest.approx(PULL, rel=0.05)
 
 
