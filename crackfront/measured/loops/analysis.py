@@ -222,7 +222,7 @@ def _check_noise(loop: CalibratedLoop, contact: Contact, touching: Branches, pul
             "noise presses more than the contact of Hertz; check the units, the modulus and "
             "--stiffness, average rows, use a stiffer machine, or record the contact radius"
         )
-    raise ValueError(f"{sentence}. {pull_off_sentence(pull.force, loop.rig.radius)}")
+    raise ValueError(f"{sentence}. {pull_off_sentence(pull.force, loop.rig.radius)}".strip(". "))
 
 
 def _is_beyond_noise(loop: CalibratedLoop, contact: Contact, lost: Rows, noise: float) -> bool:

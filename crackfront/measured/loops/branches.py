@@ -116,7 +116,7 @@ def present_branches(recording: Recording, touching: Branches, segment: Segment)
     recorded = [np.asarray(path)[rows][np.isfinite(np.asarray(path)[rows])] for rows in touching]
     spans = [float(np.ptp(values)) if values.size else 0.0 for values in recorded]
     approach, retraction = (
-        rows if span > _LEAST_TRAVEL * max(spans) or values.size >= _FEWEST_ROWS else rows[:0]
+        rows if span >= _LEAST_TRAVEL * max(spans) or values.size >= _FEWEST_ROWS else rows[:0]
         for rows, values, span in zip(touching, recorded, spans, strict=True)
     )
     if segment == "approach":
@@ -125,8 +125,8 @@ def present_branches(recording: Recording, touching: Branches, segment: Segment)
         approach = approach[:0]
     if approach.size + retraction.size == 0:
         raise ValueError(
-            f"the loop lacks rows in contact of the {segment or 'approach and the retraction'}; "
-            "record them, or choose the other --segment"
+            f"the loop lacks rows in contact of the segment {segment}; record them, or choose the "
+            "other one"
         )
     return approach, retraction
 
@@ -152,6 +152,8 @@ def steady_part(loop: CalibratedLoop, contact: Contact, touching: Branches) -> S
     if window is None:
         averaged, window = _steady_rows(radius, approach, retraction)
         where = "that both pass after the edge has travelled"
+        if len(present) == 1:
+            where = "after the edge has travelled"
         advice = "retract further, record more rows, check the modulus, or name a --window"
     else:
         averaged = within(radius, (approach, retraction), window)
@@ -161,8 +163,11 @@ def steady_part(loop: CalibratedLoop, contact: Contact, touching: Branches) -> S
     counts = [rows.size for rows, touched in zip(averaged, touching, strict=True) if touched.size]
     if min(counts) < _FEWEST_ROWS:
         numbers = " and ".join(map(str, counts))
+        verb = "have" if len(present) == 2 else "has"
+        if max(counts) >= _FEWEST_ROWS:
+            advice += ", or evaluate the other branch alone by --segment"
         raise ValueError(
-            f"{' and '.join(present)} have {numbers} rows at contact radii {where}; "
+            f"{' and '.join(present)} {verb} {numbers} rows at contact radii {where}; "
             f"{_FEWEST_ROWS} each are needed, so {advice}"
         )
     return SteadyPart((approach, retraction), averaged, window)

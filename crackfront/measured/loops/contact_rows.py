@@ -110,13 +110,13 @@ def _cut_by_force(force: Array, by_radius: NDArray[np.bool_]) -> NDArray[np.bool
     finite = np.flatnonzero(np.isfinite(force))
     middle = touching[touching.size // 2]
     smooth = force[rows_without_spikes(force)]
-    least, noise = _LEAST_PULL * _largest_pull(smooth), _noise(smooth)
     for rows, outside in (
         (finite[finite <= middle], finite[finite < touching[0]]),
         (finite[finite >= middle][::-1], finite[finite > touching[-1]]),
     ):
         if outside.size <= FEWEST_FREE_ROWS:
             continue
+        least, noise = _LEAST_PULL * _largest_pull(smooth), _noise(smooth)
         values = force[rows] - force[rows[0]]
         departs = np.abs(_departures(values, least, noise)) > 1
         departs[:-1] &= departs[1:]

@@ -173,11 +173,12 @@ def _stiffness(loop: CalibratedLoop, result: MeasuredLoop) -> Iterator[str]:
     if stiffness is not None:
         contact = 2 * loop.modulus * float(np.mean(result.window))
         if stiffness < _SOFT * contact:
+            alone = pull_off_sentence(result.pull_off_force, result.sphere_radius)
             yield (
                 f"The machine of {prefixed('N/m', stiffness)} is far softer than the contact, "
                 f"2 E' a = {prefixed('N/m', contact)}: the displacement is mostly its bending, and "
                 "an error of the stiffness, which no interval includes, spoils the works of "
-                f"adhesion. {pull_off_sentence(result.pull_off_force, result.sphere_radius)}."
+                f"adhesion. {alone}".rstrip()
             )
 
 

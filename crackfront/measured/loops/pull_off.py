@@ -90,12 +90,14 @@ def least_pull_off(force: Array, rows: Rows, errors: Sequence[Array]) -> Estimat
 def pull_off_sentence(force: Estimate[float], radius: float) -> str:
     """Sentence on the work of adhesion that a pull-off force (Units: N) alone determines.
 
-    `radius` is the radius of the sphere. (Units: m)
+    `radius` is the radius of the sphere (Units: m). Empty without a pull-off force.
     """
+    if not math.isfinite(force.value):
+        return ""
     work = force.each(lambda pull: pull / (1.5 * math.pi * radius))
     return (
         "The pull-off force alone, without a modulus, gives a work of adhesion 2 F / (3 pi R) of "
-        f"{prefixed('J/m2', work.value, work.low, work.high)} for the retraction"
+        f"{prefixed('J/m2', work.value, work.low, work.high)} for the retraction."
     )
 
 

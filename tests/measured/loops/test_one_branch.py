@@ -55,7 +55,7 @@ def test_a_segment_of_a_whole_loop_uses_its_rows_out_of_contact(segment, name):
 
 
 def test_a_segment_that_was_not_recorded_is_an_error_with_the_remedy():
-    with pytest.raises(ValueError, match="choose the other --segment"):
+    with pytest.raises(ValueError, match="segment approach; record them, or choose"):
         analyse_loop(WHOLE.rows(slice(TURN, None)), Rig(RADIUS, MODULUS, segment="approach"))
 
 
