@@ -17,8 +17,8 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationEr
 from pydantic_core import ErrorDetails
 
 from crackfront.core.arguments import check_type, nearest_name
-from crackfront.core.bounds import SI, check_within
-from crackfront.core.units import Scales
+from crackfront.core.bounds import POISSON, SI, check_within
+from crackfront.core.units import Scales, plane_strain_modulus
 from crackfront.core.words import counted
 from crackfront.surfaces.written_units import is_unit, si_value
 
@@ -400,7 +400,7 @@ class SphereOptions(Options):
     modulus: Annotated[float, quantity("Pa", "pressure", "0.7MPa")] | None = None
     """Young's modulus, as in 0.7MPa."""
 
-    poisson: Annotated[float, Field(ge=-0.99, le=0.5)] | None = None
+    poisson: Annotated[float, Field(ge=POISSON.least, le=POISSON.most)] | None = None
     """Poisson's ratio, as in 0.5."""
 
     radius: Length | None = None
@@ -419,4 +419,4 @@ def sphere_scales(options: SphereOptions, prefix: str = "") -> Scales:
         raise ValueError(
             f"the sphere is incomplete; name all of {', '.join(names[:-1])} and {names[-1]}"
         )
-    return Scales(radius, adhesion, modulus / (1 - poisson**2))
+    return Scales(radius, adhesion, plane_strain_modulus(modulus, poisson))
