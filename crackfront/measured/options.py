@@ -349,6 +349,14 @@ class PredictionOptions(Options):
     range: Length | None = None
     """Range of the attraction, as in 0.3nm; by default 0.5nm, as for van der Waals forces."""
 
+    thickness: Length | None = None
+    """Thickness of the soft body, as in 2mm, which is compared with the contact; by default a
+    half-space is assumed."""
+
+    work_of_adhesion_error: Energy | None = None
+    """Standard error of w_int, as in 3mJ/m2, which widens the intervals; by default w_int is
+    exact."""
+
 
 class PsdOptions(Options):
     """Convention of a spectral density, if its file does not state it."""

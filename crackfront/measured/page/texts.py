@@ -228,9 +228,12 @@ def _measured_lines(surface: MeasuredSurface) -> Iterator[str]:
             text += ", not resolved"
         yield f"    {name:20}{text}"
     yield (
-        f"  {'missing':22}two more decades of short waves would add "
-        f"{part_of_energy(shares.missing_short)}; waves above {prefixed('m', joint.longest)} have "
-        f"{shares.continued_long:.0%}"
+        f"  {'missing':22}waves down to {prefixed('m', joint.extended.short_cutoff)} would add "
+        f"{part_of_energy(shares.missing_short)}"
+    )
+    yield (
+        f"  {'longer':22}waves above {prefixed('m', joint.longest)} have "
+        f"{part_of_energy(shares.continued_long)}"
     )
 
 

@@ -15,9 +15,10 @@ from crackfront.core.units import Scales
 from crackfront.core.variables import variable
 from crackfront.measured.options import PredictionOptions
 from crackfront.measured.prediction.conditions import theory_verdict, zero_load_radius
+from crackfront.measured.prediction.next_scan import measure_next
 from crackfront.measured.prediction.prediction_texts import ENERGY, estimate_text, wavelengths_text
 from crackfront.measured.prediction.remarks import Remark, Verdict, remark_text
-from crackfront.measured.prediction.surface_remarks import disagreements, measure_next
+from crackfront.measured.prediction.surface_remarks import disagreements
 from crackfront.measured.prediction.works import (
     AdhesionByLaw,
     adhesion_by_law,
