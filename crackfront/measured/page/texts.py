@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import fields, replace
 from typing import TYPE_CHECKING, Any
 
@@ -15,12 +15,16 @@ from crackfront.measured.density.bands import BandLimit, Scan
 from crackfront.measured.prediction.prediction import Prediction
 from crackfront.measured.prediction.prediction_texts import ENERGY, estimate_text, wavelengths_text
 from crackfront.measured.prediction.remarks import (
-    Remark,
     Verdict,
+    remark_entries,
     remark_lines,
     remark_text,
 )
 from crackfront.measured.prediction.surface_remarks import is_lower_bound, surface_remarks
+from crackfront.measured.prediction.works_by_source import (
+    reason_for_differences,
+    works_by_source,
+)
 from crackfront.measured.spectrum.joining import part_of_energy
 from crackfront.measured.spectrum.joint_fit import Fit
 from crackfront.measured.spectrum.measured_surface import MeasuredSurface
@@ -58,7 +62,7 @@ def report_text(
         verdict_lines = iter([verdict.heading, *remark_lines(verdict.remarks)])
         parts.insert(0 if verdict.outcome == "does not apply" else 1, verdict_lines)
     if prediction is not None:
-        parts.append(_prediction_lines(prediction))
+        parts += [_prediction_lines(prediction), source_lines(prediction)]
     elif scales is not None:
         energy = surface.conformity_energy(scales.contact_modulus)
         parts.append(_conformity_lines(energy, scales.work_of_adhesion))
@@ -75,7 +79,7 @@ def simulation_text(simulated: Simulated, prediction: Prediction) -> str:
     for name, (result, predicted) in rows.items():
         expected = estimate_text(ENERGY, predicted)
         lines.append(f"  {name:22}{estimate_text(ENERGY, result)}; predicted {expected}")
-    law = estimate_text("1", prediction.factors.both)
+    law = estimate_text("1", prediction.k)
     lines.append(
         f"  {'k of the front':22}{estimate_text('1', simulated.k)}, numerical error "
         f"{simulated.numerical_error:.2g}; predicted {law}"
@@ -114,14 +118,14 @@ def machine_readable(
         "prediction": None,
         "factors": None,
         "excess": None,
+        "works_by_source": None,
         "outcome": None if verdict is None else verdict.outcome,
-        "remarks": _remark_entries(remarks),
+        "at_least": is_lower_bound(surface),
+        "remarks": remark_entries(remarks),
         "simulation": None,
     }
     if prediction is not None:
-        entries["prediction"] = _prediction_entries(prediction)
-        entries["factors"] = to_jsonable(prediction.factors)
-        entries["excess"] = to_jsonable(prediction.excess)
+        entries |= prediction.to_dict()
         if simulated is not None:
             corrected = to_jsonable(simulated.corrected(prediction))
             entries["simulation"] = to_jsonable(simulated) | {"corrected": corrected}
@@ -173,7 +177,7 @@ def sample_row(
         numbers[f"rms_{name.replace('-', '_')}"] = to_jsonable(measure.rms)
     numbers["e_el"] = to_jsonable(surface.conformity_energy(scales.contact_modulus))
     if prediction is not None:
-        numbers |= _prediction_entries(prediction)
+        numbers |= prediction.number_entries()
     row = dict(sentences)
     for name, entry in numbers.items():
         for end, suffix in (("value", ""), ("low", "_low"), ("high", "_high")):
@@ -265,23 +269,22 @@ def _prediction_lines(prediction: Prediction) -> Iterator[str]:
             yield f"  {variable.attributes['long_name']:58}{text}"
 
 
+def source_lines(prediction: Prediction) -> Iterator[str]:
+    """Lines with the works of adhesion by the paper, by the law and as predicted, and why."""
+    yield f"{'Works of adhesion by':27}{'w_appr':>26}{'w_retr':>26}{'hysteresis':>26}"
+    for row in works_by_source(prediction):
+        works = (row.w_appr, row.w_retr, row.hysteresis)
+        texts = (f"{estimate_text(ENERGY, work):>26}" for work in works)
+        yield f"  {row.source:25}{''.join(texts)}"
+    yield f"  {reason_for_differences(prediction)}"
+
+
 def _conformity_lines(energy: Number, work_of_adhesion: float) -> Iterator[str]:
     """Lines of e_el and w_rms."""
     rms = 2 * math.sqrt(energy.value * work_of_adhesion)
     shown, part = estimate_text(ENERGY, energy), energy.value / work_of_adhesion
     yield f"  {'e_el':25}{shown} = {part:.3g} w_int"
     yield f"  {'w_rms':25}{prefixed(ENERGY, rms)} = {rms / work_of_adhesion:.3g} w_int"
-
-
-def _remark_entries(remarks: Iterable[Remark]) -> list[dict[str, Any]]:
-    """Remarks for JSON, with the margins of conditions."""
-    entries = []
-    for remark in remarks:
-        entry = to_jsonable(remark)
-        if remark.comparison is not None:
-            entry["comparison"]["margin"] = to_jsonable(remark.comparison.margin)
-        entries.append(entry)
-    return entries
 
 
 def _limit_text(limit: BandLimit) -> str:
@@ -313,13 +316,3 @@ def _energy_entry(surface: Surface, contact_modulus: float) -> dict[str, Any]:
     return to_jsonable(surface.conformity_energy(contact_modulus)) | {
         "recorded": to_jsonable(surface.conformity_energy(contact_modulus, surface.recorded))
     }
-
-
-def _prediction_entries(prediction: Prediction) -> dict[str, dict[str, Any]]:
-    """Numbers of a prediction by name, with standard errors, intervals and attributes."""
-    entries = {}
-    for variable in variables(Prediction):
-        value = to_jsonable(getattr(prediction, variable.name))
-        entry = value if isinstance(value, dict) else {"value": value}
-        entries[variable.name] = entry | variable.attributes
-    return entries

@@ -352,11 +352,11 @@ def _layer_remark(surface: Surface, scales: Scales, thickness: float) -> Remark:
     needed = max(_THICK * contact, longest)
     is_thick = thickness >= needed
     verb = "is thick enough" if is_thick else "may be too thin"
+    radii, waves = (f"{float(f'{thickness / x:.2g}'):g}" for x in (contact, longest))
     sentence = (
-        f"thickness: a layer of {prefixed('m', thickness)} {verb} for a half-space, with "
-        f"{thickness / contact:.2g} radii of the contact ({prefixed('m', contact)}) and "
-        f"{thickness / longest:.2g} times the longest waves that matter to e_el; at {_THICK:g} "
-        "radii a layer on a stiff support is about 13% stiffer."
+        f"thickness: a layer of {prefixed('m', thickness)} {verb} for a half-space, with {radii} "
+        f"radii of the contact ({prefixed('m', contact)}) and {waves} times the longest waves that "
+        f"matter to e_el; at {_THICK:g} radii a layer on a stiff support is about 13% stiffer."
     )
     return Remark("thickness", "holds" if is_thick else "reservation", sentence)
 
