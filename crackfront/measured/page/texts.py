@@ -41,7 +41,8 @@ Number = Estimate[float]
 _MEASURES = {0.0: ("heights", "m"), 0.5: ("half-derivative", "m^1/2"), 1.0: ("slopes", "1")}
 """Names and units of rms measures, by the order of the derivative."""
 
-_ADHESIONS = ("w_appr", "w_retr", "hysteresis")
+ADHESIONS = ("w_appr", "w_retr", "hysteresis")
+"""Names of works of adhesion."""
 
 
 def report_text(
@@ -55,14 +56,14 @@ def report_text(
     The verdict comes first if the theory does not apply. Without a prediction, scales in SI units
     add the energy of full conformity.
     """
-    parts = [_surface_lines(surface)]
+    parts = [surface_lines(surface)]
     if verdict is None:
         parts.append(remark_lines(surface_remarks(surface)))
     else:
         verdict_lines = iter([verdict.heading, *remark_lines(verdict.remarks)])
         parts.insert(0 if verdict.outcome == "does not apply" else 1, verdict_lines)
     if prediction is not None:
-        parts += [_prediction_lines(prediction), source_lines(prediction)]
+        parts += [_prediction_lines(prediction), _source_lines(prediction)]
     elif scales is not None:
         energy = surface.conformity_energy(scales.contact_modulus)
         parts.append(_conformity_lines(energy, scales.work_of_adhesion))
@@ -75,7 +76,7 @@ def simulation_text(simulated: Simulated, prediction: Prediction) -> str:
     lines = [f"Simulated on {surfaces}, with the prediction"]
     corrected = simulated.corrected(prediction)
     rows = {"front, not corrected": (simulated.hysteresis, prediction.front_hysteresis)}
-    rows |= {name: (getattr(corrected, name), getattr(prediction, name)) for name in _ADHESIONS}
+    rows |= {name: (getattr(corrected, name), getattr(prediction, name)) for name in ADHESIONS}
     for name, (result, predicted) in rows.items():
         expected = estimate_text(ENERGY, predicted)
         lines.append(f"  {name:22}{estimate_text(ENERGY, result)}; predicted {expected}")
@@ -195,7 +196,7 @@ def _continuation(fit: Fit) -> tuple[tuple[str, Number, str], ...]:
     )
 
 
-def _surface_lines(surface: Surface) -> Iterator[str]:
+def surface_lines(surface: Surface) -> Iterator[str]:
     """Lines on a surface and its rms measures."""
     if isinstance(surface, StatedSurface):
         yield surface.origin
@@ -261,22 +262,32 @@ def _scan_lines(scan: Scan) -> Iterator[str]:
 def _prediction_lines(prediction: Prediction) -> Iterator[str]:
     """Lines with all predicted numbers, as files and JSON name them."""
     yield "Prediction (95% intervals)"
+    for name, text in number_rows(prediction):
+        yield f"  {name:58}{text}"
+
+
+def number_rows(prediction: Prediction) -> Iterator[tuple[str, str]]:
+    """Long names and texts of all predicted numbers that are not NaN."""
     for variable in variables(Prediction):
         value = getattr(prediction, variable.name)
         number = value if isinstance(value, Estimate) else replace(UNKNOWN, value=value)
         if math.isfinite(number.value):
-            text = estimate_text(variable.units, number)
-            yield f"  {variable.attributes['long_name']:58}{text}"
+            yield variable.attributes["long_name"], estimate_text(variable.units, number)
 
 
-def source_lines(prediction: Prediction) -> Iterator[str]:
+def _source_lines(prediction: Prediction) -> Iterator[str]:
     """Lines with the works of adhesion by the paper, by the law and as predicted, and why."""
-    yield f"{'Works of adhesion by':27}{'w_appr':>26}{'w_retr':>26}{'hysteresis':>26}"
+    for row in (("Works of adhesion by", *ADHESIONS), *source_rows(prediction)):
+        source, *works = row
+        yield f"  {source:25}{''.join(f'{work:>26}' for work in works)}"
+    yield f"  {reason_for_differences(prediction)}"
+
+
+def source_rows(prediction: Prediction) -> Iterator[tuple[str, ...]]:
+    """Works of adhesion by their source, as texts."""
     for row in works_by_source(prediction):
         works = (row.w_appr, row.w_retr, row.hysteresis)
-        texts = (f"{estimate_text(ENERGY, work):>26}" for work in works)
-        yield f"  {row.source:25}{''.join(texts)}"
-    yield f"  {reason_for_differences(prediction)}"
+        yield row.source, *(estimate_text(ENERGY, work) for work in works)
 
 
 def _conformity_lines(energy: Number, work_of_adhesion: float) -> Iterator[str]:

@@ -87,9 +87,7 @@ def _larger_scans(joint: JointSpectrum) -> Iterator[_Advice]:
     beyond = joint.spectrum.longer_than(joint.longest)
     side = _WAVES_OF_SIDE * beyond.dominant_wavelengths(0.5)[1]
     pixel = joint.longest / _OVERLAP / _PIXELS_OF_WAVE
-    effect = _effect(factor, known)
-    if is_modelled:
-        effect += f", and would measure {longer:.0%} of e_el that now comes from a model"
+    effect = _effect(factor, known, [_measured_text(longer)] if is_modelled else [])
     scans = _scans(side, pixel, "a side of {side} and pixels of at most {pixel}")
     yield _Advice(factor / known, f"{scans} {effect}")
 
@@ -108,12 +106,10 @@ def _finer_scans(surface: MeasuredSurface) -> Iterator[_Advice]:
     shortest = max(_shortest_needed(joint), finest)
     tip = _tip_radius(joint, shortest) if _has_tip(surface) else math.inf
     is_limited = shortest == finest or tip < _SHARPEST_TIP
-    effect = _effect(factor, known, at_best=is_limited)
-    if is_modelled:
-        effect += f", and would measure {shorter:.0%} of e_el that now comes from a model"
+    further = [_measured_text(shorter)] if is_modelled else []
     if is_missing:
-        effect += f", {'and' if factor > _NARROWER * known else 'but'} may add "
-        effect += part_of_energy(missing)
+        further.append(f"may add {part_of_energy(missing)}")
+    effect = _effect(factor, known, further, at_best=is_limited)
     scans = _scans(
         _WAVES_OF_SIDE * _OVERLAP * joint.shortest,
         shortest / _PIXELS_OF_WAVE,
@@ -128,11 +124,17 @@ def _is_modelled(joint: JointSpectrum) -> bool:
     return joint.shares.measured < LEAST_MEASURED
 
 
-def _effect(factor: float, known: float, *, at_best: bool = False) -> str:
-    """Effect of a scan on the uncertainty factor of e_el, which would be `known` with it."""
+def _measured_text(part: float) -> str:
+    """What a scan measures, as a part of e_el."""
+    return f"would measure {part:.0%} of e_el that now comes from a model"
+
+
+def _effect(factor: float, known: float, further: list[str], *, at_best: bool = False) -> str:
+    """Effects of a scan: the uncertainty factor of e_el would be `known`, and further ones."""
+    narrower, word = f"would narrow it to {'at best ' if at_best else ''}{known:.2g}", "and"
     if factor <= _NARROWER * known:
-        return "would hardly narrow it"
-    return f"would narrow it to {'at best ' if at_best else ''}{known:.2g}"
+        narrower, word = "would hardly narrow it", "but"
+    return f"{narrower}, {word} {' and '.join(further)}" if further else narrower
 
 
 def _shortest_needed(joint: JointSpectrum) -> float:

@@ -18,10 +18,11 @@ from crackfront.surfaces.written_units import prefixed
 if TYPE_CHECKING:
     from crackfront.measured.prediction.prediction import Prediction
 
-_NOT_MODELLED = (
+NOT_MODELLED = (
     "Quasi-static: rate, viscoelasticity, ageing and the preload do not enter; the soft body is a "
     "half-space."
 )
+"""What the model leaves out."""
 
 _MOST_EQUAL = 1.25
 """Ratio of e_el as recorded to e_el, or its inverse, above which the page explains it."""
@@ -49,7 +50,7 @@ def prediction_page(prediction: Prediction) -> str:
             *map(remark_text, further),
             *map(remark_text, met),
             remark_text(measure_next(prediction.surface)),
-            _NOT_MODELLED,
+            NOT_MODELLED,
             "Intervals are 95% intervals; --long prints all results.",
         ]
     )

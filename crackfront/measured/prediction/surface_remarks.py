@@ -211,8 +211,8 @@ def _spectrum_doubts(joint: JointSpectrum) -> Iterator[str]:
         )
     if joint.shares.missing_short.value > _MOST_UNMEASURED:
         yield (
-            f"Waves shorter than {prefixed('m', joint.spectrum.short_cutoff)}, which the points do "
-            f"not resolve, are left out of all numbers and intervals: down to "
-            f"{prefixed('m', joint.extended.short_cutoff)} the power law would add "
+            f"Waves shorter than {prefixed('m', joint.spectrum.short_cutoff)}, where points, "
+            "instrument or noise end the spectrum, are left out of all numbers and intervals: down "
+            f"to {prefixed('m', joint.extended.short_cutoff)} the power law would add "
             f"{part_of_energy(joint.shares.missing_short)}."
         )
