@@ -13,6 +13,7 @@ from crackfront.core.arguments import check_type
 from crackfront.core.units import Scales
 from crackfront.measured.density.bands import analysed_scan
 from crackfront.measured.options import (
+    Options,
     PredictionOptions,
     PsdOptions,
     ReadingOptions,
@@ -209,7 +210,7 @@ def predict(
     >>> f"{1e3 * series[0].hysteresis.value:.1f} mJ/m2, {series[1].hysteresis.value} mJ/m2"
     '2.0 mJ/m2, nan mJ/m2'
     """
-    records = [PredictionOptions, SphereOptions]
+    records: list[type[Options]] = [PredictionOptions, SphereOptions]
     if not isinstance(scans, StatedSurface):
         records.append(ReadingOptions)
     check_option_names("predict", options, *records)

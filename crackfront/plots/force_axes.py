@@ -51,4 +51,5 @@ def draw_forces(
     axes.set_xlim(0, micrometres[-1])
     axes.set_xlabel("contact radius (µm)")
     axes.set_ylabel(f"normal force ({unit})")
-    axes.legend(loc="upper left", title="95% intervals shaded", title_fontsize=6)
+    title = "nothing is predicted" if math.isnan(w_retr.value) else "95% intervals shaded"
+    axes.legend(loc="upper left", title=title, title_fontsize=6)

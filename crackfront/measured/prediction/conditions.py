@@ -4,18 +4,22 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator
-from typing import Literal
+from dataclasses import replace
 
 from scipy.special import ndtr, ndtri
 
 from crackfront.analysis.validity import shipped_validity
 from crackfront.core import jkr
 from crackfront.core.adhesion import overlap_share
-from crackfront.core.bounds import Range
 from crackfront.core.units import Scales
 from crackfront.measured.density.bands import MOST_PERIODIC
 from crackfront.measured.prediction.next_scan import measure_next
 from crackfront.measured.prediction.remarks import LimitCheck, Remark, Verdict
+from crackfront.measured.prediction.remedies import (
+    lower_energy,
+    modulus_beyond,
+    radius_above,
+)
 from crackfront.measured.prediction.surface_remarks import (
     channel_remarks,
     scan_remarks,
@@ -50,15 +54,6 @@ _DEVIATE = float(ndtri(_MOST_NEGATIVE))
 
 LARGEST_ENERGY = (_DEVIATE + math.sqrt(_DEVIATE**2 + 1)) ** 2
 """The e_el at which w_loc is negative on this part of the surface. (Units: w_int)"""
-
-_LARGEST_RADIUS = 1.0
-"""Largest radius of a sphere that a remedy names. (Units: m)"""
-
-_MODULI = Range(100.0, 1e12)
-"""Contact moduli that a remedy names, from the softest gels to diamond. (Units: Pa)"""
-
-_STRONGEST_ADHESION = 10.0
-"""Largest w_int that a remedy names, above all solids. (Units: J / m^2)"""
 
 _THICK = 10.0
 """Thickness over contact radius at which a bonded layer is 13% stiffer than a half-space.
@@ -193,12 +188,17 @@ def _energy_conditions(surface: Surface, scales: Scales) -> Iterator[Remark]:
     w_int = scales.work_of_adhesion
     energy = surface.conformity_energy(scales.contact_modulus)
     e_el = energy.value
-    yield _condition(
+    conformity = _condition(
         "full conformity",
         f"e_el of {prefixed('J/m2', e_el)} against w_int of {prefixed('J/m2', w_int)}",
         "the contact does not conform to the roughness",
         LimitCheck(e_el, w_int, w_int, "J/m2", best_case=e_el / energy.low),
-        _lower_energy(scales, e_el / w_int),
+        lower_energy(scales, e_el / w_int),
+    )
+    yield (
+        conformity
+        if conformity.severity != "holds"
+        else _with_missing_waves(conformity, surface, scales)
     )
     share, least = _negative_share(e_el / w_int), _negative_share(energy.low / w_int)
     yield _condition(
@@ -214,9 +214,25 @@ def _energy_conditions(surface: Surface, scales: Scales) -> Iterator[Remark]:
             "1",
             best_case=share / least if least > 0 else math.inf,
         ),
-        _lower_energy(scales, e_el / w_int / LARGEST_ENERGY),
+        lower_energy(scales, e_el / w_int / LARGEST_ENERGY),
         is_share=True,
     )
+
+
+def _with_missing_waves(conformity: Remark, surface: Surface, scales: Scales) -> Remark:
+    """The condition of full conformity, undecided if waves that are left out may break it."""
+    e_el, w_int = surface.conformity_energy(scales.contact_modulus).value, scales.work_of_adhesion
+    total = surface.shares.missing_short.each(lambda part: e_el * (1 + part))
+    if total.value < w_int:
+        return conformity
+    sentence = (
+        f"full conformity cannot be decided: e_el of {prefixed('J/m2', e_el)} would be "
+        f"{prefixed('J/m2', total.value, total.low, total.high)} with the waves that are left out, "
+        f"against w_int of {prefixed('J/m2', w_int)}; beyond it the contact does not conform to "
+        "the roughness."
+    )
+    comparison = LimitCheck(total.value, w_int, w_int, "J/m2", best_case=total.value / total.low)
+    return replace(conformity, severity="undecided", sentence=sentence, comparison=comparison)
 
 
 def _contact_conditions(surface: Surface, scales: Scales) -> Iterator[Remark]:
@@ -229,7 +245,7 @@ def _contact_conditions(surface: Surface, scales: Scales) -> Iterator[Remark]:
         "the paraboloid that approximates the sphere deviates from it",
         LimitCheck(contact, _CONTACT_LIMITS[0] * radius, _CONTACT_LIMITS[1] * radius, "m"),
         # a / R goes as the cube root of w_int / (E' R).
-        (*_modulus("above", modulus, excess**3), *_radius_above(radius * excess**3)),
+        (*modulus_beyond("above", modulus, excess**3), *radius_above(radius * excess**3)),
     )
     half, waves = _dominant_waves(surface)
     excess = half.shortest / contact
@@ -239,8 +255,8 @@ def _contact_conditions(surface: Surface, scales: Scales) -> Iterator[Remark]:
         "too few of them are in the contact for an average",
         LimitCheck(half.longest, contact, contact * half.longest / half.shortest, "m"),
         (
-            *_radius_above(radius * excess**1.5),
-            *_modulus("below", modulus, excess**-3.0),
+            *radius_above(radius * excess**1.5),
+            *modulus_beyond("below", modulus, excess**-3.0),
             "a finer roughness",
         ),
     )
@@ -259,7 +275,7 @@ def _range_conditions(
         f"Tabor parameter of {tabor:.3g}",
         "the edge of the contact is not a crack",
         LimitCheck(tabor, *_TABOR_LIMITS, "1", rising=True),
-        (*_modulus("below", modulus, excess**-1.5), *_radius_above(radius * excess**3)),
+        (*modulus_beyond("below", modulus, excess**-1.5), *radius_above(radius * excess**3)),
     )
     # Dugdale's zone for a stress w/z over a range z: (pi/8) (K z/w)^2 with K^2 = 2 E' w.
     zone = math.pi / 4 * modulus * attraction_range**2 / w_int
@@ -268,7 +284,7 @@ def _range_conditions(
         f"cohesive zone of {prefixed('m', zone)} under waves of {waves}",
         "the edge does not see waves that are shorter than its cohesive zone",
         LimitCheck(zone, half.shortest, half.longest, "m"),
-        (*_modulus("below", modulus, half.longest / zone), "a coarser roughness"),
+        (*modulus_beyond("below", modulus, half.longest / zone), "a coarser roughness"),
     )
 
 
@@ -319,33 +335,6 @@ def _slope_condition(surface: Surface) -> Remark:
     )
 
 
-def _lower_energy(scales: Scales, excess: float) -> tuple[str, ...]:
-    """Changes, each of which lowers e_el over w_int by a factor."""
-    adhesion = scales.work_of_adhesion * excess
-    stronger = [f"w_int above {prefixed('J/m2', adhesion)}"]
-    return (
-        *_modulus("below", scales.contact_modulus, 1 / excess),
-        f"a roughness lower by a factor of {math.sqrt(excess):.3g}",
-        *(stronger if adhesion <= _STRONGEST_ADHESION else []),
-    )
-
-
-def _modulus(side: Literal["above", "below"], modulus: float, factor: float) -> Iterator[str]:
-    """A contact modulus above or below the present one times a factor, if solids have it."""
-    needed = modulus * factor
-    if _MODULI.least <= needed <= _MODULI.most:
-        yield (
-            f"a contact modulus E / (1 - nu^2) {side} {prefixed('Pa', needed)}, not "
-            f"{prefixed('Pa', modulus)}"
-        )
-
-
-def _radius_above(radius: float) -> Iterator[str]:
-    """A radius of the sphere above some value, if spheres have it (Units: m)."""
-    if radius <= _LARGEST_RADIUS:
-        yield f"a radius above {prefixed('m', radius)}"
-
-
 def _layer_remark(surface: Surface, scales: Scales, thickness: float) -> Remark:
     """Whether the soft body is thick enough for a half-space (Units: m)."""
     contact, longest = zero_load_radius(scales), surface.measures[1].longest
@@ -385,12 +374,3 @@ def _energy_remarks(surface: Surface, scales: Scales) -> Iterator[Remark]:
             f"law of k applies; the spectrum gives {shown}, {energy.value / w_int:.2g} w_int."
         )
         yield Remark("e_el", "reservation", sentence)
-    with_missing = surface.shares.missing_short.each(lambda part: energy.value * (1 + part))
-    if energy.value < w_int <= with_missing.value:
-        total = prefixed("J/m2", with_missing.value, with_missing.low, with_missing.high)
-        sentence = (
-            f"full conformity cannot be decided: with the waves that are left out, e_el would be "
-            f"{total}, and w_int is {prefixed('J/m2', w_int)}; beyond it the contact does not "
-            "conform to the roughness."
-        )
-        yield Remark("full conformity", "undecided", sentence)

@@ -65,7 +65,10 @@ def measure_next(surface: Surface) -> Remark:
         return Remark("next scan", "note", sentence)
     factor = surface.joint.draws.factor
     advice = sorted((*_larger_scans(surface.joint), *_finer_scans(surface)), reverse=True)
-    text = f"e_el is known within a factor of {factor:.3g}"
+    waves = ""
+    if surface.shares.missing_short.value > NOTABLE_SHARE:
+        waves = f" of waves down to {prefixed('m', surface.spectrum.short_cutoff)}"
+    text = f"e_el{waves} is known within a factor of {factor:.3g}"
     if advice:
         scans = "; ".join(scan.text for scan in advice)
         sentence = f"Measure next: {text}. {scans[0].upper()}{scans[1:]}."

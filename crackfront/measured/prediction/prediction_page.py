@@ -12,6 +12,7 @@ from crackfront.measured.prediction.prediction_remarks import repelled_remarks
 from crackfront.measured.prediction.prediction_texts import ENERGY, estimate_text, wavelengths_text
 from crackfront.measured.prediction.remarks import remark_text
 from crackfront.measured.prediction.surface_remarks import disagreements
+from crackfront.measured.prediction.works_by_source import works_by_source
 from crackfront.measured.spectrum.stated import StatedSurface
 from crackfront.surfaces.written_units import prefixed
 
@@ -45,6 +46,7 @@ def prediction_page(prediction: Prediction) -> str:
         [
             *map(remark_text, conflicts),
             *(f"{name:18}{text}" for name, text in headline_rows(prediction)),
+            _paper_line(prediction),
             f"{verdict.heading}. {prediction.excess.sentence}",
             *map(remark_text, repelled_remarks(prediction.w_appr)),
             *map(remark_text, further),
@@ -83,6 +85,19 @@ def headline_rows(prediction: Prediction) -> Iterator[tuple[str, str]]:
         )
     yield "e_el", at_least + _energy_text(prediction)
     yield _source_row(prediction)
+
+
+def _paper_line(prediction: Prediction) -> str:
+    """Values of the paper's Eq. (6) and of the law for the front, to compare with the headline."""
+    paper, front, _ = works_by_source(prediction)
+    hysteresis, w_appr, w_retr, by_law = (
+        prefixed(ENERGY, work.value)
+        for work in (paper.hysteresis, paper.w_appr, paper.w_retr, front.hysteresis)
+    )
+    return (
+        f"{paper.source:18}hysteresis {hysteresis}, w_appr {w_appr}, w_retr {w_retr}; the law of k "
+        f"for a front, not corrected, {by_law}; --long says why they differ"
+    )
 
 
 def _energy_text(prediction: Prediction) -> str:

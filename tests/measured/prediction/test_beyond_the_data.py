@@ -2,6 +2,7 @@
 
 import re
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -19,6 +20,7 @@ from crackfront.measured.scan.reading import read_measurements
 from crackfront.measured.spectrum.measured_surface import measured_surface
 from crackfront.measured.spectrum.stated import density_surface
 from crackfront.surfaces.written_units import si_value
+from tests.commands import run
 from tests.measured.made import DETAIL, OVERVIEW, SCENE, shipped_surface, write_line
 
 SIDE, N_POINT = 12.8e-6, 128
@@ -62,6 +64,15 @@ def test_a_profile_without_short_waves_states_bounds_and_cannot_be_decided(profi
     assert prediction.verdict.outcome == "cannot be decided"
     [undecided] = prediction.verdict.with_severity("undecided")
     assert undecided.concerns == "full conformity"
+
+
+def test_a_series_of_samples_prints_bounds_as_the_page_does(tmp_path):
+    density = Path(__file__).parents[3] / "examples/density.csv"
+    table = tmp_path / "samples.csv"
+    table.write_text(f"sample,psd\nA,{density}\n")
+    sphere = ("--modulus", "0.7MPa", "--poisson", "0.5", "--radius", "1.25mm")
+    words = ("samples", table, *sphere, "--work-of-adhesion", "63mJ/m2", "--no-figure")
+    assert "A: hysteresis at least 22.7 mJ/m2" in run(*words, "--csv", tmp_path / "out.csv").output
 
 
 def test_missing_waves_that_leave_e_el_below_w_int_do_not_change_the_verdict(profile):

@@ -141,6 +141,9 @@ def test_the_paper_stands_next_to_the_law_and_the_corrected_values(prediction):
     assert front.w_retr.value - front.w_appr.value == pytest.approx(front.hysteresis.value)
     assert corrected.w_appr == prediction.w_appr
     assert paper.hysteresis.value > front.hysteresis.value > corrected.hysteresis.value
+    [line] = [line for line in repr(prediction).splitlines() if line.startswith(paper.source)]
+    for work in (paper.hysteresis, paper.w_appr, paper.w_retr, front.hysteresis):
+        assert f"{1e3 * work.value:.3g} mJ/m2" in line
 
 
 def test_the_paper_s_numbers_for_nanodiamond_follow_from_its_e_el(prediction):
