@@ -17,7 +17,11 @@ from crackfront.core.variables import variable, variables
 from crackfront.measured.options import PredictionOptions
 from crackfront.measured.prediction.conditions import theory_verdict, zero_load_radius
 from crackfront.measured.prediction.prediction_page import prediction_page
-from crackfront.measured.prediction.prediction_remarks import law_remarks, pull_off_remarks
+from crackfront.measured.prediction.prediction_remarks import (
+    adhesion_error_remarks,
+    law_remarks,
+    pull_off_remarks,
+)
 from crackfront.measured.prediction.remarks import Verdict, remark_entries, remark_text
 from crackfront.measured.prediction.surface_remarks import is_lower_bound
 from crackfront.measured.prediction.works import (
@@ -254,7 +258,7 @@ def predicted(
     at_load = -jkr.pull_off_force() * scales.force / w_int
     unstable_force = float(jkr.equilibrium_force(jkr.pull_off_radius()))
     at_displacement = -unstable_force * scales.force / w_int
-    implied, remarks = UNKNOWN, [*law_remarks(adhesion)]
+    implied, remarks = UNKNOWN, [*law_remarks(adhesion), *adhesion_error_remarks(adhesion_error)]
     if pull_off is not None:
         implied = implied_work_of_adhesion(surface, scales, pull_off / at_load)
         remarks += pull_off_remarks(implied, pull_off, least_work_of_adhesion(surface, scales))

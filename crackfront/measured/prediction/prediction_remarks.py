@@ -36,6 +36,13 @@ def law_remarks(adhesion: AdhesionByLaw) -> Iterator[Remark]:
     yield from repelled_remarks(adhesion.w_appr)
 
 
+def adhesion_error_remarks(error: float) -> Iterator[Remark]:
+    """Note on the standard error of w_int, if there is one (Units: J / m^2)."""
+    if error > 0:
+        sentence = f"The intervals include a standard error of w_int of {prefixed('J/m2', error)}."
+        yield Remark("w_int", "note", sentence)
+
+
 def repelled_remarks(w_appr: Estimate[float]) -> Iterator[Remark]:
     """Note on the meaning of a negative w_appr, if the interval includes it."""
     if w_appr.low <= 0:

@@ -98,6 +98,7 @@ def test_an_error_of_the_work_of_adhesion_adds_to_the_intervals_in_quadrature(su
         assert wide.high - wide.value == pytest.approx(
             math.hypot(exact.high - exact.value, high - exact.value)
         )
+    assert "w_int" in [remark.concerns for remark in wider.verdict.with_severity("note")]
     assert wider.hysteresis.low < prediction.hysteresis.low
     assert wider.hysteresis.high > prediction.hysteresis.high
 
