@@ -279,7 +279,7 @@ def _source_lines(prediction: Prediction) -> Iterator[str]:
     """Lines with the works of adhesion by the paper, by the law and as predicted, and why."""
     for row in (("Works of adhesion by", *ADHESIONS), *source_rows(prediction)):
         source, *works = row
-        yield f"  {source:25}{''.join(f'{work:>26}' for work in works)}"
+        yield f"  {source:25}{''.join(f'  {work:>26}' for work in works)}"
     yield f"  {reason_for_differences(prediction)}"
 
 

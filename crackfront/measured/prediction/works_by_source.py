@@ -49,12 +49,15 @@ def works_by_source(prediction: Prediction) -> tuple[SourcedWorks, ...]:
 def reason_for_differences(prediction: Prediction) -> str:
     """Why the sources differ, with the numbers of this prediction."""
     disorder = prediction.w_rms / prediction.work_of_adhesion
-    return (
-        f"Eq. (6) of the paper has k = {PAPER_FACTOR:g} for all surfaces, but k falls with the "
-        f"disorder and with a smaller contact (here to {prediction.k.value:.3g} at w_rms/w_int "
-        f"{disorder:.2g} and g {prediction.size:.3g}), and a front has "
-        f"{prediction.front_excess.value:.2f} times the hysteresis of boundary elements."
+    sentence = (
+        f"Eq. (6) of the paper has k = {PAPER_FACTOR:g} for all surfaces; by the law k falls with "
+        "the disorder and rises with the size of the contact, and is "
+        f"{prediction.k.value:.3g} at w_rms/w_int {disorder:.2g} and g {prediction.size:.3g}."
     )
+    ratio = f"{prediction.front_excess.value:.2f}"
+    if ratio == "1.00":
+        return sentence
+    return f"{sentence} A front has {ratio} times the hysteresis of boundary elements."
 
 
 def _linear(energy: Estimate[float], start: float, slope: float) -> Estimate[float]:

@@ -29,6 +29,9 @@ from crackfront.surfaces.written_units import prefixed
 _NOTABLE_SHARE = 0.1
 """Smallest part of e_el in missing waves that a reservation states."""
 
+_LEAST_SHARE = 0.01
+"""Smallest part of e_el that a reservation states as a number."""
+
 _UNPROJECTION_STEPS = 3
 """Steps to the isotropic density; more would amplify noise."""
 
@@ -176,9 +179,10 @@ def _default_cutoff_doubt(shape: SelfAffineSpectrum, end: float) -> str:
     """Sentence on e_el in waves up to an end, which the default of the cutoff decides."""
     cutoff = shape.short_cutoff
     part = shape.mean_square_between(0.5, cutoff, end) / shape.mean_square(0.5)
+    share = f"{part:.0%}" if part >= _LEAST_SHARE else f"under {_LEAST_SHARE:.0%}"
     return (
         f"No short cutoff is named: the power law is continued to {prefixed('m', cutoff)}, "
-        f"and waves shorter than {prefixed('m', end)} have {part:.0%} of e_el."
+        f"and waves shorter than {prefixed('m', end)} have {share} of e_el."
     )
 
 

@@ -16,7 +16,7 @@ from crackfront.core.synthesis import gaussian_field
 from crackfront.core.units import CONTACT_MODULUS, WORK_OF_ADHESION
 from crackfront.measured.prediction.conditions import theory_verdict, zero_load_radius
 from crackfront.measured.prediction.prediction import predicted
-from crackfront.measured.prediction.works_by_source import works_by_source
+from crackfront.measured.prediction.works_by_source import reason_for_differences, works_by_source
 from tests.measured.made import SCENE
 
 SPHERE = {"radius": "1.25mm", "work_of_adhesion": "63mJ/m2", "poisson": 0.5}
@@ -145,6 +145,16 @@ def test_the_paper_stands_next_to_the_law_and_the_corrected_values(prediction):
     [line] = [line for line in repr(prediction).splitlines() if line.startswith(paper.source)]
     for work in (paper.hysteresis, paper.w_appr, paper.w_retr, front.hysteresis):
         assert f"{1e3 * work.value:.3g} mJ/m2" in line
+
+
+def test_the_reason_for_other_works_has_the_k_of_the_prediction(prediction):
+    assert f"is {prediction.k.value:.3g} at" in reason_for_differences(prediction)
+    assert "boundary elements" in reason_for_differences(prediction)
+    weak = cf.self_affine_surface(rms="1nm", roll_off="2um", hurst=0.8, short_cutoff="20nm")
+    large = cf.predict(
+        weak, radius="10mm", modulus="0.7MPa", poisson=0.5, work_of_adhesion="63mJ/m2"
+    )
+    assert "boundary elements" not in reason_for_differences(large)
 
 
 def test_the_paper_s_numbers_for_nanodiamond_follow_from_its_e_el(prediction):
