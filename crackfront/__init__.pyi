@@ -1,5 +1,6 @@
 from .analysis.law import pinning_factor as pinning_factor
 from .core.spectrum import SelfAffineSpectrum as SelfAffineSpectrum
+from .core.spectrum import TabulatedSpectrum as TabulatedSpectrum
 from .measured.loops.measured_loop import measured_loop as measured_loop
 from .measured.options import PredictionOptions as PredictionOptions
 from .measured.options import ReadingOptions as ReadingOptions

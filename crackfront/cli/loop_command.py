@@ -271,7 +271,10 @@ def _prediction(
     from crackfront.measured.predict import predict
 
     scales = Scales(loop.sphere_radius, work_of_adhesion, loop.contact_modulus.value)
-    return predict(scans, scales, **reading)
+    prediction = predict(scans, scales, **reading)
+    if not prediction.applies:
+        raise ValueError(f"the theory does not apply: {prediction.reason}")
+    return prediction
 
 
 def _print(loop: MeasuredLoop, prediction: Prediction | None, *, as_json: bool) -> None:

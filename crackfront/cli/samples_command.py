@@ -139,7 +139,8 @@ def _line(result: SampleResult) -> str:
     if result.prediction is None:
         return f"{result.sample.name}: {result.outcome}"
     hysteresis = estimate_text(ENERGY, result.prediction.hysteresis)
-    return f"{result.sample.name}: hysteresis {hysteresis}; {result.outcome}"
+    least = "at least " if result.prediction.at_least else ""
+    return f"{result.sample.name}: hysteresis {least}{hysteresis}; {result.outcome}"
 
 
 def exit_code(outcome: str, strict: bool) -> int:

@@ -6,7 +6,6 @@ Data in SI units are drawn in SI units.
 from __future__ import annotations
 
 import math
-from contextlib import AbstractContextManager, nullcontext
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -21,7 +20,7 @@ from crackfront.plots.density_axes import draw_spectrum
 from crackfront.plots.fronts import draw_field, draw_fronts, draw_heights, draw_straight_fronts
 from crackfront.plots.instability_maps import draw_instabilities
 from crackfront.plots.loop_figures import draw_loop, draw_pinning
-from crackfront.plots.style import COLUMN, blank_figure, house_style, shown_axes
+from crackfront.plots.style import COLUMN, axes_to_draw_on, blank_figure, house_style
 from crackfront.simulate.cycle_files import cycle_record
 from crackfront.surfaces.random_surface import stated_spectrum
 from crackfront.surfaces.si_units import Labelled, in_reduced_units, stated_scales
@@ -38,11 +37,6 @@ _TAIL = 0.1
 
 _BINS_A_DECADE = 20
 """Bins of a spectrum in a decade of wavevectors."""
-
-
-def _drawing(axes: Axes | None) -> AbstractContextManager[Axes]:
-    """The user's axes as they are, or new axes in the style of the package."""
-    return shown_axes() if axes is None else nullcontext(axes)
 
 
 def _reduced(data: Labelled) -> tuple[Labelled, AxisUnits]:
@@ -104,7 +98,7 @@ def plot_surface(surface: DataArray, axes: Axes | None = None) -> Axes:
     surface, units = _reduced(surface)
     adhesion = surface_adhesion(surface)
     x, y = surface.x.values, surface.y.values
-    with _drawing(axes) as drawn:
+    with axes_to_draw_on(axes) as drawn:
         if kind == "roughness":
             draw_heights(drawn, x, y, surface.transpose("x", "y").values, units)
         else:
@@ -160,7 +154,7 @@ def plot_spectrum(surface: DataArray, axes: Axes | None = None) -> Axes:
     if shape is not None and energy is not None and 0.5 < adhesion.e_el / float(energy) < 2:
         ideal = shape.with_elastic_energy(float(energy)).density(wavevector)
     rms = np.sqrt(sums[:, -1])
-    with _drawing(axes) as drawn:
+    with axes_to_draw_on(axes) as drawn:
         draw_spectrum(drawn, wavevector, density, rms, shortest, longest, ideal, units)
     return drawn
 
@@ -193,7 +187,7 @@ def plot_loop(loop: Dataset, axes: Axes | None = None) -> Axes:
     if "pinning_force" in loop:
         states = cycle_record(loop).states
         _check_states(loop, "pinning_force")
-        with _drawing(axes) as drawn:
+        with axes_to_draw_on(axes) as drawn:
             draw_pinning(drawn, states)
         return drawn
     loop, units = _reduced(loop)
@@ -204,7 +198,7 @@ def plot_loop(loop: Dataset, axes: Axes | None = None) -> Axes:
     w_appr, w_retr, lowest, highest, energy = (float(loop.get(name, math.nan)) for name in names)
     measures = (w_appr, w_retr), (lowest, highest)
     kind = loop.attrs.get("kind", "roughness")
-    with _drawing(axes) as drawn:
+    with axes_to_draw_on(axes) as drawn:
         draw_loop(drawn, states, *measures, elastic_energy=energy, kind=kind, units=units)
     return drawn
 
@@ -255,12 +249,12 @@ def plot_fronts(
         if surface is not None:
             raise ValueError("straight fronts are drawn without a surface; leave it out")
         curves = _fronts(loop, "position", "y")
-        with _drawing(axes) as drawn:
+        with axes_to_draw_on(axes) as drawn:
             draw_straight_fronts(drawn, *curves, most)
         return drawn
     loop, units = _reduced(loop)
     curves = _fronts(loop, "radius", "angle")
-    with _drawing(axes) as drawn:
+    with axes_to_draw_on(axes) as drawn:
         if surface is not None:
             _draw_pinning_field(drawn, surface, units)
         draw_fronts(drawn, *curves, most, units)
@@ -307,6 +301,6 @@ def plot_instabilities(jumps: Dataset, axes: Axes | None = None) -> Axes:
     jumps, units = _reduced(jumps)
     fronts = jumps.before.values, jumps.after.values
     energy, travel = jumps.dissipated_energy.values, float(jumps.attrs["travel"])
-    with _drawing(axes) as drawn:
+    with axes_to_draw_on(axes) as drawn:
         draw_instabilities(drawn, jumps.angle.values, *fronts, energy, travel, units)
     return drawn
