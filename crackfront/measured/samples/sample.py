@@ -32,7 +32,7 @@ from crackfront.measured.page.series import PREDICTED
 from crackfront.measured.samples.sample_rows import sample_rows
 from crackfront.measured.spectrum.stated import self_affine_surface_of
 
-_BETWEEN_FILES = re.compile(r"\s*[|;\n]\s*")
+_BETWEEN_FILES = re.compile(r"[|;\n]")
 
 _MOST_SAMPLES = 10_000
 """Rows of a table; each takes seconds."""
@@ -40,8 +40,8 @@ _MOST_SAMPLES = 10_000
 
 def _listed(value: Any) -> tuple[str, ...]:
     """Files from a list, or from a text with | or ; between them."""
-    names = value if isinstance(value, (list, tuple)) else _BETWEEN_FILES.split(str(value).strip())
-    return tuple(str(name) for name in names if str(name))
+    names = value if isinstance(value, (list, tuple)) else _BETWEEN_FILES.split(str(value))
+    return tuple(name for name in map(str.strip, map(str, names)) if name)
 
 
 class SampleOptions(Options):

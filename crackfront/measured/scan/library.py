@@ -25,7 +25,7 @@ _REASONS = (
     (r"Units for x-coordinate and heights.*", "its sides and heights have different units"),
     (r"Units for x- and y-coordinate.*", "its sides have different units"),
     (r"Could not find any topography data.*", "all of its channels lack a unit of length"),
-    (r".*'NoneType' object .*", "a part of it is missing or damaged"),
+    (r"'NoneType' object .*", "a part of it is missing or damaged"),
 )
 """Reasons of the library, and what they say to one who has only the file."""
 
