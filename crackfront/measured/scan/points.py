@@ -250,9 +250,10 @@ def _axis(path: Path, name: str, cells: Cells) -> tuple[NDArray[np.int64], float
         ):
             worst = int(np.argmax(off - allowed))
             raise ValueError(
-                f"{path}: the points are not equally spaced: {texts[order][worst]} along {name} is "
-                f"{off[worst] / slope:.2g} spacings from its place; resample them on a uniform "
-                "grid, or export more digits"
+                f"{path}: the points are not equally spaced: neighbours along {name} are "
+                f"{np.diff(centres).min():.3g} to {np.diff(centres).max():.3g} apart, and "
+                f"{texts[order][worst]} is {off[worst] / slope:.2g} spacings from its place; "
+                "interpolate the heights at equal steps, or export more digits if these are rounded"
             )
         slope = step
     places = np.empty(len(texts), dtype=np.int64)

@@ -65,7 +65,9 @@ def _name_and_unit(text: str) -> tuple[str, str]:
     brackets = list(_BRACKETS.finditer(text))
     if brackets:
         # Of several brackets, as in `PSD (um^3) (one-sided)`, one has the unit.
-        units = [bracket for bracket in brackets if len(brackets) > 1 and is_measured(bracket[1].strip())]
+        units = [
+            bracket for bracket in brackets if len(brackets) > 1 and is_measured(bracket[1].strip())
+        ]
         unit = (units or brackets[-1:])[0]
         return text[: unit.start()] + text[unit.end() :], unit[1]
     name, _, unit = map(str.strip, text.partition("/"))

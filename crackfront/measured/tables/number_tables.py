@@ -185,9 +185,7 @@ def _is_value(cell: str) -> bool:
     return _is_float(cell) or is_number(cell) or is_without_value(cell)
 
 
-def _decimal_sign(
-    path: Path, table: Sequence[list[str]], kinds: Sequence[_Kind]
-) -> str | None:
+def _decimal_sign(path: Path, table: Sequence[list[str]], kinds: Sequence[_Kind]) -> str | None:
     """Decimal sign of the rows, None if all numbers are whole; see :func:`decimal_sign`."""
     rows = [place for place, kind in enumerate(kinds) if kind != "text"]
     if any("," in cell for place in rows if kinds[place] != "numbers" for cell in table[place]):
