@@ -68,8 +68,8 @@ def _name_and_unit(text: str) -> tuple[str, str]:
         units = [
             bracket for bracket in brackets if len(brackets) > 1 and is_measured(bracket[1].strip())
         ]
-        unit = (units or brackets[-1:])[0]
-        return text[: unit.start()] + text[unit.end() :], unit[1]
+        bracket = (units or brackets[-1:])[0]
+        return text[: bracket.start()] + text[bracket.end() :], bracket[1]
     name, _, unit = map(str.strip, text.partition("/"))
     if unit and (re.search(r"\s/\s", text) or is_measured(unit)):
         return name, unit
