@@ -243,7 +243,7 @@ validate: env  ## The model against boundary elements (6 minutes); VALIDATION=co
 figures: env  ## All figures of the paper; SCALE=quick (4 minutes) or SCALE=paper (25)
 	$(SNAKE) --config scale=$(SCALE) -- figures
 	@echo "Results: results/figures/$(SCALE)/, checks in results/figures/checks.md"
-	@sed -n '3p; s/^- FAIL/FAIL/p' results/figures/checks.md
+	@sed -n '3,/^$$/s/^- //p' results/figures/checks.md
 
 report: env  ## Run what is missing of the sweep SWEEP; write one page of HTML: fit, figures, configuration
 	$(SNAKE) --config sweep=$(call quoted,$(SWEEP))

@@ -15,8 +15,9 @@ from crackfront.plots.parts import label_decimals
 from crackfront.plots.style import BLUE, PAGE, VERMILION, blank_figure, explain, house_style
 from studies.paper import event_laws
 from studies.paper.avalanches import AvalancheRecord, avalanche_record, expected_seconds
+from studies.paper.checks import Check
 from studies.paper.drawing import DASHED, THEORY, name_panels
-from studies.paper.figure import Check, Figure
+from studies.paper.figure import Figure
 from studies.paper.power_law import PowerLaw, truncated_power_law
 from studies.paper.rough import (
     STRONG,

@@ -26,8 +26,9 @@ from crackfront.plots.style import (
     explain,
     house_style,
 )
+from studies.paper.checks import Check
 from studies.paper.drawing import THEORY, name_panels
-from studies.paper.figure import Check, Figure
+from studies.paper.figure import Figure
 from studies.paper.front_spectra import (
     RoughnessFit,
     RoughnessRecord,

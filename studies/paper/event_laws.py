@@ -13,8 +13,9 @@ from matplotlib.axes import Axes
 from crackfront.analysis.estimate import with_error
 from crackfront.core.arrays import Array
 from crackfront.plots.style import BLACK, COLOURS, MARKERS
+from studies.paper.checks import Check, close_to
 from studies.paper.events import EventRecord
-from studies.paper.figure import Check, Integers, close_to
+from studies.paper.figure import Integers
 from studies.paper.power_law import JointPowerLaw, cutoff_scale, joint_power_law
 
 _ROUGHNESS = 0.388

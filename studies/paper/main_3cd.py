@@ -30,8 +30,9 @@ from crackfront.plots.style import BLACK, BLUE, PAGE, VERMILION, blank_figure, e
 from crackfront.simulate.numerical_errors import stated_error
 from crackfront.simulate.simulation import simulation_adhesion, simulation_field
 from crackfront.sweep.section import Positive
+from studies.paper.checks import Check, close_to
 from studies.paper.drawing import name_panels
-from studies.paper.figure import Check, Figure, Integers, Progress, close_to, values_of
+from studies.paper.figure import Figure, Integers, Progress, values_of
 from studies.paper.rough import (
     ONE_DIGIT,
     RoughCycleParameters,

@@ -32,8 +32,9 @@ from crackfront.sweep.section import (
     Seed,
     section_error,
 )
+from studies.paper.checks import Check, close_to
 from studies.paper.drawing import DOTTED, write_beside
-from studies.paper.figure import Check, Figure, Integers, Progress, close_to
+from studies.paper.figure import Figure, Integers, Progress
 from studies.paper.rough import rough_spectrum
 from studies.paper.tile_sizes import tile_mean_square
 

@@ -13,8 +13,9 @@ from crackfront.core.arrays import Array
 from crackfront.core.variables import variable
 from crackfront.plots import density_axes, style
 from crackfront.sweep.section import Positive, section_error
+from studies.paper.checks import Check, close_to
 from studies.paper.drawing import write_beside
-from studies.paper.figure import Check, Figure, Progress, close_to, values_of
+from studies.paper.figure import Figure, Progress, values_of
 from studies.paper.film import CONVERTED_LABEL, FilmDensities, FilmParameters, conformity_energy
 
 _ORDER = "order"

@@ -23,8 +23,9 @@ from crackfront.core.variables import ADHESION, LATERAL, variable
 from crackfront.plots.parts import legend_entries
 from crackfront.plots.style import PAGE, blank_figure, explain, house_style
 from crackfront.sweep.section import Section
+from studies.paper.checks import Check
 from studies.paper.drawing import name_panels
-from studies.paper.figure import Check, Figure, Progress, values_of
+from studies.paper.figure import Figure, Progress, values_of
 from studies.paper.rough import ONE_DIGIT
 
 _SAME = 0.1
