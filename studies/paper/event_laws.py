@@ -30,6 +30,17 @@ _TOLERANCE = 0.03
 """Largest deviation of an exponent of whole events, if its own interval is not wider."""
 
 
+_EXPECTATION = (
+    "Straight fronts: theory of depinning with zeta = 0.388 (Rosso and Krauth, Phys. Rev. E 65, "
+    "025101), from which tau = 2 - 1 / (1 + zeta) and all other exponents follow. 2 tau - 1 "
+    "(Laurson, Santucci and Zapperi, Phys. Rev. E 81, 046116) is the exponent of patches in the "
+    "limit of events of many patches. Here an event has three to five patches on the mean. The "
+    "largest of them follows the law of the events, so that the exponent of all patches may lie "
+    "between tau and 2 tau - 1; longer springs, with more patches an event, were not measured."
+)
+"""Where the expectations come from, and why the exponent of patches may differ."""
+
+
 def event_law(record: EventRecord) -> JointPowerLaw:
     """Power law of the areas of whole events, all springs together."""
     return _joint(record, record.event_area, record.event_spring, 2)
@@ -176,6 +187,7 @@ def _exponent_check(
         with_error(measured, reach),
         abs(measured - expected) <= max(reach, _TOLERANCE),
         f"{of_what}; {remark}",
+        expectation=_EXPECTATION,
     )
 
 
