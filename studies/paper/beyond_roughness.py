@@ -45,7 +45,7 @@ Phys. Rev. E 65, 025101), and where disorder is a perturbation: strong and weak 
 _EXPECTATION = (
     "Roughness of fronts: beyond the Larkin length a line with long-range elasticity has the "
     "exponent 0.388 of its depinning threshold (Rosso and Krauth, Phys. Rev. E 65, 025101), below "
-    "it 0.5, where disorder is a perturbation. The crossover between them may lie in the range of a fit."
+    "it 0.5, where disorder is a perturbation. The range of a fit may contain the crossover."
 )
 """Where the expectations come from, and why exponents may differ."""
 
