@@ -130,7 +130,7 @@ def parametric_study_checks(study: ParametricStudy) -> tuple[Check, ...]:
             f"at most {largest:.2f}",
             largest >= PAPER_FACTOR,
             "for its dashed line the paper states one digit, no range, weights, resolution or "
-            "number of surfaces; the authors' published code has the k of this solver "
+            "number of surfaces; the authors' published code finds the states of this solver "
             "(docs/law.md, The paper's 3)",
             law=_said(largest, *law.largest),
         ),
