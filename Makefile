@@ -207,6 +207,7 @@ reproduce-scans: env
 	$(IN_ENV) .venv/bin/python -m studies accuracy loops --loops 20 --keep
 	$(IN_ENV) .venv/bin/python -m studies accuracy predictions --keep
 	$(IN_ENV) .venv/bin/python -m studies accuracy energy-balance --keep
+	$(IN_ENV) .venv/bin/python -m studies accuracy individual-pinning --keep
 
 law: env  ## The law of k, from its straight fronts, into results/law (an hour of one core)
 	$(IN_ENV) .venv/bin/python -m studies law configurations
