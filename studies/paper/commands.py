@@ -26,6 +26,7 @@ from studies.paper.experiment import (
     hystereses_figure,
     hystereses_numbers,
     hystereses_table,
+    instability_numbers,
 )
 from studies.paper.figure import FIGURES, SCALES, Figure, figure, load_figure
 from studies.records import read_record, write_record
@@ -166,10 +167,12 @@ def experiment(output: Path, keep: bool) -> None:
     """Compare the measured hysteresis on nanodiamond with the predicted ones."""
     check_writable(output)
     path = _REFERENCE / "main-5bc.nc"
-    shown = hystereses(_figure_and_record(path)[1])
+    contact = _figure_and_record(path)[1]
+    shown = hystereses(contact)
     save_picture(hystereses_figure(shown), output / "experiment.png")
     parts = {"experiment": hystereses_table(shown)}
-    tell("paper", parts, numbers=hystereses_numbers(shown), keep=keep)
+    numbers = hystereses_numbers(shown) | instability_numbers(contact)
+    tell("paper", parts, numbers=numbers, keep=keep)
 
 
 def _data_of_figures(folder: Path) -> list[Path]:

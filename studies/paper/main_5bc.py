@@ -14,7 +14,7 @@ from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure as Drawing
 
-from crackfront.analysis.estimate import REACH
+from crackfront.analysis.estimate import REACH, Estimate, mean_estimate, with_interval
 from crackfront.analysis.finding import PAPER_FACTOR
 from crackfront.analysis.steady_adhesion import steady_adhesion
 from crackfront.core import jkr
@@ -274,20 +274,24 @@ def _hysteresis_checks(contact: NanodiamondContact) -> tuple[Check, ...]:
     )
 
 
+def widest_instability_estimate(contact: NanodiamondContact) -> Estimate[float]:
+    """Widest single instability of an approach, a mean over surfaces (Units: um)."""
+    mean, _ = mean_estimate(_MICRO * contact.widest)
+    return mean.each(float)
+
+
 def _instability_check(contact: NanodiamondContact) -> Check:
     """Lateral extent of the widest instability on several surfaces."""
     low, high = _SEVERAL_TENS
     widest, extents = _MICRO * contact.widest, _MICRO * contact.extents
-    typical = float(np.median(widest))
-    each = ", ".join(f"{extent:.0f}" for extent in np.sort(widest))
-    merged = ", ".join(
-        f"{extents[contact.surface == surface].max():.0f}" for surface in np.argsort(widest)
-    )
+    mean, order = widest_instability_estimate(contact), np.argsort(widest)
+    each = ", ".join(f"{extent:.0f}" for extent in widest[order])
+    merged = ", ".join(f"{extents[contact.surface == surface].max():.0f}" for surface in order)
     return Check(
         "instabilities of the approach after jump-in: up to several tens of um wide",
-        f"the widest of a surface: {low:g} to {high:g} um, median",
-        f"{typical:.0f} um",
-        low <= typical <= high,
+        f"the widest of a surface: {low:g} to {high:g} um, within the 95% interval of the mean",
+        f"{with_interval(mean)} um",
+        mean.high >= low and mean.low <= high,
         f"of {widest.size} surfaces: {each} um; connected sites that advance by more than the "
         f"correlation length of w_loc, {_MICRO * contact.threshold:.2f} um, separated to "
         f"{1e9 * contact.precision:.2g} nm of penetration; in whole load steps of "
