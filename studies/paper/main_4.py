@@ -26,8 +26,9 @@ from crackfront.plots.parts import HEIGHT_LABEL, LENGTH_LABEL, label_panel
 from crackfront.plots.style import BLUE, PAGE, VERMILION, blank_figure, explain, house_style
 from crackfront.sweep.section import Section, section_error
 from crackfront.validation import Count, Fraction, Positive, Seed
+from studies.paper.checks import Check, close_to
 from studies.paper.drawing import DOTTED, write_beside
-from studies.paper.figure import Check, Figure, Integers, Progress, close_to
+from studies.paper.figure import Figure, Integers, Progress
 from studies.paper.rough import rough_spectrum
 from studies.paper.tile_sizes import tile_mean_square
 

@@ -38,7 +38,7 @@ from crackfront.simulate.simulation import (
 from crackfront.simulate.sphere.full_cycle import FullCycle
 from crackfront.sweep.section import Section, section_error
 from crackfront.validation import Count, Fraction, Positive, Seed
-from studies.paper.figure import Check
+from studies.paper.checks import Check
 
 ONE_DIGIT = 0.5
 """How far k may be from a value that is given with one digit."""
@@ -58,12 +58,22 @@ class RoughParameters(Section):
     tile_roll_offs: Positive  # side of the periodic tile, 200 short cutoffs or more
 
     def simulation_of(
-        self, spectrum: SelfAffineSpectrum, elastic_energy: float, schedule: FullCycle
+        self,
+        spectrum: SelfAffineSpectrum,
+        elastic_energy: float,
+        schedule: FullCycle,
+        realisation: int = 0,
     ) -> Simulation:
-        """Simulation of the first surface of the seed; raises if its numerics miss the error."""
+        """Simulation of a surface of the seed; raises if its numerics miss the error."""
         numerics = Numerics(self.error, self.tile_roll_offs)
         simulation = simulation_of(
-            "roughness", spectrum, elastic_energy, schedule, numerics, seed=self.seed
+            "roughness",
+            spectrum,
+            elastic_energy,
+            schedule,
+            numerics,
+            seed=self.seed,
+            realisation=realisation,
         )
         if least_error := missed_error(simulation, self.error):
             raise section_error(
