@@ -4,7 +4,6 @@
 #
 # Variables
 #   SWEEP=config/default.yaml   the configuration that `make` runs; results in results/<its name>/
-#   LINE=config/line-quick.yaml the straight fronts that it measures beside its own sweep
 #   SCALE=quick | paper         coarser lengths, or the paper's, for `make figures`
 #   VALIDATION=config/validation.yaml   sizes of `make validate`; config/validation-512.yaml
 #                               and config/validation-1024.yaml are hours
@@ -19,7 +18,6 @@
 #                               is then the system's. The choice is remembered until .venv is removed.
 
 SWEEP  ?= config/default.yaml
-LINE   ?= config/line-quick.yaml
 SCALE  ?= quick
 VALIDATION ?= config/validation.yaml
 PROFILE ?= workflow/profiles/default
@@ -40,8 +38,6 @@ stem     = $(basename $(notdir $(subst $() $(),?,$(1))))
 quoted   = '$(subst ','\'',$(1))'
 
 RESULTS  = results/$(call stem,$(SWEEP))/
-FRONTS   = $(if $(filter file,$(origin SWEEP)),$(LINE))
-fronts   = $(if $(FRONTS),; of straight fronts results/$(call stem,$(LINE))/$(1))
 VALIDATED = results/$(call stem,$(VALIDATION))/
 REPORT   = results/tests/junit.xml
 IN_ENV   = PATH="$(CURDIR)/.venv/bin:$$PATH" OMP_NUM_THREADS=1 $(if $(PORTABLE),$(NO_VECTORS))
@@ -64,28 +60,18 @@ READY    = .venv/.ready-$(MPI)
 # The blocks of the lock whose package matches the pattern $(1); those that do not with $(2) = !
 locked   = awk '/^[^ ]/ { kept = $(2)/^($(1))==/ } kept' requirements.lock
 
-# When make began, and a note of when a part of it ended, for the last line of `make`.
-BEGAN   := $(shell date +%s)
-ended    = echo "$$(date +%s) $(1)" >> .venv/.times
-
 .DEFAULT_GOAL := all
 .PHONY: all env test test-portable test-cluster nightly law accuracy validate benchmark canaries timings reproduce reproduce-fronts reproduce-scans \
   reproduce-boundary figures report docs lint lock clean help
 
-all: env  ## Run the sweep SWEEP to its figure and fit; by default with quick straight fronts
-	@echo $(BEGAN) > .venv/.times; $(call ended,environment)
-	@$(CHECK) $(call quoted,$(SWEEP)) > /dev/null
-	@$(if $(FRONTS),$(CHECK) $(call quoted,$(FRONTS)) > /dev/null)
-	$(SNAKE) --config sweep=$(call quoted,$(SWEEP))
-	@$(call ended,sweep)
-	$(if $(FRONTS),$(SNAKE) --config sweep=$(call quoted,$(FRONTS)))
-	@$(if $(FRONTS),$(call ended,straight fronts))
-	@sed -n '/^# /p; /^- /p; /^## /q' $(RESULTS)fit.md
+all: env  ## Run the sweep SWEEP to its fit and figures
+	@plan=$$($(CHECK) $(call quoted,$(SWEEP))) && echo "$$plan" | sed -n 1p
+	@$(SNAKE) --config sweep=$(call quoted,$(SWEEP))
+	@echo "Dataset: $(RESULTS)hysteresis.nc"
+	@sed -n 's/^- //p; /^## /q' $(RESULTS)fit.md
+	@echo "Fit:     $(RESULTS)fit.md"
 	@echo "Figures: $(addprefix $(RESULTS)figures/,hysteresis.png factor.png loop.png)"
-	@echo "Page:    $(RESULTS)summary.html$(call fronts,summary.html)"
-	@echo "Tables:  $(RESULTS)fit.md$(call fronts,fit.md)"
-	@printf "Minutes:"; awk 'NR > 1 { took = $$1 - last; printf "%s %s %d:%02d", comma, substr($$0, 12), took / 60, took % 60; comma = "," } \
-	  { last = $$1 } END { print "" }' .venv/.times
+	@echo "Page:    $(RESULTS)summary.html"
 
 env: $(READY)  ## Create .venv from requirements.lock
 
@@ -106,7 +92,7 @@ $(PACKAGES): requirements.lock
 	@$(call locked,setuptools|cython) > .venv/lock-build.txt
 	@$(call locked,mpi4py) > .venv/lock-mpi4py.txt
 	@$(call locked,(uv$(if $(filter system,$(MPI)),|mpi4py|mpich)),!) > .venv/lock-rest.txt
-	@$(if $(PIP_NO_INDEX),,$(PIP) --require-hashes --only-binary uv --requirement .venv/lock-uv.txt || true)
+	@$(if $(PIP_NO_INDEX),,$(PIP) --require-hashes --only-binary uv --requirement .venv/lock-uv.txt 2>/dev/null || true)
 	@$(call install,--require-hashes --requirement .venv/lock-build.txt)
 	@$(call install,--require-hashes --only-binary mpi4py --only-binary mpich --requirement .venv/lock-rest.txt)
 ifeq ($(MPI),system)

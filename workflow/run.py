@@ -37,5 +37,8 @@ try:
     from snakemake.cli import main
 
     main()
+except SystemExit as ended:
+    if ended.code:
+        sys.exit("The workflow did not finish; the last log in .snakemake/log/ says more")
 except KeyboardInterrupt:
     sys.exit("Interrupted before any job began; run the same command again")

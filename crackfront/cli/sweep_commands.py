@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 import time
 from collections.abc import Iterator, Mapping, Sequence
@@ -109,6 +110,22 @@ def plan(
     echo_answer(content, [*lines, *_price_lines(prices), *warnings], as_json=as_json)
 
 
+def _size_sentence(sweep: Sweep, inventory: Inventory) -> str:
+    """How many simulations a sweep has, how many are to run, and how long they take here."""
+    factors = (
+        (len(sweep.spectra), "spectrum", "spectra"),
+        (len(sweep.elastic_energies), "amplitude", "amplitudes"),
+        (sweep.n_realisation, "realisation", "realisations"),
+    )
+    product = " x ".join(f"{n} {singular if n == 1 else plural}" for n, singular, plural in factors)
+    n_core = len(os.sched_getaffinity(0))
+    seconds = _cost(inventory.missing).core_seconds / n_core
+    rest = f"{inventory.n_missing} to run, about {in_time(seconds)} on {counted(n_core, 'core')}"
+    if not inventory.n_missing:
+        rest = "all are stored"
+    return f"{sweep.n_simulation} simulations = {product}; {rest}"
+
+
 def _plan_lines(
     sweep: Sweep,
     store: Store,
@@ -120,6 +137,7 @@ def _plan_lines(
     from crackfront.sweep.inventory import Inventory, mixture_sentence
 
     everything = sum(progress.values(), Inventory())
+    yield f"{_size_sentence(sweep, everything)}\n"
     lateral, unit = (1.0, "") if sweep.scales is None else (sweep.scales.lateral, " (m)")
     spectra, to_run = [], []
     for item in sweep.spectra:
@@ -158,7 +176,6 @@ def _plan_lines(
     yield f"\n{len(sweep.elastic_energies)} amplitudes e_el/w_int: {energies}"
     lowest, highest = sweep.fit.lowest_elastic_energy, sweep.fit.highest_elastic_energy
     yield f"the fit of k takes those from {lowest:g} to {highest:g}"
-    yield f"{sweep.n_realisation} realisations; {sweep.n_simulation} simulations"
     yield f"results in {store.folder}/"
 
 

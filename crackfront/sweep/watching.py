@@ -77,24 +77,22 @@ def cycle_progress(expected: int, *, every_state: bool) -> Iterator[Observer]:
 
 
 class SweepBar:
-    """Bar of the simulations of a sweep, drawn by a thread of the process that runs the workflow.
+    """Progress of the simulations of a sweep, by a thread of the process that runs the workflow.
 
-    It counts lines in the logs of the jobs; `sizes` are the numbers of simulations of the shards by
-    their names. If standard error is not a terminal, jobs print the lines there, and nothing is
-    drawn.
+    A terminal has a bar; elsewhere lines count the simulations, each after twice the time of the
+    line before. The thread counts lines in the logs of the jobs; `sizes` are the numbers of
+    simulations of the shards by their names.
     """
 
     def __init__(self, sizes: Mapping[str, int], results: Path) -> None:
         self._sizes, self._results = sizes, results
-        self.terminal = sys.stderr.isatty()
         self._began = time.time()
         self._ended = threading.Event()
         self._thread = threading.Thread(target=self._draw, daemon=True)
 
     def begin(self) -> None:
-        """Draw from now on, if there is a terminal."""
-        if self.terminal:
-            self._thread.start()
+        """Draw from now on."""
+        self._thread.start()
 
     def end(self) -> None:
         """Draw what is finished by now, and no more."""
@@ -114,10 +112,18 @@ class SweepBar:
         """Read the logs repeatedly, and update the bar."""
         from tqdm import tqdm
 
-        total = sum(self._sizes.values())
-        with tqdm(total=total, unit="simulation", smoothing=0, file=sys.stderr) as bar:
+        total, terminal = sum(self._sizes.values()), sys.stderr.isatty()
+        finished, due = 0, _PATIENCE
+        with tqdm(
+            total=total, unit="simulation", smoothing=0, disable=not terminal, file=sys.stderr
+        ) as bar:
             while True:
                 ended = self._ended.wait(_SECONDS_BETWEEN_LOOKS)
-                bar.update(sum(map(self._finished, self._sizes)) - bar.n)
+                before, finished = finished, sum(map(self._finished, self._sizes))
+                bar.update(finished - before)
+                passed = time.time() - self._began
+                if not terminal and finished > before and (passed > due or finished == total):
+                    bar.write(f"{finished} of {total} simulations", file=sys.stderr)
+                    due = 2 * passed
                 if ended:
                     return

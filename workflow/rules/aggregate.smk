@@ -16,5 +16,5 @@ rule aggregate:
         configuration=configuration,
         results=folder,
     shell:
-        f"{CRACKFRONT} aggregate {{params.configuration:q}}"
-        f" --output {{params.results:q}}{LOGGED}"
+        f"{NEW_LOG}{CRACKFRONT} aggregate {{params.configuration:q}}"
+        f" --output {{params.results:q}}{TO_LOG}"

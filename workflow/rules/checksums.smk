@@ -24,7 +24,7 @@ rule checksums:
     params:
         results=folder,
     shell:
-        f"{CRACKFRONT} checksums {{params.results:q}}{LOGGED}"
+        f"{NEW_LOG}{CRACKFRONT} checksums {{params.results:q}}{TO_LOG}"
 
 
 rule figure_checksums:
@@ -50,4 +50,4 @@ rule figure_checksums:
     params:
         results=folder,
     shell:
-        f"{CRACKFRONT} checksums {{params.results:q}}{LOGGED}"
+        f"{NEW_LOG}{CRACKFRONT} checksums {{params.results:q}}{TO_LOG}"

@@ -126,7 +126,11 @@ def importable(path):
 CRACKFRONT = command("crackfront")
 PYTHON = command("python")
 STUDIES = importable(BASE) + PYTHON + " -m studies"
+# Where the output of a command goes: to the log and the user, or only errors to the user as well;
+# such a command begins with a new log.
 LOGGED = " > >(trap '' INT TERM HUP; exec tee {log:q}) 2>&1"
+TO_LOG = " >> {log:q} 2> >(trap '' INT TERM HUP; exec tee --append {log:q} >&2)"
+NEW_LOG = ": > {log:q}; "
 
 
 # Functions of an output are not a reason to run a job again, and know a module's prefix of paths.

@@ -25,5 +25,5 @@ rule sweep_figures:
         configuration=configuration,
         results=folder_above,
     shell:
-        f"{CRACKFRONT} figures {{params.configuration:q}}"
-        f" --output {{params.results:q}}{LOGGED}"
+        f"{NEW_LOG}{CRACKFRONT} figures {{params.configuration:q}}"
+        f" --output {{params.results:q}}{TO_LOG}"

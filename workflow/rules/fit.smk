@@ -16,8 +16,8 @@ rule fit:
         configuration=configuration,
         results=folder,
     shell:
-        f"{CRACKFRONT} fit {{params.configuration:q}}"
-        f" --output {{params.results:q}}{LOGGED}"
+        f"{NEW_LOG}{CRACKFRONT} fit {{params.configuration:q}}"
+        f" --output {{params.results:q}}{TO_LOG}"
 
 
 rule summary:
@@ -44,5 +44,5 @@ rule summary:
         configuration=configuration,
         results=folder,
     shell:
-        f"{CRACKFRONT} summary {{params.configuration:q}}"
-        f" --output {{params.results:q}}{LOGGED}"
+        f"{NEW_LOG}{CRACKFRONT} summary {{params.configuration:q}}"
+        f" --output {{params.results:q}}{TO_LOG}"

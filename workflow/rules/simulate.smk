@@ -30,7 +30,9 @@ SECONDS = {
 }
 
 
-SHORT_SECONDS = 30  # of processor time: starting ranks on all cores costs more than they save
+SHORT_SECONDS = (
+    30  # of processor time: starting ranks on all cores costs more than they save
+)
 
 
 def shard_cores(cores):
@@ -40,24 +42,21 @@ def shard_cores(cores):
     """
     n_left = sum(not Path(RESULTS, f"shards/{name}.nc").exists() for name in SHARDS)
     is_short = max(SECONDS.values()) < SHORT_SECONDS
-    side_by_side = (n_left >= 2 * cores or is_short) and cores * RANK_BYTES < memory_at_hand()
+    side_by_side = (
+        n_left >= 2 * cores or is_short
+    ) and cores * RANK_BYTES < memory_at_hand()
     return 1 if side_by_side else cores
 
 
 RANKS = config.get("ranks", shard_cores(workflow.resource_settings.cores or 1))
 
 
-# Of simulations a terminal shows one bar of the whole sweep, and what goes wrong; a log all lines.
+# The user sees how far the whole sweep is, and what goes wrong; the log of a job has all lines.
 SIZES = {
     name: len(SWEEP.elastic_energies) * len(shard.realisations)
     for name, shard in SHARDS.items()
 }
 BAR = SweepBar(SIZES, Path(RESULTS))
-SIMULATED = (
-    " >> {log:q} 2> >(trap '' INT TERM HUP; exec tee --append {log:q} >&2)"
-    if BAR.terminal
-    else LOGGED
-)
 
 
 def block_option(shard):
@@ -101,7 +100,7 @@ rule simulate:
         results=folder_above,
     shell:
         # The command takes the shell's place, so that it gets the notice before a time limit.
-        f": > {{log:q}}; export OMP_NUM_THREADS=1; exec {{params.launch}}"
+        f"{NEW_LOG}export OMP_NUM_THREADS=1; exec {{params.launch}}"
         f" {PYTHON} -m crackfront simulate {{params.configuration:q}}"
         f" --output {{params.results:q}} --spectrum {{params.spectrum}}"
-        f" --realisations {{params.block}}{SIMULATED}"
+        f" --realisations {{params.block}}{TO_LOG}"
