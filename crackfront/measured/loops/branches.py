@@ -37,7 +37,7 @@ Noise and instabilities move the edge by less, a second turn by more.
 """
 
 _LEAST_TRAVEL = 0.1
-"""Travel of a branch over that of the other, below which few rows of it are not a branch."""
+"""Travel of a branch over the travel of the other, below which few rows are not a branch."""
 
 _FEWEST_ROWS = 2 * FEWEST_STATES
 """Averaged rows of each branch, so that both halves of the window have enough."""
@@ -110,15 +110,16 @@ def present_branches(recording: Recording, touching: Branches, segment: Segment)
     """Rows of the branches that are evaluated: of a segment, or of what was recorded.
 
     A branch with a small part of the travel of the other, as at the turn of a recorded retraction,
-    has no rows. Raises ValueError if the segment was not recorded.
+    lacks rows. Raises ValueError if the segment was not recorded.
     """
-    path = recording.displacement if recording.radius is None else recording.radius
-    recorded = [np.asarray(path)[rows][np.isfinite(np.asarray(path)[rows])] for rows in touching]
+    path = np.asarray(recording.displacement if recording.radius is None else recording.radius)
+    recorded = [path[rows][np.isfinite(path[rows])] for rows in touching]
     spans = [float(np.ptp(values)) if values.size else 0.0 for values in recorded]
-    approach, retraction = (
-        rows if span >= _LEAST_TRAVEL * max(spans) or values.size >= _FEWEST_ROWS else rows[:0]
-        for rows, values, span in zip(touching, recorded, spans, strict=True)
-    )
+    approach, retraction = touching
+    if recorded[0].size < _FEWEST_ROWS and spans[0] < _LEAST_TRAVEL * spans[1]:
+        approach = approach[:0]
+    if recorded[1].size < _FEWEST_ROWS and spans[1] < _LEAST_TRAVEL * spans[0]:
+        retraction = retraction[:0]
     if segment == "approach":
         retraction = retraction[:0]
     elif segment == "retract":
@@ -178,7 +179,7 @@ def _steady_rows(
 ) -> tuple[Branches, tuple[float, float]]:
     """Rows at the contact radii that both branches pass after the edge has travelled, and these.
 
-    If one branch has no rows, the radii of the other count.
+    If one branch lacks rows, the radii of the other count.
     """
     largest = float(radius[np.concatenate([approach, retraction])].max(initial=0.0))
     began = radius[approach].min(initial=math.inf)

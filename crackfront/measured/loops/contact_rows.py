@@ -103,33 +103,38 @@ def _filled(condition: NDArray[np.bool_]) -> NDArray[np.bool_]:
 def _cut_by_force(force: Array, by_radius: NDArray[np.bool_]) -> NDArray[np.bool_]:
     """Rows in contact, from the jump into contact to the pull-off where the force shows them.
 
-    Radii may be missing there, or recorded late. Rows of contact are `by_radius`.
+    Radii may be missing there, or recorded late. `by_radius` are the rows from the first to the
+    last radius.
     """
-    touches = by_radius.copy()
-    touching = np.flatnonzero(by_radius)
+    first, last = np.flatnonzero(by_radius)[[0, -1]]
     finite = np.flatnonzero(np.isfinite(force))
-    middle = touching[touching.size // 2]
+    middle = (first + last) // 2
+    begin = _jump(force, finite[finite <= middle], int(np.sum(finite < first)))
+    end = _jump(force, finite[finite >= middle][::-1], int(np.sum(finite > last)))
+    rows = np.arange(force.size)
+    return (rows >= (first if begin is None else begin)) & (rows <= (last if end is None else end))
+
+
+def _jump(force: Array, rows: Rows, n_outside: int) -> int | None:
+    """First of some rows in which a force acts, from out of contact towards the contact.
+
+    The first `n_outside` of the rows lack a radius. None if too few do, if the radius says the
+    same, or if the force does not jump: contact begins and ends with a jump, a wave of a drift does
+    not.
+    """
+    if n_outside <= FEWEST_FREE_ROWS:
+        return None
     smooth = force[rows_without_spikes(force)]
-    for rows, outside in (
-        (finite[finite <= middle], finite[finite < touching[0]]),
-        (finite[finite >= middle][::-1], finite[finite > touching[-1]]),
-    ):
-        if outside.size <= FEWEST_FREE_ROWS:
-            continue
-        least, noise = _LEAST_PULL * _largest_pull(smooth), _noise(smooth)
-        values = force[rows] - force[rows[0]]
-        departs = np.abs(_departures(values, least, noise)) > 1
-        departs[:-1] &= departs[1:]
-        first = int(np.argmax(departs))
-        # Contact begins and ends with a jump, a wave of a drift does not.
-        if departs[first] and abs(values[first] - values[first - 1]) > max(
-            least, _NOISE_LIMIT * noise
-        ):
-            n_late = first - outside.size
-            if n_late < 0 or n_late >= _FEWEST_LATE:
-                touches[rows[:first]] = False
-                touches[rows[first:]] = True
-    return touches
+    least, noise = _LEAST_PULL * _largest_pull(smooth), _noise(smooth)
+    values = force[rows] - force[rows[0]]
+    place = _first_pair(np.abs(_departures(values, least, noise)) > 1)
+    if place is None:
+        return None
+    step = abs(values[place] - values[place - 1])
+    agrees = 0 <= place - n_outside < _FEWEST_LATE
+    if agrees or step <= max(least, _NOISE_LIMIT * noise):
+        return None
+    return int(rows[place])
 
 
 def _rows_with_force(force: Array, displacement: Array) -> NDArray[np.bool_]:

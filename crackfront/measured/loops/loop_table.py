@@ -67,13 +67,24 @@ def read_recording(path: Path, named: Mapping[str, str], units: Mapping[str, str
         raise ValueError(
             f"a loop needs two of {', '.join(UNITS)}, and {path} has {len(columns)}"
             f"{': ' if read else ''}{read}; its headings are {listed(table.headings)}, so name "
-            "its columns, as in --force 'Load (mN)'"
+            f"its columns, as in {_example(table, used)}"
         )
     return Recording(
         **{name: columns.get(name) for name in UNITS},
         headings={name: table.headings[used[name]].text for name in columns},
         remarks=_remarks(table, used, len(blocks)),
     )
+
+
+def _example(table: Table, places: Places) -> str:
+    """Option that names a missing column: an unused one whose unit fits, or any."""
+    used = [table.headings[place] for place in places.values()]
+    for name in ("force", "displacement"):
+        for heading in table.headings:
+            fits = bool(heading.unit) and is_unit(heading.unit, UNITS[name])
+            if name not in places and heading not in used and fits:
+                return f"--{name} {heading.text!r}"
+    return "--force 'Load (mN)'"
 
 
 def _table(path: Path) -> Table:

@@ -162,6 +162,13 @@ def test_a_table_with_one_column_names_all_headings_and_what_was_read(read):
     assert "--force" in str(error.value)
 
 
+def test_the_remedy_names_a_column_that_may_be_the_missing_one(read):
+    with pytest.raises(ValueError, match=r"--displacement 'Height \(nm\)'"):
+        read("Time (s),Force (uN),Height (nm)\n1,2,3\n2,3,4\n")
+    with pytest.raises(ValueError, match=r"--force 'Zug \(uN\)'"):
+        read("Time (s),Zug (uN),Radius (nm)\n1,2,3\n2,3,4\n")
+
+
 def test_an_error_of_a_unit_names_file_and_column(read):
     with pytest.raises(ValueError, match=r"rig\.csv: column 'Radius \(kg\)'"):
         read("Force (uN),Radius (kg)\n1,2\n2,3\n")
