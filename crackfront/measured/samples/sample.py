@@ -6,7 +6,6 @@ import difflib
 import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from numbers import Real
 from pathlib import Path
 from typing import Annotated, Any, cast
 
@@ -60,17 +59,15 @@ def _measured_quantity(unit: str, name: str, example: str) -> BeforeValidator:
     positive = cast(_Validator, quantity(unit, name, example).func)
 
     def checked(value: Any, info: ValidationInfo) -> float:
-        if isinstance(value, str):
-            text = value.strip()
-            sign = -1 if text.startswith(("-", "\u2212")) else 1
-            text = text[1:].lstrip() if sign < 0 else text
-            zero = _ZERO.fullmatch(text)
-            if zero and (not zero[1] or is_unit(zero[1], unit)):
-                return 0.0
-            return sign * positive(text, info)
-        if isinstance(value, Real) and not value > 0:
-            return -positive(-value, info) if value else 0.0
-        return positive(value, info)
+        if not isinstance(value, str):
+            return positive(value, info)
+        text = value.strip()
+        sign = -1 if text.startswith(("-", "\u2212")) else 1
+        text = text[1:].lstrip() if sign < 0 else text
+        zero = _ZERO.fullmatch(text)
+        if zero and (not zero[1] or is_unit(zero[1], unit)):
+            return 0.0
+        return sign * positive(text, info)
 
     return BeforeValidator(checked)
 
