@@ -65,9 +65,8 @@ def measure_next(surface: Surface) -> Remark:
         return Remark("next scan", "note", sentence)
     factor = surface.joint.draws.factor
     advice = sorted((*_larger_scans(surface.joint), *_finer_scans(surface)), reverse=True)
-    waves = ""
-    if surface.shares.missing_short.value > NOTABLE_SHARE:
-        waves = f" of waves down to {prefixed('m', surface.spectrum.short_cutoff)}"
+    is_incomplete = surface.shares.missing_short.value > NOTABLE_SHARE
+    waves = " without the waves that are left out" if is_incomplete else ""
     text = f"e_el{waves} is known within a factor of {factor:.3g}"
     if advice:
         scans = "; ".join(scan.text for scan in advice)

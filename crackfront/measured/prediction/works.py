@@ -180,7 +180,11 @@ def _hysteresis(
     return _in_quadrature(
         math.log(2 * factor.value * central.energy),
         [_log(2 * end * central.energy) for end in (factor.low, factor.high)],
-        *([_log(2 * factor_of(x).value * x.energy) for x in cause] for cause in varied if cause),
+        *(
+            [_log(2 * factor_of(other).value * other.energy) for other in cause]
+            for cause in varied
+            if cause
+        ),
     ).each(math.exp)
 
 
