@@ -405,3 +405,26 @@ def _status_lines(spectra: Sequence[Progress], running: Sequence[str]) -> Iterat
     if ended < total and not running:
         sentence += "; no process that is seen here stores any"
     yield sentence
+
+
+@click.command(
+    epilog=examples(
+        "crackfront surfaces config/default.yaml",
+        "crackfront surfaces config/default.yaml --spectrum h08",
+    )
+)
+@configuration_argument
+@output_option
+@click.option("--spectrum", help="Only this spectrum.  [default: all]")
+def surfaces(configuration: Path, output: Path | None, spectrum: str | None) -> None:
+    """Write the surfaces of a sweep into surfaces/, a netCDF file for each spectrum.
+
+    A file has heights and works of adhesion of each amplitude and realisation, in SI units if the
+    sweep has scales. Simulations do not read it: they make their surfaces from the seed.
+    """
+    from crackfront.sweep.run_sweep import opened
+    from crackfront.sweep.surface_files import write_surfaces
+
+    sweep, store, origin = opened(configuration, output, warn)
+    for item in sweep.spectra if spectrum is None else (sweep.named(spectrum),):
+        click.echo(f"surfaces: {write_surfaces(store.folder, sweep, item, origin)}")
