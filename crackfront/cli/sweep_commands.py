@@ -16,7 +16,6 @@ from crackfront.cli.answers import announce_compilation, announce_cost, echo_ans
 from crackfront.cli.option_types import (
     FILE,
     Number,
-    Numbers,
     as_json,
     examples,
     whole,
@@ -36,13 +35,21 @@ if TYPE_CHECKING:
     from crackfront.sweep.sweep import Shard, Sweep
     from crackfront.sweep.sweep_cost import ErrorCost, SweepCost
 
-_ERRORS = Range(1e-9, 1.0)
-"""Numerical errors of k; the finest numerics leave far more than the least."""
+_ERROR = Number(Range(1e-9, 1.0))
+"""Numerical error of k; the finest numerics leave far more than the least."""
 
 configuration_argument = click.argument("configuration", type=FILE)
 output_option = click.option(
     "--output", type=FILE, help="Folder of the results.  [default: results/<configuration's name>]"
 )
+
+
+def _errors(
+    context: click.Context, parameter: click.Parameter, value: str | None
+) -> tuple[float, ...]:
+    """Numbers that an option like 0.03,0.01 means."""
+    parts = [] if value is None else value.split(",")
+    return tuple(_ERROR.convert(part, parameter, context) for part in parts)
 
 
 @click.command(
@@ -57,7 +64,7 @@ output_option = click.option(
 @click.option("--block", type=whole(COUNT), help="Realisations of a shard (a job).  [default: all]")
 @click.option(
     "--errors",
-    type=Numbers(_ERRORS),
+    callback=_errors,
     help="Also print the cost of the whole sweep for these numerical errors of k, as 0.03,0.01.",
 )
 @as_json
@@ -65,7 +72,7 @@ def plan(
     configuration: Path,
     output: Path | None,
     block: int | None,
-    errors: tuple[float, ...] | None,
+    errors: tuple[float, ...],
     as_json: bool,
 ) -> None:
     """Print what a sweep would run for each spectrum, what is stored and what the rest costs.
@@ -85,7 +92,7 @@ def plan(
     missing = [item for inventory in progress.values() for item in inventory.missing]
     n_missing = sum(inventory.n_missing for inventory in progress.values())
     warnings = [*steady_part_warnings(sweep)]
-    prices = [*error_costs(sweep, errors or ())]
+    prices = [*error_costs(sweep, errors)]
     changed = change_sentence(store.configuration, configuration)
     content = {
         "results": store.folder,

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import errno
 import fcntl
-import itertools
 import os
 import secrets
 import tempfile
@@ -100,9 +99,10 @@ def write_derived_parts(path: Path, parts: Iterable[xr.Dataset], origin: Provena
     """
 
     def write(part: Path) -> None:
-        modes: Iterable[Literal["w", "a"]] = itertools.chain("w", itertools.repeat("a"))
-        for dataset, mode in zip(parts, modes, strict=False):
+        mode: Literal["w", "a"] = "w"
+        for dataset in parts:
             _write_netcdf(part, dataset, origin, mode)
+            mode = "a"
 
     def state_digest(part: Path) -> None:
         write_text(digest_path(path), sums_text({path.name: file_digest(part)}))
