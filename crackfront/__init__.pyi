@@ -26,4 +26,5 @@ from .surfaces.scales import Scales as Scales
 from .surfaces.si_units import in_reduced_units as in_reduced_units
 from .surfaces.si_units import in_si_units as in_si_units
 from .surfaces.straight_front import straight_front as straight_front
+from .sweep.row_simulation import simulation as simulation
 from .sweep.run_sweep import run_sweep as run_sweep

@@ -56,6 +56,7 @@ def fit_table(fit: SweepFit) -> str:
         f"{LEAST_SIZE:g} or more. In the limit of weak disorder the infinite contact has "
         f"k_0 = {with_interval(fit.k_0)} on every surface.",
         _sizes_table(fit),
+        _powers_sentence(fit),
         "## What an experimenter would find",
         "Work of adhesion from a JKR fit of force against mean radius, minus the front's work of "
         "adhesion (in w_int): mean, and largest magnitude in one simulation.",
@@ -203,6 +204,20 @@ def _sizes_table(fit: SweepFit) -> str:
         size_text = f"{size:.2g}" if np.isfinite(size) else MISSING
         rows.append((str(name), f"{energy:.4g}", size_text, *factors))
     return _markdown(header, rows)
+
+
+def _powers_sentence(fit: SweepFit) -> str:
+    """The fit of k in disorder and size."""
+    powers = fit.powers
+    if not np.isfinite(powers.factor.value):
+        return "The cells in the range do not span disorder and size, so that k has no fit in both."
+    return (
+        f"k of the cells in the range follows k_m (s / {powers.disorder:.3g})^a "
+        f"(g / {powers.size:.3g})^b with k_m = {with_interval(powers.factor)}, "
+        f"a = {with_interval(powers.disorder_power)} and b = {with_interval(powers.size_power)}; "
+        f"the law has a = {powers.law_disorder_power:.2f} and b = {powers.law_size_power:.2f} at "
+        "the same cells."
+    )
 
 
 def _cell(fit: SweepFit, spectrum: int, amplitude: int) -> str:

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crackfront.analysis.estimate import Estimate
+from crackfront.analysis.powers import PowerFit
 from crackfront.analysis.table import AMPLITUDE, REALISATION, SPECTRUM, SweepTable
 from crackfront.core.adhesion import FieldKind
 from crackfront.core.arrays import Array
@@ -98,6 +99,8 @@ class SweepFit:
     """The fit of every spectrum, (n_spectrum,), and of all together, ()."""
     from_force: ForceDifference
     """Differences of the experimenter's estimates, (n_spectrum,)."""
+    powers: PowerFit
+    """The fit of k in disorder and size, ()."""
     in_range: NDArray[np.bool_] = variable("amplitude is in the fit", "1", AMPLITUDE)
     n_realisation: Counts = variable("realisations with a value in the range", "1", SPECTRUM)
     n_failed: Counts = variable("simulations without a value in the range", "1", SPECTRUM)
@@ -120,7 +123,8 @@ def fit_columns(fit: SweepFit) -> Iterator[tuple[Variable, NDArray[Any]]]:
     """Variables and arrays of a fit for a file.
 
     An estimate has its four numbers along the dimension `bound`. The prefix `pooled_` marks pooled
-    results, `cell_` means over realisations and `from_force_` the experimenter's estimates.
+    results, `cell_` means over realisations, `from_force_` the experimenter's estimates and
+    `powers_` the fit in disorder and size.
     """
     yield _BOUND, np.array([item.name for item in fields(Estimate)])
     yield _HALF_WIDTH, np.array(HALF_WIDTHS)
@@ -132,6 +136,7 @@ def fit_columns(fit: SweepFit) -> Iterator[tuple[Variable, NDArray[Any]]]:
     yield from _columns(fit.spectra, "", SPECTRUM)
     yield from _columns(fit.pooled, "pooled_")
     yield from _columns(fit.from_force, "from_force_", SPECTRUM)
+    yield from _columns(fit.powers, "powers_")
 
 
 def _columns(record: Any, prefix: str = "", *dims: str) -> Iterator[tuple[Variable, NDArray[Any]]]:

@@ -23,6 +23,7 @@ from crackfront.analysis.estimate import (
     student_estimate,
 )
 from crackfront.analysis.law import WEAKEST, pinning_factor
+from crackfront.analysis.powers import power_fit
 from crackfront.analysis.result import (
     HALF_WIDTHS,
     CellEstimates,
@@ -70,8 +71,9 @@ FIT_DEFINITION = (
     "far too narrow for so few realisations. The intervals cover the scatter between realisations, "
     "not the differences between spectra. The realisations that an interval of some half-width "
     "needs follow from the present interval by 1/sqrt(n), if further realisations scatter as these "
-    "do; numerical bias stays. The probability of the midpoint's least likely deviation is the "
-    "probability that any of all cells deviates as much, by Student's t, if cells are independent."
+    "do; numerical bias stays. The powers of k in s and g are from least squares of log k with "
+    "equal weights of the cells in the range; the law's powers are from the same cells. The "
+    "probability of the midpoint's least likely deviation is the probability that any of all cells deviates as much, by Student's t, if cells are independent."
 )
 """What the numbers of a fit mean; an attribute of every file with them."""
 
@@ -135,7 +137,7 @@ def fit_sweep(
     chosen = _Samples(*(values[:, in_range] for values in samples))
     n_realisation = np.count_nonzero(np.any(np.isfinite(chosen.factor), axis=1), axis=-1)
     freedom = n_realisation - 1
-    parts, weights = _fit_spectra(chosen, freedom, n_bootstrap, seed, watched)
+    parts, weights, draws = _fit_spectra(chosen, freedom, n_bootstrap, seed, watched)
     spectra, shares = LawEstimates(*parts), ratio(weights, np.sum(weights, axis=1, keepdims=True))
     pooled_laws = LawEstimates(
         *(combination(part, freedom, share) for part, share in zip(parts, shares, strict=True))
@@ -145,6 +147,7 @@ def fit_sweep(
     n_large, departure = law_departure(cells.factor, cells.law_factor, cells.size)
     largest, probability = _largest_deviation(cells, in_range)
     law_exponent = _law_exponents(cells, in_range)
+    in_cells = (values[:, in_range] for values in (cells.w_rms, cells.size, cells.factor.value))
     by_name = dict(zip([item.name for item in fields(LawEstimates)], shares, strict=True))
     return SweepFit(
         table=table,
@@ -166,6 +169,7 @@ def fit_sweep(
         pooled_n_needed=_needed_realisations(pooled_laws.factor, np.max(n_realisation)),
         law_exponent=law_exponent,
         pooled_law_exponent=_weighted_mean(law_exponent, by_name["exponent"]),
+        powers=power_fit(*in_cells, cells.law_factor.value[:, in_range], draws, freedom),
         midpoint_largest=largest,
         midpoint_probability=probability,
         from_force=_force_difference(table, in_range),
@@ -225,8 +229,12 @@ def _fit_spectra(
     n_bootstrap: int,
     seed: int,
     watched: Callable[[list[int]], Iterable[int]],
-) -> tuple[list[Estimate], Array]:
-    """Estimates of the fields of LawEstimates for the spectra, and (field, spectrum) weights."""
+) -> tuple[list[Estimate], Array, list[Array | None]]:
+    """Estimates of the fields of LawEstimates for the spectra, and (field, spectrum) weights.
+
+    Also the k of the bootstrap samples of each spectrum, (n_sample, n_amplitude), None without.
+    """
+    draws: list[Array | None] = [None] * freedom.size
     shape = len(fields(LawEstimates)), freedom.size
     values, errors, weights = np.empty(shape), np.full(shape, np.nan), np.empty(shape)
     streams = np.random.SeedSequence(seed).spawn(freedom.size)
@@ -241,10 +249,11 @@ def _fit_spectra(
         values[:, index], weights[:, index] = value[:, 0], weight[:, 0]
         if freedom[index] > 0:
             rng = np.random.default_rng(streams[index])
-            drawn, _ = _statistics(_resampled(spectrum, n_bootstrap, rng), sloped)
-            errors[:, index] = scatter(drawn)
+            resampled = _resampled(spectrum, n_bootstrap, rng)
+            drawn, _ = _statistics(resampled, sloped)
+            errors[:, index], draws[index] = scatter(drawn), resampled.factor
     estimates = [student_estimate(*row, freedom) for row in zip(values, errors, strict=True)]
-    return estimates, weights
+    return estimates, weights, draws
 
 
 def _resampled(samples: _Samples, n_bootstrap: int, rng: np.random.Generator) -> _Samples:

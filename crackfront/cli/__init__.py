@@ -24,7 +24,7 @@ from crackfront.cli.result_commands import (
 )
 from crackfront.cli.samples_command import samples
 from crackfront.cli.surface_commands import predict, surface
-from crackfront.cli.sweep_commands import plan, simulate, status
+from crackfront.cli.sweep_commands import plan, simulate, status, surfaces
 from crackfront.sweep.parallel import stopping_as_ctrl_c
 
 
@@ -107,7 +107,10 @@ def compile_solvers() -> None:
 SECTIONS: dict[str, tuple[click.Command, ...]] = {
     "Predictions": (predict, samples, surface, law),
     "One contact": (cycle, loop),
-    "Sweeps, in this order": (plan, simulate, status, aggregate, fit, figures, summary, archive),
+    "Sweeps, in this order": (
+        *(plan, simulate, status, aggregate, fit, figures, summary, archive),
+        surfaces,
+    ),
     "Stored results": (verify, checksums),
     "The machine": (compile_solvers,),
 }

@@ -48,21 +48,6 @@ class Number(click.FloatRange):
         return number
 
 
-class Numbers(click.ParamType):
-    """Numbers within bounds, separated by commas."""
-
-    name = "numbers"
-
-    def __init__(self, bounds: Range) -> None:
-        self._number = Number(bounds)
-
-    def convert(
-        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
-    ) -> tuple[float, ...]:
-        """The numbers of a text."""
-        return tuple(self._number.convert(part, param, ctx) for part in value.split(","))
-
-
 def whole(bounds: Range) -> click.IntRange:
     """Type of a parameter that is a whole number within bounds."""
     return click.IntRange(int(bounds.least), int(bounds.most))

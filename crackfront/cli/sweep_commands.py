@@ -17,7 +17,6 @@ from crackfront.cli.answers import announce_compilation, announce_cost, echo_ans
 from crackfront.cli.option_types import (
     FILE,
     Number,
-    Numbers,
     as_json,
     examples,
     whole,
@@ -37,13 +36,21 @@ if TYPE_CHECKING:
     from crackfront.sweep.sweep import Shard, Sweep
     from crackfront.sweep.sweep_cost import ErrorCost, SweepCost
 
-_ERRORS = Range(1e-9, 1.0)
-"""Numerical errors of k; the finest numerics leave far more than the least."""
+_ERROR = Number(Range(1e-9, 1.0))
+"""Numerical error of k; the finest numerics leave far more than the least."""
 
 configuration_argument = click.argument("configuration", type=FILE)
 output_option = click.option(
     "--output", type=FILE, help="Folder of the results.  [default: results/<configuration's name>]"
 )
+
+
+def _errors(
+    context: click.Context, parameter: click.Parameter, value: str | None
+) -> tuple[float, ...]:
+    """Numbers that an option like 0.03,0.01 means."""
+    parts = [] if value is None else value.split(",")
+    return tuple(_ERROR.convert(part, parameter, context) for part in parts)
 
 
 @click.command(
@@ -58,7 +65,7 @@ output_option = click.option(
 @click.option("--block", type=whole(COUNT), help="Realisations of a shard (a job).  [default: all]")
 @click.option(
     "--errors",
-    type=Numbers(_ERRORS),
+    callback=_errors,
     help="Also print the cost of the whole sweep for these numerical errors of k, as 0.03,0.01.",
 )
 @as_json
@@ -66,7 +73,7 @@ def plan(
     configuration: Path,
     output: Path | None,
     block: int | None,
-    errors: tuple[float, ...] | None,
+    errors: tuple[float, ...],
     as_json: bool,
 ) -> None:
     """Print what a sweep would run for each spectrum, what is stored and what the rest costs.
@@ -86,7 +93,7 @@ def plan(
     missing = [item for inventory in progress.values() for item in inventory.missing]
     n_missing = sum(inventory.n_missing for inventory in progress.values())
     warnings = [*steady_part_warnings(sweep)]
-    prices = [*error_costs(sweep, errors or ())]
+    prices = [*error_costs(sweep, errors)]
     changed = change_sentence(store.configuration, configuration)
     content = {
         "results": store.folder,
@@ -422,3 +429,26 @@ def _status_lines(spectra: Sequence[Progress], running: Sequence[str]) -> Iterat
     if ended < total and not running:
         sentence += "; no process that is seen here stores any"
     yield sentence
+
+
+@click.command(
+    epilog=examples(
+        "crackfront surfaces config/default.yaml",
+        "crackfront surfaces config/default.yaml --spectrum h08",
+    )
+)
+@configuration_argument
+@output_option
+@click.option("--spectrum", help="Only this spectrum.  [default: all]")
+def surfaces(configuration: Path, output: Path | None, spectrum: str | None) -> None:
+    """Write the surfaces of a sweep into surfaces/, a netCDF file for each spectrum.
+
+    A file has heights and works of adhesion of each amplitude and realisation, in SI units if the
+    sweep has scales. Simulations do not read it: they make their surfaces from the seed.
+    """
+    from crackfront.sweep.run_sweep import opened
+    from crackfront.sweep.surface_files import write_surfaces
+
+    sweep, store, origin = opened(configuration, output, warn)
+    for item in sweep.spectra if spectrum is None else (sweep.named(spectrum),):
+        click.echo(f"surfaces: {write_surfaces(store.folder, sweep, item, origin)}")

@@ -15,7 +15,7 @@ PHYSICS_VERSION = 1
 ROWS_VERSION = 2
 """Version of rows, fits and figures: another one remakes them from stored states.
 
-- 2: a fit has the exponent by the law and the realisations that narrower intervals need; the
-  probability of its midpoint is not a bound.
+- 2: a fit has the exponent by the law, the realisations that narrower intervals need, and powers of
+  k in disorder and size; the probability of its midpoint is not a bound.
 - 1: the first release.
 """

@@ -8,10 +8,10 @@ import os
 import secrets
 import tempfile
 import time
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Iterable
 from dataclasses import asdict
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 import xarray as xr
@@ -89,11 +89,25 @@ def write_derived(path: Path, dataset: xr.Dataset, origin: Provenance) -> None:
     from some damage it never returns. The checksum comes first, so that a new file never appears
     without it; after a kill in between, an earlier file counts as damaged and is derived again.
     """
+    write_derived_parts(path, [dataset], origin)
+
+
+def write_derived_parts(path: Path, parts: Iterable[xr.Dataset], origin: Provenance) -> None:
+    """Write variables of several datasets into one file as :func:`write_derived`, each in turn.
+
+    So only one of them needs to be in memory.
+    """
+
+    def write(part: Path) -> None:
+        mode: Literal["w", "a"] = "w"
+        for dataset in parts:
+            _write_netcdf(part, dataset, origin, mode)
+            mode = "a"
 
     def state_digest(part: Path) -> None:
         write_text(digest_path(path), sums_text({path.name: file_digest(part)}))
 
-    replace_atomically(path, lambda part: _write_netcdf(part, dataset, origin), state_digest)
+    replace_atomically(path, write, state_digest)
 
 
 def write_named_by_digest(folder: Path, name: str, dataset: xr.Dataset, origin: Provenance) -> Path:
@@ -111,11 +125,13 @@ def write_named_by_digest(folder: Path, name: str, dataset: xr.Dataset, origin: 
         unnamed.unlink(missing_ok=True)
 
 
-def _write_netcdf(path: Path, dataset: xr.Dataset, origin: Provenance) -> None:
-    """Write a dataset as netCDF with its origin."""
+def _write_netcdf(
+    path: Path, dataset: xr.Dataset, origin: Provenance, mode: Literal["w", "a"] = "w"
+) -> None:
+    """Write a dataset as netCDF with its origin, or add it to a file."""
     stamped = _stamped(dataset, origin)
     encoding = {str(name): _encoding(values) for name, values in stamped.variables.items()}
-    stamped.to_netcdf(path, engine="netcdf4", encoding=encoding)
+    stamped.to_netcdf(path, mode, engine="netcdf4", encoding=encoding)
 
 
 def _stamped(dataset: xr.Dataset, origin: Provenance) -> xr.Dataset:

@@ -47,6 +47,10 @@ def surface(
 ) -> xr.DataArray:
     """A surface from an array of heights or of works of adhesion.
 
+    The axes of heights matter a little: the crack is a front along `y`, with the contact at smaller
+    `x`. If a map is turned by 90 degrees, w_appr and w_retr change by 0.005 w_int rms, or by 0.012
+    if its lengths along both axes differ by a factor of four.
+
     Parameters
     ----------
     values : (n_x, n_y) array

@@ -56,6 +56,10 @@ def run_loop(
 ) -> Dataset:
     """States of a sphere on a surface, or of a straight front, under any loads.
 
+    The orientation of the crack is fixed: w_loc everywhere is of a front along `y`, with the
+    contact at smaller `x`. If a map is turned by 90 degrees, w_appr and w_retr change by 0.005
+    w_int rms, or by 0.012 if its lengths along both axes differ by a factor of four.
+
     Parameters
     ----------
     surface : xarray.DataArray or StraightFront

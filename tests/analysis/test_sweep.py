@@ -220,6 +220,15 @@ def test_the_exponent_by_the_law_is_the_measured_one_of_fronts_that_obey_it():
     assert fewer.law_exponent[0] != pytest.approx(fit.law_exponent[0], rel=1e-3)
 
 
+def test_k_by_the_law_has_the_powers_of_the_law_in_disorder_and_size():
+    table, _, _ = by_the_law(straight=True)
+    powers = fit_all(table).powers
+    assert powers.disorder_power.value == pytest.approx(float(powers.law_disorder_power))
+    assert powers.size_power.value == pytest.approx(float(powers.law_size_power))
+    assert powers.disorder_power.high < 0 < powers.size_power.low
+    assert "k_m" in fit_table(fit_all(table))
+
+
 def test_a_chemical_field_leaves_the_midpoint_at_w_int():
     table = synthetic_table(np.random.default_rng(1), constant, noise=0.01)
     chemical = replace(table, w_appr=table.w_appr + table.e_el, w_retr=table.w_retr + table.e_el)
