@@ -151,15 +151,21 @@ def draw_below(axes: Axes, index: int, colour: str, abscissa: Array) -> None:
         axes.annotate("", *ends, xycoords=axes.get_xaxis_transform(), arrowprops=look)
 
 
-def draw_fit(axes: Axes, fit: SweepFit) -> None:
-    """Line of the pooled k over the range of the fit, with its interval in the legend."""
-    ends = fit.lowest_elastic_energy, fit.highest_elastic_energy
+def draw_fit(
+    axes: Axes, fit: SweepFit, curve: Callable[[Array, Array], tuple[Array, Array]]
+) -> None:
+    """Line of the pooled k over the range of the fit, with its interval in the legend.
+
+    `curve` maps e_el and k to points.
+    """
+    ends = np.array([fit.lowest_elastic_energy, fit.highest_elastic_energy])
     value, reach = float(fit.pooled.factor.value), float(fit.pooled.factor.high)
     text = f"{value:.2f}"
     if np.isfinite(reach):
         text = with_error(value, reach - value).replace("±", r"\pm")
     label = f"pooled $k = {text}$"
-    axes.plot(ends, [value, value], color=BLACK, linewidth=1.2, label=label)
+    points = curve(ends, np.full(2, value))
+    axes.plot(*points, color=BLACK, linewidth=1.2, label=label)
 
 
 def draw_law(

@@ -200,7 +200,7 @@ def _ends(values: Array, margin: float) -> Array:
 
 
 def draw_hysteresis(axes: Axes, fit: SweepFit) -> None:
-    """Draw mean hysteresis against (w_rms / w_int)^2 on log-log axes, with law and theory."""
+    """Draw mean hysteresis against (w_rms / w_int)^2 on log-log axes, with law, fit and theory."""
     variance, hysteresis, below = _variance(fit), fit.cells.hysteresis, _below(fit)
     ends = _ends(variance, 1.8)
     # The mean of one realisation has no interval.
@@ -212,6 +212,8 @@ def draw_hysteresis(axes: Axes, fit: SweepFit) -> None:
         shown = hysteresis.at(index).only(~below[index])
         draw_estimates(axes, style, variance[index], shown, fit.in_range)
     draw_law(axes, fit, lambda energy, factor: (4 * energy, 2 * factor * energy))
+    if not fit.table.on_springs:
+        draw_fit(axes, fit, lambda energy, factor: (4 * energy, 2 * factor * energy))
     draw_theory(axes, ends, ends / 2)
     axes.set(xscale="log", yscale="log", xlim=ends)
     highest = PERTURBATION_FACTOR / 2 * float(ends[1])
@@ -289,7 +291,7 @@ def draw_factor_by_disorder(axes: Axes, fit: SweepFit) -> None:
         draw_estimates(axes, style, abscissa, fit.cells.factor.at(index), fit.in_range)
     draw_law(axes, fit, lambda energy, factor: (energy, factor))
     ends = _ends(energy, 1.4)
-    draw_fit(axes, fit)
+    draw_fit(axes, fit, lambda energy, factor: (energy, factor))
     draw_theory(axes, ends)
     axes.set(xscale="log", xlim=ends, ylabel=_FACTOR_LABEL)
     label_decimals(axes.xaxis)

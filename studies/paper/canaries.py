@@ -104,6 +104,13 @@ def _motion(cycle: Any) -> Numbers:
     return {"dissipated energy": Number(energy, 0.02 * energy, "reduced energy", reason)}
 
 
+def _pull_off(record: Any) -> Numbers:
+    """Mean pull-off force of surfaces of both Hurst exponents."""
+    reason = "2%, about the scatter of one surface"
+    force = float(record.force.mean())
+    return {"pull-off force": Number(force, 0.02 * abs(force), "pi w_int R", reason)}
+
+
 def _avalanches(record: Any) -> Numbers:
     """Exponent of whole events of straight fronts, and the energy that a sphere dissipates."""
     depth = event_laws.depth_slope(record)
@@ -152,6 +159,7 @@ _REDUCED: Mapping[str, tuple[Mapping[str, Any], Callable[[Any], Numbers]]] = {
         {"short_cutoff": 0.04, "springs": [75.0, 150.0, 300.0], "n_tile": 1},
         _avalanches,
     ),
+    "beyond-pull-off": ({"n_surface": 1, "short_cutoffs": [0.1, 0.05]}, _pull_off),
     "beyond-roughness": (
         {"short_cutoff": 0.03, "n_surface": 2, "n_front": 3, "strong_line": _SHORT_LINE},
         _roughness,
