@@ -73,7 +73,8 @@ FIT_DEFINITION = (
     "needs follow from the present interval by 1/sqrt(n), if further realisations scatter as these "
     "do; numerical bias stays. The powers of k in s and g are from least squares of log k with "
     "equal weights of the cells in the range; the law's powers are from the same cells. The "
-    "probability of the midpoint's least likely deviation is the probability that any of all cells deviates as much, by Student's t, if cells are independent."
+    "probability of the midpoint's least likely deviation is the probability that any of all cells "
+    "deviates as much, by Student's t, if cells are independent."
 )
 """What the numbers of a fit mean; an attribute of every file with them."""
 
