@@ -90,6 +90,7 @@ _SHOWN_BY_VALUE = (str, int, float, bool, type(None), tuple, list, dict)
 _NOUNS = {
     "bool_type": "True or False",
     "callable_type": "a function",
+    "dict_type": "a mapping of names",
     "finite_number": "finite",
     "float_type": "a number",
     "int_from_float": "a whole number",
@@ -139,6 +140,8 @@ def _noun(error: ErrorDetails) -> str:
     """What a value of another type should have been."""
     if error["type"] == "is_instance_of":
         name = error["ctx"]["class"]
+        if name == "Sequence":
+            return "a list"
         return f"{'an' if name[0] in 'AEIOU' else 'a'} {name}"
     return _NOUNS[error["type"]]
 

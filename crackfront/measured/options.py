@@ -14,13 +14,13 @@ from pathlib import Path
 from typing import Annotated, Any, Literal, TypeVar, get_args
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, ValidationInfo
-from pydantic_core import ErrorDetails
 
 from crackfront.core.arguments import check_type, nearest_name
 from crackfront.core.bounds import POISSON, SI, check_within
 from crackfront.core.units import Scales, plane_strain_modulus
 from crackfront.core.words import counted
 from crackfront.surfaces.written_units import is_unit, si_value
+from crackfront.validation import sentence
 
 DetrendName = Literal["center", "height", "slope", "curvature"]
 
@@ -70,7 +70,7 @@ def checked_options(record: type[Record], options: Mapping[str, Any], prefix: st
         return record.model_validate(values, context=prefix)
     except ValidationError as error:
         first, *_ = error.errors(include_url=False)
-        raise ValueError(_sentence(first, prefix)) from None
+        raise ValueError(sentence(first, _shown_name(str(first["loc"][0]), prefix))) from None
 
 
 def named_options(record: type[Options], options: Mapping[str, Any]) -> list[str]:
@@ -171,14 +171,6 @@ def check_option_names(function: str, names: Iterable[str], *records: type[Optio
         if name not in options:
             hint = nearest_name(name, options, "the options are")
             raise TypeError(f"{function}() got an unexpected keyword argument {name!r}; {hint}")
-
-
-def _sentence(error: ErrorDetails, prefix: str) -> str:
-    """Message for an error of pydantic: from the validator, or from pydantic itself."""
-    if "error" in error.get("ctx", {}):
-        return str(error["ctx"]["error"])
-    must = error["msg"].replace("Input should", "it must")
-    return f"{_shown_name(str(error['loc'][0]), prefix)} is {error['input']!r}; {must}"
 
 
 def _shown_name(name: str, prefix: str) -> str:

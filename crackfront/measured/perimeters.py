@@ -3,26 +3,29 @@
 from __future__ import annotations
 
 from types import ModuleType
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import ArrayLike
+from pydantic import Field, SkipValidation
 from scipy.ndimage import gaussian_filter
 
-from crackfront.core.arguments import check_positive
 from crackfront.core.arrays import Array
 from crackfront.measured.optional_libraries import MissingExtraError
+from crackfront.validation import Positive, WholeNumber, checked_call
 
 _FEWEST_POINTS = 4
 """Points of a closed contour; the last one repeats the first."""
 
 
+@checked_call
 def contact_perimeters(
-    images: ArrayLike,
-    pixel: float,
+    images: SkipValidation[ArrayLike],
+    pixel: Positive,
     *,
-    reference: int | None = None,
-    level: float | None = None,
-    variance: float = 2.0,
+    reference: WholeNumber | None = None,
+    level: Annotated[float, Field(lt=0)] | None = None,
+    variance: Annotated[float, Field(ge=0)] = 2.0,
 ) -> list[Array]:
     r"""Perimeters of a contact that appears bright in the frames of a video.
 
@@ -41,7 +44,8 @@ def contact_perimeters(
     reference : int, optional
         Frame at maximum penetration, by default the brightest one.
     level : float, optional
-        Grey level of the contour, below zero. By default half of the difference between the grey
+        Grey level of the contour, below zero, since what is not yet in contact is darker than in
+        the reference. By default half of the difference between the grey
         levels around and inside the contact of the reference. (Units: grey level)
     variance : float, optional
         Variance of the Gaussian filter; 0 does not smooth. (Units: pixel**2)
@@ -76,22 +80,14 @@ def contact_perimeters(
     9.9 14.9 0
     """
     frames, index = _frames(images), reference
-    check_positive(pixel=pixel)
     if index is None:
         index = int(np.argmax(frames.mean(axis=(1, 2))))
     elif not 0 <= index < len(frames):
         raise ValueError(f"reference is {index}; it must be a frame, 0 to {len(frames) - 1}")
-    if not variance >= 0:
-        raise ValueError(f"variance is {variance:g}; it must be 0 or more")
     skimage = _skimage()
     in_contact, contrast = _contact(frames[index], skimage)
     if level is None:
         level = -contrast / 2
-    elif not level < 0:
-        raise ValueError(
-            f"level is {level:g}; it must be below zero, as what is not yet in contact is darker "
-            "than in the reference"
-        )
     centre = np.argwhere(in_contact).mean(axis=0)
     perimeters = []
     for frame in frames:

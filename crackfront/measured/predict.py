@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from os import PathLike
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from pydantic import InstanceOf
 from xarray import DataArray
 
-from crackfront.core.arguments import check_type
 from crackfront.core.units import Scales
 from crackfront.measured.density.bands import analysed_scan
 from crackfront.measured.options import (
@@ -38,12 +37,11 @@ from crackfront.measured.spectrum.stated import (
     self_affine_surface_of,
 )
 from crackfront.measured.tile import scan_surface
-from crackfront.surfaces.scales import check_scales
-
-File = str | PathLike[str]
+from crackfront.validation import PathName, checked_call
 
 
-def read_scan(path: File, sphere: Scales, **options: Any) -> DataArray:
+@checked_call
+def read_scan(path: PathName, sphere: InstanceOf[Scales], **options: Any) -> DataArray:
     """A measured map as a surface for simulations, levelled and made periodic.
 
     Parameters
@@ -74,25 +72,18 @@ def read_scan(path: File, sphere: Scales, **options: Any) -> DataArray:
         If the file cannot be opened.
     """
     check_option_names("read_scan", options, ReadingOptions)
-    check_scales(sphere)
-    file = _path(path, "path")
     [reading] = reading_options(options, 1)
     surface_library()  # All of it, as the user's program may import it too.
-    measurements = read_measurements([file], reading)
+    measurements = read_measurements([path], reading)
     if len(measurements) > 1:
         raise ValueError(
-            f"{file} contains {len(measurements)} measurements; name a file with a single one"
+            f"{path} contains {len(measurements)} measurements; name a file with a single one"
         )
     return scan_surface(analysed_scan(measurements[0], reading.shortest, reading.longest), sphere)
 
 
-def _path(value: File, name: str) -> Path:
-    """Path from an argument; TypeError if it is not a path."""
-    check_type(name, value, (str, PathLike), "the path of a file")
-    return Path(value)
-
-
-def read_psd(path: File, **options: Any) -> StatedSurface:
+@checked_call
+def read_psd(path: PathName, **options: Any) -> StatedSurface:
     """A surface from a spectral density that another program exported.
 
     Parameters
@@ -120,7 +111,7 @@ def read_psd(path: File, **options: Any) -> StatedSurface:
         If the file cannot be opened.
     """
     check_option_names("read_psd", options, PsdOptions)
-    return density_surface(read_psd_file(_path(path, "path"), checked_options(PsdOptions, options)))
+    return density_surface(read_psd_file(path, checked_options(PsdOptions, options)))
 
 
 def self_affine_surface(**numbers: Any) -> StatedSurface:
@@ -156,9 +147,10 @@ def self_affine_surface(**numbers: Any) -> StatedSurface:
     return self_affine_surface_of(checked_options(SelfAffineOptions, numbers))
 
 
+@checked_call
 def predict(
-    scans: File | Iterable[File] | StatedSurface,
-    sphere: Scales | None = None,
+    scans: PathName | Sequence[PathName] | InstanceOf[StatedSurface],
+    sphere: InstanceOf[Scales] | None = None,
     *,
     strict: bool = False,
     **options: Any,
@@ -228,7 +220,6 @@ def _sphere(sphere: Scales | None, options: dict[str, Any]) -> Scales:
     names = named_options(SphereOptions, options)
     if sphere is None:
         return sphere_scales(checked_options(SphereOptions, options))
-    check_scales(sphere)
     if names:
         raise ValueError(
             f"{names[0]} is {options[names[0]]!r}, and a sphere is given; leave out one of them"
@@ -246,10 +237,8 @@ def _check_reservations(prediction: Prediction) -> None:
         raise ValueError(f"the theory applies with reservations: {sentences}")
 
 
-def _measured(scans: File | Iterable[File], options: dict[str, Any]) -> MeasuredSurface:
+def _measured(scans: Path | Sequence[Path], options: dict[str, Any]) -> MeasuredSurface:
     """Surface from one or several scans."""
-    paths = [scans] if isinstance(scans, (str, PathLike)) else scans
-    check_type("scans", paths, Iterable, "the path of a file, or a list of such")
-    files = [_path(path, "scan") for path in paths]
+    files = [scans] if isinstance(scans, Path) else [*scans]
     surface_library()  # All of it, as the user's program may import it too.
     return read_surface(files, reading_options(options, len(files)))

@@ -5,13 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import asdict, fields
-from numbers import Real
-from typing import Any
+from typing import Annotated, Any
 
 from crackfront.core import units
-from crackfront.core.arguments import check_numbers, check_type
-from crackfront.core.bounds import POISSON, check_within
+from crackfront.core.bounds import POISSON
 from crackfront.surfaces.written_units import si_value
+from crackfront.validation import checked_call, within
 
 CONVERTED_FOR = "sphere_"
 """Prefix of the attributes with the sphere for which data were converted to SI units."""
@@ -55,6 +54,7 @@ class Scales(units.Scales):
 
     __slots__ = ()
 
+    @checked_call
     def __init__(
         self,
         radius: float | str,
@@ -62,7 +62,7 @@ class Scales(units.Scales):
         contact_modulus: float | str | None = None,
         *,
         modulus: float | str | None = None,
-        poisson: float | None = None,
+        poisson: Annotated[float, within(POISSON)] | None = None,
     ) -> None:
         super().__init__(
             in_si("radius", radius, "m"),
@@ -88,8 +88,6 @@ def _stated_modulus(
             f"modulus is {modulus!r} and poisson is {poisson!r}; give both, or contact_modulus, "
             "which is E / (1 - nu^2)"
         )
-    check_numbers(poisson=poisson)
-    check_within("poisson", poisson, POISSON)
     return units.plane_strain_modulus(in_si("modulus", modulus, "Pa"), poisson)
 
 
@@ -97,14 +95,7 @@ def in_si(name: str, value: float | str, unit: str) -> float:
     """Value in SI of an argument that is a number or a text with a unit."""
     if isinstance(value, str):
         return si_value(value, unit, name=name)
-    check_type(name, value, Real, f"a number of {unit}, or a text with a unit")
-    return float(value)
-
-
-def check_scales(sphere: object) -> None:
-    """Raise TypeError if an argument is not a sphere."""
-    expected = "crackfront.Scales(radius, work_of_adhesion, modulus=..., poisson=...)"
-    check_type("sphere", sphere, units.Scales, expected)
+    return value
 
 
 def sphere_attributes(sphere: units.Scales) -> dict[str, float]:

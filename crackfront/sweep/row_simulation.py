@@ -10,7 +10,6 @@ from xarray import DataArray, Dataset
 
 from crackfront.analysis.table import PLACE, SweepRow
 from crackfront.core.adhesion import FieldKind
-from crackfront.core.arguments import check_type
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.core.variables import variables
 from crackfront.core.versions import PHYSICS_VERSION
@@ -23,6 +22,7 @@ from crackfront.simulate.tiles import gaussian_values
 from crackfront.surfaces.surface_array import surface_array
 from crackfront.sweep.parameters import load_sweep
 from crackfront.sweep.rows import sweep_row
+from crackfront.validation import checked_call
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,6 +58,7 @@ class RowSimulation:
         )
 
 
+@checked_call
 def simulation(row: Dataset) -> RowSimulation:
     """The simulation of a row of a sweep's table, which can be looked at and run again.
 
@@ -87,7 +88,6 @@ def simulation(row: Dataset) -> RowSimulation:
     >>> bool(cf.simulation(row).run().w_appr == row.w_appr)  # doctest: +SKIP
     True
     """
-    check_type("row", row, Dataset, "a row of the table of a sweep, an xarray.Dataset")
     if row.sizes or not {*PLACE, "series", "max_sweeps"} <= row.variables.keys():
         raise ValueError(
             f"the row has the sizes {dict(row.sizes)}; select one row of the table of a sweep, as "

@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-from contextlib import nullcontext
-
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from crackfront.core import jkr
-from crackfront.core.arguments import check_type
 from crackfront.core.units import WORK_OF_ADHESION, Scales
 from crackfront.core.variables import FORCE, LATERAL
 from crackfront.measured.loops.loop_result import MeasuredLoop
@@ -19,16 +16,15 @@ from crackfront.plots.style import (
     BLUE,
     COLUMN,
     VERMILION,
+    axes_to_draw_on,
     blank_figure,
     house_style,
-    shown_axes,
 )
 
 
 def plot_measured_loop(loop: MeasuredLoop, axes: Axes | None = None) -> Axes:
     """Draw a loop on the user's axes, or on new ones."""
-    check_type("axes", axes, (Axes, type(None)), "one Axes of matplotlib, as axes[0] of several")
-    with shown_axes() if axes is None else nullcontext(axes) as drawn:
+    with axes_to_draw_on(axes) as drawn:
         _draw_measured(drawn, loop, None)
         drawn.legend()
     return drawn

@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from os import PathLike
 from pathlib import Path
-from typing import Literal
+from typing import Annotated, Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
+from pydantic import Field
 from xarray import DataArray, Dataset
 
-from crackfront.core.arguments import check_numbers, check_type
 from crackfront.core.arrays import Array
 from crackfront.measured.loops.analysis import analyse_loop
 from crackfront.measured.loops.loop_choice import chosen_loop
@@ -24,21 +23,23 @@ from crackfront.measured.scan.netcdf import is_netcdf
 from crackfront.simulate.storage import read_dataset
 from crackfront.surfaces.scales import in_si
 from crackfront.surfaces.written_units import unit_value
+from crackfront.validation import PathName, WholeNumber, checked_call
 
 _SIMULATED = {"mean_radius", "pinning_force"}
 """Variables one of which every simulated cycle has, and no measured loop."""
 
 
+@checked_call
 def measured_loop(
-    loop: str | PathLike[str] | Mapping[str, ArrayLike] | Dataset,
+    loop: PathName | Mapping[str, Any] | Dataset,
     *,
     radius: float | str | None = None,
     contact_modulus: float | str | None = None,
     modulus_error: float = 0.0,
     radius_error: float = 0.0,
     stiffness: float | str | None = None,
-    window: tuple[float, float] | None = None,
-    loop_number: int | None = None,
+    window: Annotated[tuple[float | str, float | str], Field(strict=False)] | None = None,
+    loop_number: WholeNumber | None = None,
     segment: Literal["approach", "retract"] | None = None,
     invert: Literal["force", "displacement"] | None = None,
 ) -> MeasuredLoop:
@@ -97,8 +98,8 @@ def measured_loop(
     >>> round(loop.w_appr.value, 6), round(loop.w_retr.value, 6)
     (0.03, 0.06)
     """
-    if isinstance(loop, (str, PathLike)) and is_netcdf(Path(loop)):
-        loop = read_dataset(Path(loop))
+    if isinstance(loop, Path) and is_netcdf(loop):
+        loop = read_dataset(loop)
     if isinstance(loop, Dataset) and _SIMULATED & {*loop}:
         _check_no_rig(
             radius=radius,
@@ -112,12 +113,8 @@ def measured_loop(
             invert=invert,
         )
         return simulated_loop(loop)
-    check_type(
-        "loop", loop, (str, PathLike, Mapping), "the path of a table, or arrays by their names"
-    )
     if radius is None:
         raise ValueError("a measured loop does not state its sphere; give its radius in metres")
-    check_numbers(modulus_error=modulus_error, radius_error=radius_error)
     rig = Rig(
         radius=in_si("radius", radius, "m"),
         contact_modulus=_optional("contact_modulus", contact_modulus, "Pa"),
@@ -127,10 +124,7 @@ def measured_loop(
         window=None if window is None else _window(window),
         segment=segment,
     )
-    if isinstance(loop, (str, PathLike)):
-        recording = read_recording(Path(loop), {}, {})
-    else:
-        recording = _recording(loop)
+    recording = read_recording(loop, {}, {}) if isinstance(loop, Path) else _recording(loop)
     if invert is not None:
         recording = recording.inverted([invert])
     return analyse_loop(chosen_loop(recording, loop_number), rig)
@@ -152,9 +146,6 @@ def _optional(name: str, value: float | str | None, unit: str) -> float | None:
 
 def _window(window: tuple[float | str, float | str]) -> tuple[float, float]:
     """Contact radii of a window (Units: m)."""
-    check_type("window", window, (tuple, list), "a pair of contact radii")
-    if len(window) != 2:
-        raise ValueError(f"window has {len(window)} values; give two contact radii")
     first, last = (in_si("a contact radius of window", end, "m") for end in window)
     return first, last
 

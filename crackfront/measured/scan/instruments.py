@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import zipfile
 from dataclasses import dataclass
-from os import PathLike
 from pathlib import Path
 from typing import Any
 
@@ -33,6 +32,7 @@ from crackfront.measured.scan.sides import (
 )
 from crackfront.measured.scan.text_scans import is_plain_text, text_reader
 from crackfront.measured.tables.number_tables import number_tables
+from crackfront.validation import PathName, checked_call
 
 _BEGIN = 512
 """Bytes at the beginning of a file that have its signature."""
@@ -167,7 +167,8 @@ def _reader_by_suffix(path: Path) -> tuple[Any, bool]:
 
 
 @silenced()
-def list_channels(path: str | PathLike[str]) -> tuple[Channel, ...]:
+@checked_call
+def list_channels(path: PathName) -> tuple[Channel, ...]:
     """Channels of a file, as options `channel` name them.
 
     Parameters
@@ -187,14 +188,14 @@ def list_channels(path: str | PathLike[str]) -> tuple[Channel, ...]:
     OSError
         If it cannot be opened.
     """
-    check_readable(Path(path))
+    check_readable(path)
     members = [
         f"{surface.name}: {measurement.shown}"
-        for surface in contained_surfaces(Path(path))
+        for surface in contained_surfaces(path)
         for measurement in surface.topographies
     ]
     if members:
         return tuple(
             Channel(number, name, "height", (), True) for number, name in enumerate(members)
         )
-    return channels_of(Path(path), _reader(Path(path)))
+    return channels_of(path, _reader(path))
