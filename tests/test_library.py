@@ -322,8 +322,8 @@ def test_a_surface_that_cannot_be_used_is_refused(surface, change, sentence):
 @pytest.mark.parametrize(
     ("call", "sentence"),
     [
-        (lambda: cf.Scales(None, 1, 1), "radius is None; give a number of m, or a text"),
-        (lambda: cf.Scales(1, [1], 1), "work_of_adhesion is a list; give a number of J/m"),
+        (lambda: cf.Scales(None, 1, 1), "radius is None; it must be a number or"),
+        (lambda: cf.Scales(1, [1], 1), "work_of_adhesion is \\[1\\]; it must"),
         (
             lambda: cf.run_loop(np.zeros((4, 4))),
             "surface is a numpy.ndarray; it",
@@ -354,9 +354,9 @@ def test_a_surface_that_cannot_be_used_is_refused(surface, change, sentence):
         (lambda: cf.in_reduced_units([1], SPHERE), "data is \\[1\\]; it must be a DataArray"),
         (lambda: cf.plot_loop(tile(np.zeros((4, 4)))), "loop is a xarray.DataArray; it must"),
         (lambda: cf.plot_instabilities(None), "jumps is None; it must be a Dataset"),
-        (lambda: cf.read_scan(7, SPHERE), "path is 7; give the path of a file"),
-        (lambda: cf.predict(7, SPHERE), "scans is 7; give the path of a file, or a list"),
-        (lambda: cf.predict([SCAN], "1mm"), "sphere is '1mm'; give crackfront.Scales"),
+        (lambda: cf.read_scan(7, SPHERE), "path is 7; it must be the path"),
+        (lambda: cf.predict(7, SPHERE), "scans is 7; it must be the path of a file or"),
+        (lambda: cf.predict([SCAN], "1mm"), "sphere is '1mm'; it must be a Scales"),
         (lambda: cf.run_sweep(7), "configuration is 7; it must be the path"),
     ],
 )
@@ -654,7 +654,7 @@ def test_simulations_without_a_value_are_warned_of(tmp_path):
 @pytest.mark.parametrize(
     ("run", "given", "sentence"),
     [
-        (cf.run_loop, {"solver": "magic"}, "solver is 'magic'; choose one of newton, reference"),
+        (cf.run_loop, {"solver": "magic"}, "solver is 'magic'; it must be one of newton"),
         (cf.run_loop, {"step": 0.0}, "step is 0.0; it must be greater"),
         (cf.run_loop, {"max_penetration": -1.0}, "max penetration -1.0 never makes contact"),
         (cf.run_loop, {"error": 1e-6}, "error is 1e-06, but the finest numerics"),

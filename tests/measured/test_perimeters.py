@@ -80,7 +80,7 @@ def test_a_level_closer_to_the_contact_gives_a_smaller_perimeter():
         (np.full((2, 8, 8), 3.0), {}, "grey level 3 everywhere"),
         (np.where(discs() == BRIGHT, np.nan, discs()), {}, "frame 0 .* not finite"),
         (discs(), {"reference": 4}, "reference is 4; .* 0 to 3"),
-        (discs(), {"level": 10.0}, "level is 10; .* below zero"),
+        (discs(), {"level": 10.0}, "level is 10.0; it must be less than 0"),
         (discs(), {"variance": -1.0}, "variance is -1"),
         (discs(), {"pixel": 0.0}, "pixel"),
     ],

@@ -97,13 +97,6 @@ def test_motion_ends_where_contact_is_lost():
     assert motions[-1].end > -1.0
 
 
-@pytest.mark.parametrize(("name", "value"), [("travel", 0.0), ("precision", float("nan"))])
-def test_a_resolution_that_is_not_positive_is_refused(name, value):
-    given = {"travel": 0.01, "precision": 1e-5} | {name: value}
-    with pytest.raises(ValueError, match=f"{name} is {value}; it must be positive"):
-        next(resolved_motion(ring_field(0.1), np.array([1.0]), 0.0, [-0.1], -1, **given))
-
-
 def test_a_front_that_leaves_the_field_says_so():
     field = ring_field(0.1)
     front = relax(np.full(1, 0.06), 0.5, 1, field).front

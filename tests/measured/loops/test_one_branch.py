@@ -108,8 +108,8 @@ def test_a_column_of_the_other_sign_is_inverted_or_named(column):
 @pytest.mark.parametrize(
     ("options", "match"),
     [
-        ({"segment": "pause"}, "choose approach or retract"),
-        ({"invert": "radius"}, "choose force or displacement"),
+        ({"segment": "pause"}, "must be 'approach' or 'retract'"),
+        ({"invert": "radius"}, "must be 'force' or 'displacement'"),
         ({"invert": "displacement"}, "lacks; leave it out"),
         ({"loop_number": 2}, "lacks number 2"),
     ],
