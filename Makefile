@@ -159,7 +159,6 @@ benchmark: env  ## Solvers against the reference, what requests cost, how sweeps
 
 timings: env  ## For a release: what depends on the machine (an hour)
 	$(IN_ENV) .venv/bin/python -m studies speed solvers --keep
-	$(IN_ENV) .venv/bin/python -m studies speed profile --keep
 	$(IN_ENV) .venv/bin/python -m studies speed needs --keep
 	$(IN_ENV) .venv/bin/python -m studies speed costs --keep
 	$(IN_ENV) .venv/bin/python -m studies speed scaling --keep
@@ -207,6 +206,7 @@ reproduce-scans: env
 	$(IN_ENV) .venv/bin/python -m studies accuracy loops --loops 20 --keep
 	$(IN_ENV) .venv/bin/python -m studies accuracy predictions --keep
 	$(IN_ENV) .venv/bin/python -m studies accuracy energy-balance --keep
+	$(IN_ENV) .venv/bin/python -m studies accuracy individual-pinning --keep
 
 law: env  ## The law of k, from its straight fronts, into results/law (an hour of one core)
 	$(IN_ENV) .venv/bin/python -m studies law configurations
@@ -243,7 +243,7 @@ validate: env  ## The model against boundary elements (6 minutes); VALIDATION=co
 figures: env  ## All figures of the paper; SCALE=quick (4 minutes) or SCALE=paper (25)
 	$(SNAKE) --config scale=$(SCALE) -- figures
 	@echo "Results: results/figures/$(SCALE)/, checks in results/figures/checks.md"
-	@sed -n '3p; s/^- FAIL/FAIL/p' results/figures/checks.md
+	@sed -n '3,/^$$/s/^- //p' results/figures/checks.md
 
 report: env  ## Run what is missing of the sweep SWEEP; write one page of HTML: fit, figures, configuration
 	$(SNAKE) --config sweep=$(call quoted,$(SWEEP))

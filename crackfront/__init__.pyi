@@ -1,8 +1,10 @@
 from .analysis.law import pinning_factor as pinning_factor
 from .core.spectrum import SelfAffineSpectrum as SelfAffineSpectrum
+from .core.spectrum import TabulatedSpectrum as TabulatedSpectrum
 from .measured.loops.measured_loop import measured_loop as measured_loop
 from .measured.options import PredictionOptions as PredictionOptions
 from .measured.options import ReadingOptions as ReadingOptions
+from .measured.perimeters import contact_perimeters as contact_perimeters
 from .measured.predict import predict as predict
 from .measured.predict import read_psd as read_psd
 from .measured.predict import read_scan as read_scan

@@ -11,7 +11,7 @@ import numpy as np
 
 import crackfront as cf
 
-sphere = cf.Scales(radius="1.25mm", work_of_adhesion="63mJ/m2", contact_modulus=0.7e6 / 0.75)
+sphere = cf.Scales(radius="1.25mm", work_of_adhesion="63mJ/m2", modulus="0.7MPa", poisson=0.5)
 f"{1e6 * sphere.lateral:.1f} um, {1e6 * sphere.vertical:.2f} um, {1e3 * sphere.force:.3f} mN"
 
 # %%

@@ -17,7 +17,7 @@ from matplotlib import pyplot
 import crackfront as cf
 
 scan = Path(sys.argv[0]).with_name("scans") / "nanodiamond-overview.al3d"
-sphere = cf.Scales(radius="100um", work_of_adhesion="63mJ/m2", contact_modulus=0.7e6 / 0.75)
+sphere = cf.Scales(radius="100um", work_of_adhesion="63mJ/m2", modulus="0.7MPa", poisson=0.5)
 surface = cf.read_scan(scan, sphere)
 cycle = cf.in_si_units(cf.run_loop(surface, max_penetration=3, step=0.04, fronts=False), sphere)
 

@@ -16,8 +16,9 @@ from crackfront.analysis.finding import (
     finding,
 )
 from crackfront.analysis.law import LEAST_SIZE
-from crackfront.analysis.result import LawEstimates, SweepFit
+from crackfront.analysis.result import HALF_WIDTHS, LawEstimates, SweepFit
 from crackfront.core.arrays import Array
+from crackfront.core.words import counted
 
 ONSET = 0.5
 """Ratio of k to the largest k of its spectrum below which hysteresis has not set in."""
@@ -25,8 +26,8 @@ ONSET = 0.5
 _FACTORS = "factor", "factor_by_sums"
 """Estimates of k in the table of the law."""
 
-_TRENDS = "exponent", "midpoint_slope", "disorder_slope"
-"""Further estimates in the table of the law."""
+_SLOPES = "midpoint_slope", "disorder_slope"
+"""Estimates after the exponents in the table of the law."""
 
 
 def fit_table(fit: SweepFit) -> str:
@@ -71,12 +72,47 @@ def fit_result(fit: SweepFit) -> str:
     law = finite_mean(np.where(compared, fit.cells.law_factor.value, np.nan))
     mean = float(finite_mean(law))
     pooled = f"{mean:.2f}" if np.isfinite(mean) else MISSING
+    by_law = "; ".join([pooled, *_range_of(law)])
     return (
         f"# Hysteresis: w_retr, w_appr = {_mean_adhesion(fit)} ± k e_el\n\n"
         f"- k of this sweep, {_n_simulation(fit)} simulations: {_pooled_entry(fit, 'factor')}\n"
-        f"- k by the law: {'; '.join([pooled, *_k_range(law)])}; k of the paper: {PAPER_FACTOR:g}\n"
-        f"- exponent of w_rms: {with_interval(fit.pooled.exponent)}; of the paper: 2"
+        f"{_needed_line(fit)}"
+        f"- k by the law: {by_law}; k of the paper: {PAPER_FACTOR:g}\n"
+        f"- exponent of w_rms: {_exponent_entry(fit)}\n"
+        f"- exponent by the law: {_law_exponent_entry(fit)}; of the paper: 2"
     )
+
+
+def _needed_line(fit: SweepFit) -> str:
+    """Line on the realisations that narrower intervals of k need; empty without an interval."""
+    half_width = float(fit.pooled.factor.high - fit.pooled.factor.low) / 2
+    if not np.isfinite(half_width):
+        return ""
+    present = int(np.max(fit.n_realisation))
+    needed = [
+        f"±{width:g} needs about {number:.0f}"
+        for width, number in zip(HALF_WIDTHS, fit.pooled_n_needed, strict=True)
+        if width < half_width
+    ]
+    further = f"; {', '.join(needed)}" if needed else ""
+    realisations = counted(present, "realisation")
+    return (
+        f"- interval of this k: ±{half_width:.2g} with {realisations} of each spectrum{further}\n"
+    )
+
+
+def _exponent_entry(fit: SweepFit) -> str:
+    """Pooled exponent with its interval, and the range of the spectra."""
+    spectra = _range_of(fit.spectra.exponent.value)
+    return "; ".join([with_interval(fit.pooled.exponent), *spectra])
+
+
+def _law_exponent_entry(fit: SweepFit) -> str:
+    """Pooled exponent by the law, and the range of the spectra."""
+    pooled = float(fit.pooled_law_exponent)
+    if not np.isfinite(pooled):
+        return MISSING
+    return "; ".join([f"{pooled:.2f}", *_range_of(fit.law_exponent)])
 
 
 def _n_simulation(fit: SweepFit) -> int:
@@ -88,17 +124,26 @@ def _law_table(fit: SweepFit) -> str:
     """Table of the law: every spectrum, pooled, and theory."""
     header = (
         "spectrum | correlation length | realisations | k | k, ratio of sums | exponent of w_rms "
-        "| midpoint slope m | change of k per doubling of w_rms"
+        "| exponent by the law | midpoint slope m | change of k per doubling of w_rms"
     )
     lengths, counts = fit.table.correlation_length, fit.n_realisation
-    names = _FACTORS + _TRENDS
     rows = []
     for index, spectrum in enumerate(fit.table.spectrum):
-        estimates = _estimate_entries(fit.spectra, names, index)
-        rows.append([str(spectrum), f"{lengths[index]:.3g}", str(counts[index]), *estimates])
+        by_law = float(fit.law_exponent[index])
+        rows.append(
+            [
+                str(spectrum),
+                f"{lengths[index]:.3g}",
+                str(counts[index]),
+                *_estimate_entries(fit.spectra, (*_FACTORS, "exponent"), index),
+                f"{by_law:.2f}" if np.isfinite(by_law) else MISSING,
+                *_estimate_entries(fit.spectra, _SLOPES, index),
+            ]
+        )
     pooled = [_pooled_entry(fit, name) for name in _FACTORS]
-    pooled += _estimate_entries(fit.pooled, _TRENDS, ())
-    law = "2", "1" if fit.kind == "roughness" else "0", "0"
+    pooled += [_exponent_entry(fit), _law_exponent_entry(fit)]
+    pooled += _estimate_entries(fit.pooled, _SLOPES, ())
+    law = "2", "2", "1" if fit.kind == "roughness" else "0", "0"
     rows += [
         ["**pooled**", "", str(np.sum(counts)), *pooled],
         ["paper", "", "", *[f"{PAPER_FACTOR:g}"] * 2, *law],
@@ -121,13 +166,13 @@ def _pooled_entry(fit: SweepFit, name: str) -> str:
 def pooled_limits(fit: SweepFit, spectra: Estimate) -> tuple[str, ...]:
     """Range of the spectra and numerical bias of a pooled k, which its interval leaves out."""
     bias = _largest_numerical_error(fit)
-    k_range = _k_range(spectra.value)
-    return (*k_range, f"numerical bias to {bias.error:.2f}") if bias else k_range
+    limits = _range_of(spectra.value)
+    return (*limits, f"numerical bias to {bias.error:.2f}") if bias else limits
 
 
-def _k_range(factors: Array) -> tuple[str, ...]:
-    """Range of the k of spectra, if there are at least two."""
-    finite = factors[np.isfinite(factors)]
+def _range_of(values: Array) -> tuple[str, ...]:
+    """Range of a quantity of the spectra, if there are at least two."""
+    finite = values[np.isfinite(values)]
     return (f"spectra {finite.min():.2f} to {finite.max():.2f}",) if finite.size > 1 else ()
 
 
@@ -174,11 +219,11 @@ def _midpoint_sentence(fit: SweepFit) -> str:
     chance = float(fit.midpoint_probability)
     if not np.isfinite(fit.midpoint_largest):
         return "Without standard errors, midpoints cannot be compared with the mean of w_loc."
+    probability = f"{chance:.2g}" if chance >= 0.001 else "below 0.001"
     return (
-        f"The midpoint (w_retr + w_appr)/2 deviates from {_mean_adhesion(fit)} by at most "
-        f"{fit.midpoint_largest:.2g} standard errors at any spectrum and amplitude in the range; "
-        "if the law is exact, the probability of such a deviation is "
-        f"{f'about {chance:.2g}' if chance >= 0.001 else 'less than 0.001'}."
+        f"The least likely deviation of a midpoint (w_retr + w_appr)/2 from {_mean_adhesion(fit)}, "
+        f"among all spectra and amplitudes in the range, is {fit.midpoint_largest:.2g} standard "
+        f"errors; if the law is exact, the probability of one as unlikely is {probability}."
     )
 
 
@@ -214,6 +259,7 @@ def fit_notes(fit: SweepFit) -> tuple[str, ...]:
         *_onset_sentences(fit),
         *_gap_sentences(fit),
         *_exponent_sentences(fit),
+        *_realisation_sentences(fit),
         *_numerical_sentences(fit),
     )
 
@@ -328,6 +374,17 @@ def _exponent_sentences(fit: SweepFit) -> Iterator[str]:
                 f"{name}: the mean hysteresis at e_el = {gaps} w_int is not positive; the exponent "
                 "leaves it out, k does not; raise the lower end of the range."
             )
+
+
+def _realisation_sentences(fit: SweepFit) -> Iterator[str]:
+    """What the numbers of realisations for narrower intervals assume."""
+    if np.any(np.isfinite(fit.pooled_n_needed)):
+        yield (
+            "The realisations that a narrower interval of k needs, each at every amplitude, follow "
+            "from the present interval by 1/sqrt(n), if k scatters between further surfaces as "
+            "between these. Realisations do not reduce the numerical bias or the differences "
+            "between spectra."
+        )
 
 
 def _numerical_sentences(fit: SweepFit) -> Iterator[str]:

@@ -21,16 +21,17 @@ import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, fields, replace
 from importlib.resources import files
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
+from pydantic import Field
 from scipy.special import ndtr
 
 from crackfront.analysis.estimate import Estimate, normal_estimate
-from crackfront.core.adhesion import FieldKind, check_kind
-from crackfront.core.arguments import check_numbers
+from crackfront.core.adhesion import FieldKind
 from crackfront.core.arrays import Array
+from crackfront.validation import checked_call
 
 if TYPE_CHECKING:
     from crackfront.core.spectrum import Spectrum
@@ -258,8 +259,12 @@ def _as_tuples(value: Any) -> Any:
     return tuple(map(_as_tuples, value)) if isinstance(value, list) else value
 
 
+@checked_call
 def pinning_factor(
-    w_rms: float, size: float, kind: FieldKind = "roughness", breadth: float | None = None
+    w_rms: Annotated[float, Field(gt=0, lt=2)],
+    size: Annotated[float, Field(gt=0)],
+    kind: FieldKind = "roughness",
+    breadth: Annotated[float, Field(ge=_NARROWEST, allow_inf_nan=False)] | None = None,
 ) -> PinningFactor:
     r"""Factor k of a straight front, by the measured law.
 
@@ -298,21 +303,6 @@ def pinning_factor(
     >>> 2.3 < infinite.factor.value < 3.2
     True
     """
-    check_numbers(w_rms=w_rms, size=size)
-    check_kind(kind)
-    if not 0 < w_rms < 2:
-        raise ValueError(
-            f"w_rms is {w_rms:g} w_int; it must lie between 0 and 2, where e_el reaches w_int"
-        )
-    if not size > 0:
-        raise ValueError(f"size g is {size:g}; it must be positive, or inf")
-    if breadth is not None:
-        check_numbers(breadth=breadth)
-        if not _NARROWEST <= breadth < math.inf:
-            raise ValueError(
-                f"breadth is {breadth:g}; it must be finite and at least {_NARROWEST:g}, the "
-                "breadth of a single wavelength"
-            )
     factors = pinning_factors(w_rms, size, breadth)
     sentences = _sentences_outside(
         shipped_law(), w_rms, size, TYPICAL_BREADTH if breadth is None else breadth

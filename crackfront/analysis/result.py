@@ -17,7 +17,16 @@ from crackfront.core.variables import ADHESION, Variable, variable, variables
 
 Counts = NDArray[np.int64]
 
+_LAW_EXPONENT = "exponent of hysteresis in w_rms by the law, at the same amplitudes"
+
+_NEEDED = "realisations of each spectrum that an interval of k of a half-width needs"
+
 _SIZE_SLOPE = "change of k per doubling of the correlation length among spectra of one shape"
+
+HALF_WIDTHS = 0.1, 0.05, 0.02
+"""Half-widths of intervals of k for which a fit states the number of realisations."""
+
+_HALF_WIDTH = Variable("half_width", ("half_width",), "1", "half of a 95% interval of k")
 
 _BOUND = Variable("bound", ("bound",), "1", "value, its standard error, ends of its 95% interval")
 
@@ -92,9 +101,14 @@ class SweepFit:
     in_range: NDArray[np.bool_] = variable("amplitude is in the fit", "1", AMPLITUDE)
     n_realisation: Counts = variable("realisations with a value in the range", "1", SPECTRUM)
     n_failed: Counts = variable("simulations without a value in the range", "1", SPECTRUM)
-    midpoint_largest: Array = variable("largest deviation of a midpoint in standard errors", "1")
+    n_needed: Array = variable(_NEEDED, "1", SPECTRUM, _HALF_WIDTH.name)
+    pooled_n_needed: Array = variable(_NEEDED, "1", _HALF_WIDTH.name)
+    """By 1/sqrt(n) from the present intervals, for each of :data:`HALF_WIDTHS`."""
+    law_exponent: Array = variable(_LAW_EXPONENT, "1", SPECTRUM)
+    pooled_law_exponent: Array = variable(_LAW_EXPONENT, "1")
+    midpoint_largest: Array = variable("least likely deviation of a midpoint, in errors", "1")
     midpoint_probability: Array = variable("probability of that deviation among all cells", "1")
-    """By Student's t, with Bonferroni's correction for the number of cells in the range."""
+    """By Student's t, if the cells in the range are independent."""
     size_slope: Estimate = variable(_SIZE_SLOPE, "1", AMPLITUDE)
     pooled_size_slope: Estimate = variable(_SIZE_SLOPE, "1")
     k_0: Estimate = variable("k of weak disorder in the infinite contact, by the law", "1")
@@ -109,6 +123,7 @@ def fit_columns(fit: SweepFit) -> Iterator[tuple[Variable, NDArray[Any]]]:
     results, `cell_` means over realisations and `from_force_` the experimenter's estimates.
     """
     yield _BOUND, np.array([item.name for item in fields(Estimate)])
+    yield _HALF_WIDTH, np.array(HALF_WIDTHS)
     for item, values in _columns(fit.table):
         if REALISATION not in item.dims and values is not None:
             yield item, values

@@ -28,20 +28,21 @@ _ROUND_OFF = 1e-5
 
 STEADY_DEFINITION = (
     "w_appr and w_retr are means of the apparent work of adhesion, <a G> / <a> with the mean over "
-    "the front, over the steady states of a branch. A state is steady once every site of the "
-    "front has travelled at least one correlation length of w_loc since its branch began, so that "
-    "the start and the transient after reversal are left out. Both branches are averaged over the "
-    "same window of mean radii, the overlap of the ranges of their steady states; under loads that "
-    "turn several times a branch is one way without a turn. All states of "
-    f"the load schedule in it have equal weight; each branch needs at least {FEWEST_STATES}. An "
-    "experimenter's estimate is the work of adhesion of the JKR curve F = a^3 - sqrt(6 w a^3) "
-    "(reduced units) that fits force against mean radius best, by least squares of the force "
-    "over the same states. "
-    "The standard errors are those of the means over the states of one realisation. States closer "
-    "than a correlation length, or three times the rms deviation of the front from its mean radius "
-    "where that is larger, count as one. The standard error of the hysteresis of a sphere is that "
-    "of the differences between each state of the approach and the state of the retraction with "
-    "the closest mean radius: variations that both branches share do not add to it."
+    "the front, over the steady states of a branch. A state is steady if every site of the front "
+    "has travelled at least one correlation length of w_loc since the branch began; this leaves "
+    "out the start and the transient after reversal. An approach begins at first contact, so that "
+    "the jump into contact counts as travel. Both branches are averaged over the same window of "
+    "mean radii, the overlap of the ranges of their steady states. Under loads that turn several "
+    "times a branch is a part of the loop without a turn. All states of the load schedule in the "
+    f"window have equal weight; each branch needs at least {FEWEST_STATES}. An experimenter's "
+    "estimate is the work of adhesion of the JKR curve F = a^3 - sqrt(6 w a^3) (reduced units) "
+    "that fits force against mean radius best, by least squares of the force over the same states. "
+    "Standard errors are errors of the means over the states of one realisation. States count as "
+    "independent if they are at least one distance d apart; d is the correlation length of w_loc "
+    "or three times the rms deviation of the front from its mean radius, whichever is larger. The "
+    "standard error of the hysteresis of a sphere comes from the differences between each state of "
+    "the approach and the state of the retraction with the closest mean radius: variations that "
+    "both branches share do not add to it."
 )
 """What `w_appr` and `w_retr` mean; an attribute of every file with these variables."""
 
@@ -77,14 +78,25 @@ class SteadyAdhesion(SteadyMeasures):
     sentence: str = ""
 
 
-def steady_adhesion(record: CycleRecord, correlation_length: float) -> SteadyAdhesion:
+DEEPER = "penetrate deeper or use a smaller load step"
+"""What gives a sphere more steady states, if its loads are steps."""
+
+_FURTHER = "load further or use a smaller load step"
+"""What gives a straight front more steady states."""
+
+
+def steady_adhesion(
+    record: CycleRecord, correlation_length: float, remedy: str = DEEPER
+) -> SteadyAdhesion:
     """Mean apparent work of adhesion over the steady part of each branch of a sphere.
 
     A branch is steady once every site has travelled the correlation length of w_loc (Units:
-    reduced lateral length).
+    reduced lateral length). The remedy says what gives more steady states if there are too few.
     """
     states, radius = record.states, record.states.mean_radius
-    branches, window, sentence = steady_branches(states, radius, "radii", correlation_length)
+    branches, window, sentence = steady_branches(
+        states, radius, "radii", correlation_length, remedy=remedy
+    )
     if sentence:
         return _no_value(branches, sentence)
     from_force = [_adhesion_from_force(radius[branch], states.force[branch]) for branch in branches]
@@ -103,6 +115,7 @@ def steady_branches(
     name: str,
     correlation_length: float,
     period: float = math.inf,
+    remedy: str = _FURTHER,
 ) -> tuple[Branches, tuple[float, float], str]:
     """Steady states of both branches, the window of positions that they share, and a sentence.
 
@@ -120,8 +133,7 @@ def steady_branches(
     pairs: list[Branches] = list(itertools.product(forward, back))
     branches = max(pairs, key=n_shared) if len(pairs) > 1 else pairs[0]
     approach, retraction = branches
-    deeper = "penetrate deeper" if isinstance(states, ContactState) else "load further"
-    needed = f"{FEWEST_STATES} each are needed, so {deeper} or use a smaller load step"
+    needed = f"{FEWEST_STATES} each are needed, so {remedy}"
     if min(approach.size, retraction.size) < FEWEST_STATES:
         counts = f"{approach.size} steady states in approach and {retraction.size}"
         return branches, (math.nan, math.nan), f"{counts} in retraction; {needed}"

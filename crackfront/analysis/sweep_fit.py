@@ -7,7 +7,7 @@ from dataclasses import astuple, fields
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 from scipy.special import stdtr
 
 from crackfront.analysis.estimate import (
@@ -23,7 +23,13 @@ from crackfront.analysis.estimate import (
     student_estimate,
 )
 from crackfront.analysis.law import WEAKEST, pinning_factor
-from crackfront.analysis.result import CellEstimates, ForceDifference, LawEstimates, SweepFit
+from crackfront.analysis.result import (
+    HALF_WIDTHS,
+    CellEstimates,
+    ForceDifference,
+    LawEstimates,
+    SweepFit,
+)
 from crackfront.analysis.sweep_law import SweepLaw, law_departure
 from crackfront.analysis.table import SweepTable
 from crackfront.core.adhesion import FieldKind
@@ -40,29 +46,32 @@ _SAME_SIZE = 1e-6
 
 FIT_DEFINITION = (
     "k of one simulation is (w_retr - w_appr) / (2 e_el) with e_el measured on its tile. k of a "
-    "spectrum is the mean over the amplitudes in the range, each the mean over its realisations, "
-    "with equal weights of the amplitudes: k depends on disorder and size, so that its average "
-    "over a range depends on the weights. Equal weights are the same for every spectrum, whatever "
-    "the noise; weights from the scatter of few realisations would differ. The pooled k is the "
-    "mean of the spectra's. The ratio of sums, sum of hysteresis over sum of 2 e_el, weighs each "
-    "amplitude by its e_el; where the two differ, k is no constant. The exponent is the slope of "
-    "log mean hysteresis in log w_rms (measured), the disorder slope that of mean k in log2 w_rms, "
-    "both by least squares with equal weights, pooled with one intercept a spectrum. The midpoint "
-    "slope m in w_int - (w_retr + w_appr)/2 = m e_el (by the law 1 for roughness, 0 for a chemical "
-    "field) is a ratio of sums, the best estimator for noise whose variance grows with w_rms^2. "
-    "A cell of one realisation among others of several has no part in either slope, whose "
-    "interval would lack its scatter. The size slope is that of k in log2 of the correlation "
-    "length among spectra of one shape (equal roll_off / short_cutoff and Hurst exponent; of "
-    "straight fronts also equal springs in correlation lengths), with one intercept a shape. The "
-    "law's k is that of the straight front at the measured w_rms and at "
-    "g, the length of the springs that hold the front (of a sphere those of the smooth contact of "
-    "the radius in the middle of the steady window) over the Larkin length; the law was not "
-    "fitted to spheres. k of the infinite contact is the measured one times what the law's k gains "
-    "from g to infinity. Intervals are 95%, of Student's t with the bootstrap's standard error: "
-    "realisations of a spectrum are resampled, each with all its amplitudes because these share "
-    "their noise, spectra independently of each other; percentiles of the bootstrap would be far "
-    "too narrow for the few realisations there are. They cover the scatter between realisations, "
-    "not the differences between spectra."
+    "spectrum is the mean over the amplitudes in the range, with equal weights; k of an amplitude "
+    "is the mean over its realisations. k depends on disorder and size, so that an average over "
+    "amplitudes depends on their weights: equal ones are the same for every spectrum, whatever the "
+    "noise. The pooled k is the mean over the spectra. The ratio of sums, sum of hysteresis over "
+    "sum of 2 e_el, weighs each amplitude by its e_el; where it differs from k, k is not constant. "
+    "The exponent is the slope of log mean hysteresis in log w_rms (measured); the exponent of the "
+    "law is the slope of 2 k e_el with the law's k at the same amplitudes. The disorder slope is "
+    "the slope of mean k in log2 w_rms. Slopes are by least squares with equal weights, pooled "
+    "with one intercept a spectrum. A cell with one realisation, where others have several, is "
+    "left out of both slopes, because it lacks a scatter. The midpoint slope m in w_int - (w_retr "
+    "+ w_appr)/2 = m e_el (by the law 1 for roughness, 0 for a chemical field) is a ratio of sums, "
+    "the best estimator for noise whose variance grows with w_rms^2. The size slope is the slope "
+    "of k in log2 of the correlation length among spectra of one shape, with one intercept a "
+    "shape; a shape has equal roll_off / short_cutoff and Hurst exponent, and for straight fronts "
+    "equal springs in correlation lengths. The law's k is k of a straight front at the measured "
+    "w_rms and size g, the length of its springs over the Larkin length. A sphere has the springs "
+    "of the smooth contact with the radius in the middle of the steady window; the law was not "
+    "fitted to spheres. k of the infinite contact is the measured k times the ratio of the law's k "
+    "at infinite g and at g. Intervals are 95%, by Student's t with the standard error of a "
+    "bootstrap: realisations of a spectrum are resampled, each with all its amplitudes because "
+    "these share their noise, and spectra are independent. Percentiles of the bootstrap would be "
+    "far too narrow for so few realisations. The intervals cover the scatter between realisations, "
+    "not the differences between spectra. The realisations that an interval of some half-width "
+    "needs follow from the present interval by 1/sqrt(n), if further realisations scatter as these "
+    "do; numerical bias stays. The probability of the midpoint's least likely deviation is the "
+    "probability that any of all cells deviates as much, by Student's t, if cells are independent."
 )
 """What the numbers of a fit mean; an attribute of every file with them."""
 
@@ -128,11 +137,15 @@ def fit_sweep(
     freedom = n_realisation - 1
     parts, weights = _fit_spectra(chosen, freedom, n_bootstrap, seed, watched)
     spectra, shares = LawEstimates(*parts), ratio(weights, np.sum(weights, axis=1, keepdims=True))
-    pooled = [combination(part, freedom, share) for part, share in zip(parts, shares, strict=True)]
+    pooled_laws = LawEstimates(
+        *(combination(part, freedom, share) for part, share in zip(parts, shares, strict=True))
+    )
     law = SweepLaw(table, kind, uncorrelated)
     cells = _cell_estimates(samples, 1.0 if kind == "roughness" else 0.0, law)
     n_large, departure = law_departure(cells.factor, cells.law_factor, cells.size)
     largest, probability = _largest_deviation(cells, in_range)
+    law_exponent = _law_exponents(cells, in_range)
+    by_name = dict(zip([item.name for item in fields(LawEstimates)], shares, strict=True))
     return SweepFit(
         table=table,
         kind=kind,
@@ -146,9 +159,13 @@ def fit_sweep(
         n_failed=np.count_nonzero(~np.isfinite(chosen.factor), axis=(1, 2)),
         cells=cells,
         spectra=spectra,
-        pooled=LawEstimates(*pooled),
+        pooled=pooled_laws,
         size_slope=_size_slopes(table, cells),
         pooled_size_slope=_size_slope(table, spectra.factor, freedom),
+        n_needed=_needed_realisations(spectra.factor, n_realisation),
+        pooled_n_needed=_needed_realisations(pooled_laws.factor, np.max(n_realisation)),
+        law_exponent=law_exponent,
+        pooled_law_exponent=_weighted_mean(law_exponent, by_name["exponent"]),
         midpoint_largest=largest,
         midpoint_probability=probability,
         from_force=_force_difference(table, in_range),
@@ -280,8 +297,40 @@ def _largest_deviation(cells: CellEstimates, in_range: NDArray[np.bool_]) -> tup
         return np.array(np.nan), np.array(np.nan)
     scores = np.abs(deviation.value[tested] / deviation.standard_error[tested])
     chances = 2 * stdtr(freedom[tested], -scores)
-    most = np.argmax(scores)
-    return np.asarray(scores[most]), np.asarray(min(chances[most] * scores.size, 1.0))
+    least = np.argmin(chances)
+    # That any of so many independent cells is as unlikely: 1 - (1 - chance)^n.
+    probability = -np.expm1(scores.size * np.log1p(-chances[least]))
+    return np.asarray(scores[least]), np.asarray(probability)
+
+
+def _needed_realisations(factor: Estimate, n_realisation: ArrayLike) -> Array:
+    """Realisations for intervals of k of :data:`HALF_WIDTHS`, along the last axis.
+
+    Intervals narrow as 1 / sqrt(n); the present number where they are narrow enough already.
+    """
+    half_width = np.asarray(factor.high - factor.low)[..., None] / 2
+    times = np.maximum((half_width / np.array(HALF_WIDTHS)) ** 2, 1.0)
+    return np.asarray(np.ceil(np.asarray(n_realisation)[..., None] * times))
+
+
+def _law_exponents(cells: CellEstimates, in_range: NDArray[np.bool_]) -> Array:
+    """Exponents of the hysteresis by the law in w_rms, (n_spectrum,), as those that are measured.
+
+    The amplitudes are the same: those with a positive mean hysteresis, and with several
+    realisations if others have them.
+    """
+    most = np.max(cells.count[:, in_range], axis=1, keepdims=True)
+    sloped = in_range & (cells.count >= np.minimum(2, most)) & (cells.hysteresis.value > 0)
+    hysteresis = cells.law_factor.value * cells.e_el
+    sloped &= hysteresis > 0
+    logarithm = np.log2(hysteresis, where=sloped, out=np.full(sloped.shape, np.nan))
+    return slope(np.log2(cells.w_rms), logarithm)[0]
+
+
+def _weighted_mean(values: Array, weights: Array) -> Array:
+    """Mean of the values that are not NaN."""
+    weights = np.where(np.isfinite(values), weights, 0.0)
+    return ratio(finite_sum(weights * values), np.sum(weights))
 
 
 def _size_slopes(table: SweepTable, cells: CellEstimates) -> Estimate:

@@ -82,8 +82,12 @@ class SweepTable:
     w_rms: Array = variable("measured rms of the local work of adhesion", ADHESION, *PLACE)
     w_appr: Array = variable("work of adhesion in approach", ADHESION, *PLACE)
     w_retr: Array = variable("work of adhesion in retraction", ADHESION, *PLACE)
-    w_appr_from_force: Array = variable("that of a JKR fit of the approach", ADHESION, *PLACE)
-    w_retr_from_force: Array = variable("that of a JKR fit of the retraction", ADHESION, *PLACE)
+    w_appr_from_force: Array = variable(
+        "work of adhesion by a JKR fit of the approach", ADHESION, *PLACE
+    )
+    w_retr_from_force: Array = variable(
+        "work of adhesion by a JKR fit of the retraction", ADHESION, *PLACE
+    )
     w_appr_numerical_error: Array = variable("expected error of w_appr", ADHESION, *PLACE)
     w_retr_numerical_error: Array = variable("expected error of w_retr", ADHESION, *PLACE)
     contact_radius: Array = variable("middle of the steady window; else NaN", LATERAL, *PLACE)

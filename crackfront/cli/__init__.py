@@ -28,7 +28,7 @@ from crackfront.cli.sweep_commands import plan, simulate, status
 from crackfront.sweep.parallel import stopping_as_ctrl_c
 
 
-class _RefusalError(click.ClickException):
+class _InputError(click.ClickException):
     """Input that cannot be used."""
 
     exit_code = 2
@@ -60,7 +60,7 @@ class Commands(click.Group):
                 raise click.ClickException(str(error)) from error
             raise
         except (OSError, ValueError) as error:
-            raise _RefusalError(_sentence(error)) from error
+            raise _InputError(_sentence(error)) from error
 
 
 class _Sections(Commands):

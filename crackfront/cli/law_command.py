@@ -65,32 +65,32 @@ def law(
     """Print the factor k by the law that was measured on straight fronts.
 
     Give --w-rms and --g for a straight front on springs, or --spectrum, --elastic-energy and
-    --contact-radius for a sphere, whose edge is held as such a front is. Works of adhesion are
-    w_int - e_el -+ k e_el.
+    --contact-radius for a sphere, whose edge the contact restores as springs do. Works of adhesion
+    are w_int - e_el -+ k e_el.
     """
     from crackfront.analysis.law import pinning_factor, shipped_law, spectral_breadth
     from crackfront.analysis.law_spheres import sphere_factors
 
     front, sphere = (w_rms, g), (spectrum, elastic_energy, contact_radius)
-    given_front = any(item is not None for item in (*front, breadth))
-    if given_front and any(item is not None for item in sphere):
+    names_front = any(item is not None for item in (*front, breadth))
+    if names_front and any(item is not None for item in sphere):
         raise ValueError(
             f"options of a front ({_FRONT}) and a sphere ({_SPHERE}) are mixed; name either of them"
         )
     if w_rms is not None and g is not None:
         factor = pinning_factor(w_rms, g, field, breadth)
-        # JSON has no infinity.
-        place: dict[str, Any] = {"w_rms": w_rms, "g": g if math.isfinite(g) else "inf"}
-        place |= {} if breadth is None else {"breadth": breadth}
+        # JSON lacks infinity.
+        inputs: dict[str, Any] = {"w_rms": w_rms, "g": g if math.isfinite(g) else "inf"}
+        inputs |= {} if breadth is None else {"breadth": breadth}
         size, shape = g, breadth
-        entries = _entries(factor.factor, factor, factor, place, factor.warning)
+        entries = _entries(factor.factor, factor, factor, inputs, factor.warning)
     elif spectrum is not None and elastic_energy is not None and contact_radius is not None:
         factors = sphere_factors(field, _shape(spectrum), elastic_energy, contact_radius)
         size, shape = factors.size, spectral_breadth(field, _shape(spectrum))
-        place = {"w_rms": 2 * math.sqrt(elastic_energy), "l_kappa": factors.spring}
-        place |= {"larkin_length": factors.larkin_length, "g": factors.size}
+        inputs = {"w_rms": 2 * math.sqrt(elastic_energy), "l_kappa": factors.spring}
+        inputs |= {"larkin_length": factors.larkin_length, "g": factors.size}
         entries = _entries(
-            factors.both, factors.approach, factors.retraction, place, factors.warning
+            factors.both, factors.approach, factors.retraction, inputs, factors.warning
         )
     else:
         raise ValueError(f"the options are incomplete; name {_FRONT}, or else {_SPHERE}")
@@ -106,7 +106,7 @@ def _entries(
     k: Estimate[float],
     appr: PinningFactor,
     retr: PinningFactor,
-    place: dict[str, Any],
+    inputs: dict[str, Any],
     warning: str,
 ) -> dict[str, Any]:
     """What is known of k and of its branches at a disorder and a size, for JSON."""
@@ -117,7 +117,7 @@ def _entries(
         "k_high": k.high,
         "k_appr": appr.factor.value,
         "k_retr": retr.factor.value,
-        **place,
+        **inputs,
         **errors,
         "negative_share": appr.negative_share,
         "warning": warning,
@@ -156,7 +156,7 @@ def _shape(text: str) -> SelfAffineSpectrum:
 
     try:
         numbers = [float(part) for part in text.split(",")]
-        if len(numbers) == 1:  # flat, so that the Hurst exponent has no effect
+        if len(numbers) == 1:  # flat, whatever the Hurst exponent
             numbers = [numbers[0], numbers[0], 1.0]
         short_cutoff, roll_off, hurst = numbers
     except ValueError as error:

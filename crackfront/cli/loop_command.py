@@ -18,7 +18,7 @@ from crackfront.cli.option_types import (
     option_name,
     options_of,
 )
-from crackfront.cli.output_files import check_overwriting, check_writable
+from crackfront.cli.output_files import check_overwriting, check_replaced_page, check_writable
 from crackfront.core.bounds import Range
 from crackfront.measured.options import (
     ReadingOptions,
@@ -93,6 +93,16 @@ def _window(
 )
 @click.option("--stiffness", callback=_in_si("N/m"), help="Stiffness of the machine, as in 200N/m.")
 @click.option("--window", callback=_window, help="Contact radii to average over, as in 50um:150um.")
+@click.option("--loop", type=click.IntRange(min=1), help="Which of several loops, from 1.")
+@click.option(
+    "--segment", type=click.Choice(("approach", "retract")), help="Branch to evaluate alone."
+)
+@click.option(
+    "--invert",
+    type=click.Choice(("force", "displacement")),
+    multiple=True,
+    help="Column with the opposite sign, as a force that is positive if it pulls.",
+)
 @click.option("--force", help="Heading of the column of the force.")
 @click.option("--force-unit", help="Unit of the force, as in mN.")
 @click.option("--contact-radius", help="Heading of the column of the radius.")
@@ -112,6 +122,7 @@ def _window(
     help="w_int of the prediction, as in 63mJ/m2.",
 )
 @click.option("--figure", type=FILE, help="Figure of the loop; without suffix PDF and PNG.")
+@click.option("--report", type=FILE, help="Page of HTML to send: numbers, reservations and figure.")
 @as_json
 @click.pass_context
 def loop(
@@ -124,6 +135,7 @@ def loop(
     scans: tuple[Path, ...],
     work_of_adhesion: float | None,
     figure: Path | None,
+    report: Path | None,
     as_json: bool,
     **options: Any,
 ) -> None:
@@ -145,9 +157,10 @@ def loop(
     reading = _reading(scans, options)
     rig = {name: options[name] for name in options if name not in ReadingOptions.model_fields}
     check_needed_option(context, "modulus", "poisson")
-    check_overwriting([path, *scans], {"--figure": figure})
-    if figure is not None:
-        check_writable(figure.parent)
+    check_overwriting([path, *scans], {"--figure": figure, "--report": report})
+    check_replaced_page("--report", report)
+    for output in filter(None, (figure, report)):
+        check_writable(output.parent)
     contact_modulus = None if modulus is None else modulus / (1 - poisson**2)
     if is_netcdf(path):
         if names := [name for name, value in rig.items() if value]:
@@ -171,6 +184,12 @@ def loop(
 
         for file in save_figure(loop_figure(result, prediction), figure):
             click.echo(f"figure: {file}", err=as_json)
+    if report is not None:
+        from crackfront.measured.loops.loop_report import loop_report
+        from crackfront.simulate.storage import write_text
+
+        write_text(report, loop_report(result, prediction, path.name))
+        click.echo(f"report: {report}", err=as_json)
     if failure is not None:
         raise failure
 
@@ -190,7 +209,8 @@ def _measured(
 ) -> MeasuredLoop:
     """Loop of a table, with the options of the rig and of the columns."""
     from crackfront.measured.loops.analysis import analyse_loop
-    from crackfront.measured.loops.recording import read_recording
+    from crackfront.measured.loops.loop_choice import chosen_loop
+    from crackfront.measured.loops.loop_table import read_recording
     from crackfront.measured.loops.rig import Rig
 
     heads = {name: options[option] for name, option in _COLUMNS.items() if options[option]}
@@ -198,8 +218,9 @@ def _measured(
     recording = read_recording(path, heads, units)
     if radius is None:
         raise ValueError(f"{path} does not state the sphere; give its --radius, as in 1.25mm")
-    rig_options = ("modulus_error", "radius_error", "stiffness", "window")
+    rig_options = ("modulus_error", "radius_error", "stiffness", "window", "segment")
     rig = Rig(radius, contact_modulus, **{name: options[name] for name in rig_options})
+    recording = chosen_loop(recording.inverted(options["invert"]), options["loop"])
     return analyse_loop(recording, rig)
 
 
@@ -250,7 +271,10 @@ def _prediction(
     from crackfront.measured.predict import predict
 
     scales = Scales(loop.sphere_radius, work_of_adhesion, loop.contact_modulus.value)
-    return predict(scans, scales, **reading)
+    prediction = predict(scans, scales, **reading)
+    if not prediction.applies:
+        raise ValueError(f"the theory does not apply: {prediction.reason}")
+    return prediction
 
 
 def _print(loop: MeasuredLoop, prediction: Prediction | None, *, as_json: bool) -> None:

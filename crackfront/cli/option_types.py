@@ -48,6 +48,21 @@ class Number(click.FloatRange):
         return number
 
 
+class Numbers(click.ParamType):
+    """Numbers within bounds, separated by commas."""
+
+    name = "numbers"
+
+    def __init__(self, bounds: Range) -> None:
+        self._number = Number(bounds)
+
+    def convert(
+        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
+    ) -> tuple[float, ...]:
+        """The numbers of a text."""
+        return tuple(self._number.convert(part, param, ctx) for part in value.split(","))
+
+
 def whole(bounds: Range) -> click.IntRange:
     """Type of a parameter that is a whole number within bounds."""
     return click.IntRange(int(bounds.least), int(bounds.most))
@@ -84,21 +99,21 @@ def options_of(record: type[Options], *, required: bool = False) -> Callable[[Co
 
 def check_needed_option(context: click.Context, needed: str, *names: str) -> None:
     """Raise ValueError if an option is given without another one that it needs."""
-    if not context.params[needed] and (given := _given(context, names)):
-        raise ValueError(f"{given} has an effect only with {option_name(needed)}")
+    if not context.params[needed] and (option := _first_set(context, names)):
+        raise ValueError(f"{option} has an effect only with {option_name(needed)}")
 
 
 def check_together(context: click.Context, decider: str, *names: str) -> None:
     """Raise ValueError if an option is given with another one that leaves it without effect."""
-    if context.params[decider] and (given := _given(context, names)):
-        raise ValueError(f"{given} has no effect with {option_name(decider)}; drop one")
+    if context.params[decider] and (option := _first_set(context, names)):
+        raise ValueError(f"{option} has no effect with {option_name(decider)}; drop one")
 
 
-def _given(context: click.Context, names: Iterable[str]) -> str:
-    """The first of some options that a user gives; empty if none is given."""
+def _first_set(context: click.Context, names: Iterable[str]) -> str:
+    """The first of some options that the user has set; empty if there is none."""
     default = ParameterSource.DEFAULT
-    given = (name for name in names if context.get_parameter_source(name) is not default)
-    return next(map(option_name, given), "")
+    names_set = (name for name in names if context.get_parameter_source(name) is not default)
+    return next(map(option_name, names_set), "")
 
 
 def option_name(name: str) -> str:

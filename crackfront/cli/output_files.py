@@ -47,10 +47,20 @@ def check_overwriting(inputs: Iterable[Path], outputs: Mapping[str, Path | None]
 
 def check_replaced_table(option: str, path: Path | None, first: str) -> None:
     """Raise ValueError if a file exists that is not a table with this first column."""
+    _check_beginning(option, path, first)
+
+
+def check_replaced_page(option: str, path: Path | None) -> None:
+    """Raise ValueError if a file exists that is not a page of HTML as crackfront writes it."""
+    _check_beginning(option, path, "<!doctype html>")
+
+
+def _check_beginning(option: str, path: Path | None, text: str) -> None:
+    """Raise ValueError if a file exists that does not begin with a text."""
     if path is None or not path.is_file():
         return
     with path.open("rb") as file:
-        if file.read(len(first)) != first.encode():
+        if file.read(len(text)) != text.encode():
             raise _foreign(option, path)
 
 

@@ -64,6 +64,7 @@ def fit(configuration: Path, output: Path | None, as_json: bool) -> None:
     fitted = _fitted(sweep, store)
     forget_sums(store.folder)
     request = fit_request(sweep)
+    store.keep_configuration(origin.configuration)
     write_request(store.folder, request)
     paths = write_fit(store.folder, fitted, request.digest, origin)
     if as_json:

@@ -23,6 +23,9 @@ if TYPE_CHECKING:
     from crackfront.measured.samples.sample import Sample
     from crackfront.measured.samples.sample_results import SampleResult
 
+_FORMULA = ("=", "+", "-", "@", "\t", "\r")
+"""Signs that begin a formula in a spreadsheet."""
+
 
 @click.command(
     epilog=examples(
@@ -51,7 +54,7 @@ if TYPE_CHECKING:
     "--quantity",
     type=click.Choice(["hysteresis", "w_appr", "w_retr", "e_el", "pull_off_force"]),
     default="hysteresis",
-    help="What the figure shows.",
+    help="What is printed for each sample, and what the figure shows.",
 )
 @click.option("--strict", is_flag=True, help="Exit with 3 if there are reservations.")
 @click.pass_context
@@ -80,7 +83,7 @@ def samples(
     """
     from crackfront.measured.samples.sample import read_samples
 
-    check_together(context, "no_figure", "figure", "quantity")
+    check_together(context, "no_figure", "figure")
     check_overwriting([path], {"--csv": table, "--figure": figure})
     check_replaced_table("--csv", table, "sample")
     stem = Path("results/samples", path.stem)
@@ -88,7 +91,9 @@ def samples(
     series = read_samples(path, options)
     if not no_figure:
         check_writable((figure or stem).parent)
-    results = write_samples(table, series, "sample")
+    if further := list(dict.fromkeys(name for sample in series for name in sample.further)):
+        click.echo(f"copied to the results without being used: {', '.join(further)}", err=True)
+    results = write_samples(table, series, "sample", quantity)
     refused = [result.sample.name for result in results if result.outcome == "refused"]
     if refused:
         click.echo(f"without a value: {', '.join(refused)}; the table states the reasons", err=True)
@@ -102,8 +107,13 @@ def samples(
     context.exit(max(exit_code(result.outcome, strict) for result in results))
 
 
-def write_samples(path: Path, samples: Sequence[Sample], first: str) -> list[SampleResult]:
-    """Write a table with a row for each sample, as soon as it is known; - is standard output."""
+def write_samples(
+    path: Path, samples: Sequence[Sample], first: str, quantity: str = "hysteresis"
+) -> list[SampleResult]:
+    """Write a table with a row for each sample, as soon as it is known; - is standard output.
+
+    The quantity of every sample is printed.
+    """
     from crackfront.measured.samples.sample_results import predicted_samples
     from crackfront.simulate.storage import check_regular_file, write_text
 
@@ -114,12 +124,12 @@ def write_samples(path: Path, samples: Sequence[Sample], first: str) -> list[Sam
         check_writable(path.parent)
     text = ""
     for result in predicted_samples(samples):
-        click.echo(_line(result), err=is_printed)
+        click.echo(_line(result, quantity), err=is_printed)
         results.append(result)
         row = {first: result.row["sample"]} | result.row
         if first != "sample":
             del row["sample"], row["group"]
-        rows.append(row)
+        rows.append({_as_text(name): _as_text(cell) for name, cell in row.items()})
         # After every sample, as each takes seconds: an interruption keeps what was read.
         stream = io.StringIO()
         table = csv.DictWriter(stream, dict.fromkeys(name for row in rows for name in row))
@@ -132,14 +142,29 @@ def write_samples(path: Path, samples: Sequence[Sample], first: str) -> list[Sam
     return results
 
 
-def _line(result: SampleResult) -> str:
-    """What came of a sample."""
+def _as_text(cell: Any) -> Any:
+    """A cell that spreadsheets do not take for a formula."""
+    from crackfront.measured.tables.number_cells import is_number
+
+    is_formula = isinstance(cell, str) and cell.startswith(_FORMULA) and not is_number(cell)
+    return f"'{cell}" if is_formula else cell
+
+
+def _line(result: SampleResult, quantity: str) -> str:
+    """What came of a sample: the quantity, and why there is none or it is in doubt."""
     from crackfront.measured.prediction.prediction_texts import ENERGY, estimate_text
 
+    row = result.row
+    reason = row.get("failed") or row.get("undecided") or ""
+    if result.outcome == "refused":
+        reason = row["remarks"]
+    outcome = f"{result.outcome}: {reason}" if reason else result.outcome
     if result.prediction is None:
-        return f"{result.sample.name}: {result.outcome}"
-    hysteresis = estimate_text(ENERGY, result.prediction.hysteresis)
-    return f"{result.sample.name}: hysteresis {hysteresis}; {result.outcome}"
+        return f"{result.sample.name}: {outcome}"
+    unit = "N" if quantity == "pull_off_force" else ENERGY
+    value = estimate_text(unit, getattr(result.prediction, quantity))
+    least = "at least " if quantity == "hysteresis" and result.prediction.at_least else ""
+    return f"{result.sample.name}: {quantity.replace('_', ' ')} {least}{value}; {outcome}"
 
 
 def exit_code(outcome: str, strict: bool) -> int:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -23,6 +24,7 @@ from crackfront.cli.option_types import (
 from crackfront.cli.output_files import (
     check_overwriting,
     check_replaced_netcdf,
+    check_replaced_page,
     check_replaced_table,
     check_writable,
 )
@@ -45,11 +47,10 @@ from crackfront.measured.options import (
 if TYPE_CHECKING:
     from crackfront.core.units import Scales
     from crackfront.measured.prediction.prediction import Prediction
+    from crackfront.measured.prediction.remarks import Outcome
     from crackfront.measured.prediction.simulated_prediction import Simulated
     from crackfront.measured.spectrum.measured_surface import MeasuredSurface
     from crackfront.measured.spectrum.stated import Surface
-
-Say = Callable[[str], None]
 
 
 def _listed(
@@ -120,6 +121,9 @@ def _scans(*, required: bool) -> Callable[[Command], Command]:
     help="Treat each scan as a sample, and write a row for it; - prints the rows.",
 )
 @click.option("--long", "is_long", is_flag=True, help="Print all results instead of one page.")
+@click.option(
+    "--report", type=FILE, help="Page of HTML to send: numbers, reservations, figure and origin."
+)
 @click.option("--strict", is_flag=True, help="Exit with 3 if there are reservations.")
 @click.pass_context
 def predict(
@@ -127,15 +131,7 @@ def predict(
     /,
     scans: tuple[Path, ...],
     psd: Path | None,
-    as_json: bool,
-    simulate: bool,
-    realisations: int,
-    seed: int,
-    figure: Path | None,
-    panel: str | None,
-    no_figure: bool,
     table: Path | None,
-    is_long: bool,
     strict: bool,
     **options: Any,
 ) -> None:
@@ -153,46 +149,118 @@ def predict(
     condition. With --csv the code is the largest of all samples; a scan that cannot be used counts
     as 4.
     """
-    from crackfront.measured.page.texts import machine_readable, report_text
-    from crackfront.measured.prediction.prediction import check_and_predict
-
     scales = _scales(options)
     theory = checked_options(PredictionOptions, options, "--")
     name = _origin(scans, psd, options)
+    _check_outputs(context, scans if psd is None else (psd,))
+    if table is not None:
+        outcomes = _write_rows(table, scans, options, scales, theory)
+        context.exit(max(exit_code(outcome, strict) for outcome in outcomes))
+    outputs = _outputs(options, name)
+    surface: Surface = _surface(scans, options) if scans else _stated_surface(psd, options)
+    outcome = _predict(surface, scales, theory, outputs)
+    context.exit(exit_code(outcome, strict))
+
+
+@dataclass(frozen=True, slots=True)
+class _Outputs:
+    """What a prediction prints, draws, simulates and writes."""
+
+    as_json: bool
+    is_long: bool
+    figure: Path | None
+    """File or stem of the figure; None without one."""
+    panel: str | None
+    report: Path | None
+    simulations: int
+    """Number of simulations to run."""
+    seed: int
+
+    def say(self, text: str) -> None:
+        """Print a text, unless the answer is JSON."""
+        if not self.as_json:
+            click.echo(text)
+
+
+def _check_outputs(context: click.Context, inputs: tuple[Path, ...]) -> None:
+    """Raise before any work if options contradict each other, or a file would be lost."""
+    options = context.params
     check_needed_option(context, "simulate", "realisations", "seed")
     check_together(context, "no_figure", "figure", "panel")
     check_together(context, "as_json", "is_long")
-    inputs = scans if psd is None else (psd,)
-    check_overwriting(inputs, {"--csv": table, "--figure": figure})
+    table, figure, report = options["table"], options["figure"], options["report"]
+    check_overwriting(inputs, {"--csv": table, "--figure": figure, "--report": report})
     check_replaced_table("--csv", table, "scan")
-    if table is not None:
-        if as_json or simulate or is_long or panel or figure:
-            raise ValueError("--csv writes rows alone; leave out what prints, draws or simulates")
-        outcomes = _write_rows(table, scans, options, scales, theory)
-        context.exit(max(exit_code(outcome, strict) for outcome in outcomes))
-    stem = Path("results/predict", name) if figure is None else figure
-    if not no_figure:
-        check_writable(stem.parent)
-    surface: Surface = _surface(scans, options) if scans else _stated_surface(psd, options)
-    verdict, prediction = check_and_predict(surface, scales, theory)
-    outcome = None
-    say: Say = (lambda _: None) if as_json else click.echo
-    if prediction is not None:
-        say(repr(prediction))
-    if is_long or prediction is None:
-        say("\n" * is_long + report_text(surface, scales, verdict, prediction))
-    if prediction is not None and not no_figure:
-        from crackfront.measured.page.prediction_figures import prediction_figure
-        from crackfront.plots.style import save_figure
+    check_replaced_page("--report", report)
+    others = ("as_json", "simulate", "is_long", "panel", "figure", "report")
+    if table is not None and any(options[name] for name in others):
+        raise ValueError("--csv writes rows alone; leave out what prints, draws or simulates")
 
-        for path in save_figure(prediction_figure(surface, prediction, panel), stem):
-            say(f"figure: {path}")
-    if prediction is not None and simulate:
-        announce_compilation(err=as_json)
-        outcome = _simulated(prediction, scales, realisations, seed, say)
-    if as_json:
-        echo_json(machine_readable(surface, scales, verdict, prediction, outcome))
-    context.exit(exit_code(verdict.outcome, strict))
+
+def _outputs(options: Mapping[str, Any], name: str) -> _Outputs:
+    """What the options ask for, with folders that can be written; `name` is of the surface."""
+    figure = None if options["no_figure"] else options["figure"] or Path("results/predict", name)
+    for path in filter(None, (figure, options["report"])):
+        check_writable(path.parent)
+    return _Outputs(
+        as_json=options["as_json"],
+        is_long=options["is_long"],
+        figure=figure,
+        panel=options["panel"],
+        report=options["report"],
+        simulations=options["realisations"] if options["simulate"] else 0,
+        seed=options["seed"],
+    )
+
+
+def _predict(
+    surface: Surface, scales: Scales, theory: PredictionOptions, outputs: _Outputs
+) -> Outcome:
+    """Predict, and print, draw, simulate and write what is asked for; the outcome."""
+    from crackfront.measured.page.texts import machine_readable, report_text
+    from crackfront.measured.prediction.prediction import check_and_predict, not_predicted
+
+    verdict, prediction = check_and_predict(surface, scales, theory)
+    simulated = None
+    if prediction is not None:
+        outputs.say(repr(prediction))
+    if outputs.is_long or prediction is None:
+        text = report_text(surface, scales, verdict, prediction)
+        outputs.say("\n" * outputs.is_long + text)
+    if prediction is not None:
+        _draw(prediction, outputs)
+        simulated = _simulated(prediction, scales, outputs)
+    if outputs.report is not None:
+        result = not_predicted(surface, scales, verdict) if prediction is None else prediction
+        _write_report(outputs.report, result, simulated, outputs)
+    if outputs.as_json:
+        echo_json(machine_readable(surface, scales, verdict, prediction, simulated))
+    return verdict.outcome
+
+
+def _draw(prediction: Prediction, outputs: _Outputs) -> None:
+    """Write the figure of a prediction, if there is to be one."""
+    if outputs.figure is None:
+        return
+    from crackfront.measured.page.prediction_figures import prediction_figure
+    from crackfront.plots.style import save_figure
+
+    drawn = prediction_figure(prediction.surface, prediction, outputs.panel)
+    for path in save_figure(drawn, outputs.figure):
+        outputs.say(f"figure: {path}")
+
+
+def _write_report(
+    path: Path, prediction: Prediction, simulated: Simulated | None, outputs: _Outputs
+) -> None:
+    """Write the page of a prediction, or of the reasons why there is none."""
+    from crackfront.measured.page.report import prediction_report
+    from crackfront.measured.page.texts import simulation_text
+    from crackfront.simulate.storage import write_text
+
+    text = "" if simulated is None else simulation_text(simulated, prediction)
+    write_text(path, prediction_report(prediction, text, with_figure=outputs.figure is not None))
+    outputs.say(f"report: {path}")
 
 
 def _origin(scans: tuple[Path, ...], psd: Path | None, options: Mapping[str, Any]) -> str:
@@ -242,20 +310,21 @@ def _stated_surface(psd: Path | None, options: Mapping[str, Any]) -> Surface:
     return density_surface(read_psd_file(psd, checked_options(PsdOptions, options, "--")))
 
 
-def _simulated(
-    prediction: Prediction, scales: Scales, realisations: int, seed: int, say: Say
-) -> Simulated:
-    """Run the simulations of a predicted surface, and print their cost and their results."""
+def _simulated(prediction: Prediction, scales: Scales, outputs: _Outputs) -> Simulated | None:
+    """Run the simulations of a predicted surface, if any, and print their cost and results."""
+    if not outputs.simulations:
+        return None
     from crackfront.measured.page.texts import simulation_text
     from crackfront.measured.prediction.simulated_prediction import prediction_plan, simulated
 
-    plan = prediction_plan(prediction.surface, scales, realisations, seed)
+    announce_compilation(err=outputs.as_json)
+    plan = prediction_plan(prediction.surface, scales, outputs.simulations, outputs.seed)
     seconds = in_time(plan.expected_seconds)
-    about = f"simulating {counted(realisations, 'surface')}, about {seconds} ..."
-    say("\n".join(filter(None, (plan.remark, about))))
-    outcome = simulated(plan, scales)
-    say(simulation_text(outcome, prediction))
-    return outcome
+    about = f"simulating {counted(outputs.simulations, 'surface')}, about {seconds} ..."
+    outputs.say("\n".join(filter(None, (plan.remark, about))))
+    result = simulated(plan, scales)
+    outputs.say(simulation_text(result, prediction))
+    return result
 
 
 @click.command(

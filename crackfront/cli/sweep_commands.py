@@ -6,7 +6,7 @@ import sys
 import time
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import closing
-from dataclasses import astuple, dataclass
+from dataclasses import asdict, astuple, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -16,13 +16,14 @@ from crackfront.cli.answers import announce_compilation, announce_cost, echo_ans
 from crackfront.cli.option_types import (
     FILE,
     Number,
+    Numbers,
     as_json,
     examples,
     whole,
 )
 from crackfront.core.bounds import COUNT, Range
 from crackfront.core.resources import check_memory
-from crackfront.core.words import counted, in_bytes
+from crackfront.core.words import counted, in_bytes, in_time
 
 # The rest is imported where it is used, so that --help does not wait for it.
 if TYPE_CHECKING:
@@ -33,6 +34,10 @@ if TYPE_CHECKING:
     from crackfront.sweep.parallel import Ranks
     from crackfront.sweep.store import Store
     from crackfront.sweep.sweep import Shard, Sweep
+    from crackfront.sweep.sweep_cost import ErrorCost, SweepCost
+
+_ERRORS = Range(1e-9, 1.0)
+"""Numerical errors of k; the finest numerics leave far more than the least."""
 
 configuration_argument = click.argument("configuration", type=FILE)
 output_option = click.option(
@@ -42,21 +47,36 @@ output_option = click.option(
 
 @click.command(
     epilog=examples(
-        "crackfront plan config/paper.yaml", "crackfront plan config/default.yaml --json"
+        "crackfront plan config/paper.yaml",
+        "crackfront plan config/default.yaml --errors 0.1,0.03,0.01",
+        "crackfront plan config/default.yaml --json",
     )
 )
 @configuration_argument
 @output_option
 @click.option("--block", type=whole(COUNT), help="Realisations of a shard (a job).  [default: all]")
+@click.option(
+    "--errors",
+    type=Numbers(_ERRORS),
+    help="Also print the cost of the whole sweep for these numerical errors of k, as 0.03,0.01.",
+)
 @as_json
-def plan(configuration: Path, output: Path | None, block: int | None, as_json: bool) -> None:
+def plan(
+    configuration: Path,
+    output: Path | None,
+    block: int | None,
+    errors: tuple[float, ...] | None,
+    as_json: bool,
+) -> None:
     """Print what a sweep would run for each spectrum, what is stored and what the rest costs.
 
     Nothing is computed. Files that are found damaged are renamed to *.damaged, so that the workflow
     makes them again.
     """
     from crackfront.sweep.advice import expectations, steady_part_warnings
+    from crackfront.sweep.changed_keys import change_sentence
     from crackfront.sweep.run_sweep import opened
+    from crackfront.sweep.sweep_cost import error_costs
 
     sweep, store, _ = opened(configuration, output, warn)
     store.set_aside_damaged()
@@ -65,6 +85,8 @@ def plan(configuration: Path, output: Path | None, block: int | None, as_json: b
     missing = [item for inventory in progress.values() for item in inventory.missing]
     n_missing = sum(inventory.n_missing for inventory in progress.values())
     warnings = [*steady_part_warnings(sweep)]
+    prices = [*error_costs(sweep, errors or ())]
+    changed = change_sentence(store.configuration, configuration)
     content = {
         "results": store.folder,
         "spectra": [item.name for item in sweep.spectra],
@@ -77,10 +99,14 @@ def plan(configuration: Path, output: Path | None, block: int | None, as_json: b
         "unit_of_lengths": "reduced" if sweep.scales is None else "m",
         "expected": expected,
         "doubts": warnings,
-        **_costs(missing),
+        "changed": changed,
+        **asdict(_cost(missing)),
     }
-    lines = _plan_lines(sweep, store, shards, progress, expected)
-    echo_answer(content, [*lines, *warnings], as_json=as_json)
+    if prices:
+        content["errors"] = prices
+    lines = [*_plan_lines(sweep, store, shards, progress, expected)]
+    lines += [changed] if changed else []
+    echo_answer(content, [*lines, *_price_lines(prices), *warnings], as_json=as_json)
 
 
 def _plan_lines(
@@ -136,23 +162,32 @@ def _plan_lines(
     yield f"results in {store.folder}/"
 
 
-def _costs(missing: Sequence[MissingSimulations]) -> dict[str, float]:
-    """What simulations are expected to cost, under the names that machines read."""
-    from crackfront.simulate.costs import expected_cost
+def _cost(missing: Sequence[MissingSimulations]) -> SweepCost:
+    """What missing simulations are expected to cost."""
+    from crackfront.sweep.sweep_cost import sweep_cost
 
-    costs = [(expected_cost(item.first), item.realisations.size) for item in missing]
-    return {
-        "core_seconds": sum(count * cost.seconds for cost, count in costs),
-        "longest_seconds": max((cost.seconds for cost, _ in costs), default=0.0),
-        "bytes_a_rank": max((cost.memory for cost, _ in costs), default=0.0),
-    }
+    return sweep_cost((item.first, item.realisations.size) for item in missing)
+
+
+def _price_lines(prices: Sequence[ErrorCost]) -> Iterator[str]:
+    """Table of the cost of the whole sweep against the numerical error of k; empty without any."""
+    if not prices:
+        return
+    rows = []
+    for price in prices:
+        missed, cost = price.remaining_error, price.cost
+        is_reached = f"no, {missed:.2g} is left" if missed else "yes"
+        cells = in_time(cost.core_seconds), f"{cost.longest_seconds:.3g}"
+        rows.append((f"{price.error:g}", *cells, f"{cost.bytes_a_rank / 1e6:.0f}", is_reached))
+    yield "\nthe whole sweep, by the numerical error of k (numerics: error)"
+    yield from table(("error", "processor time", "longest s", "MB a rank", "reached"), rows)
 
 
 def _to_run(name: str, n_shard: int, missing: Sequence[MissingSimulations]) -> tuple[str, ...]:
     """Row of what the missing simulations of a spectrum, or of all, are expected to cost."""
-    core, longest, memory = _costs(missing).values()
-    n_missing = sum(item.realisations.size for item in missing)
-    cells = f"{core / 3600:.3g}", f"{longest:.3g}", f"{memory / 1e6:.0f}"
+    cost, n_missing = _cost(missing), sum(item.realisations.size for item in missing)
+    cells = f"{cost.core_seconds / 3600:.3g}", f"{cost.longest_seconds:.3g}"
+    cells += (f"{cost.bytes_a_rank / 1e6:.0f}",)
     return name, str(n_shard), str(n_missing), *cells
 
 
@@ -225,6 +260,7 @@ def _simulate(
 ) -> None:
     """Run what some shards lack, and derive their rows."""
     from crackfront.sweep.advice import steady_part_warnings
+    from crackfront.sweep.changed_keys import change_sentence
     from crackfront.sweep.inventory import Inventory
     from crackfront.sweep.run_sweep import opened, write_source
 
@@ -238,17 +274,18 @@ def _simulate(
         inventory = sum(inventories, Inventory())
         total = inventory.stored + inventory.n_missing
         click.echo(f"{configuration}: {inventory.stored} of {total} simulations are stored")
-        for sentence in inventory.sentences():
+        changed = change_sentence(store.configuration, configuration)
+        for sentence in filter(None, (changed, *inventory.sentences())):
             click.echo(sentence)
         if inventory.missing:
-            costs = _costs(inventory.missing)
+            cost = _cost(inventory.missing)
             busy = min(workers.n_here, inventory.n_missing)
             check_memory(
-                f"{counted(busy, 'rank')} of {in_bytes(costs['bytes_a_rank'])}",
-                costs["bytes_a_rank"] * busy,
+                f"{counted(busy, 'rank')} of {in_bytes(cost.bytes_a_rank)}",
+                cost.bytes_a_rank * busy,
                 "use fewer ranks, coarser numerics or a smaller tile",
             )
-            announce_cost(costs["core_seconds"])
+            announce_cost(cost.core_seconds)
             for sentence in steady_part_warnings(sweep):
                 warn(sentence)
         lacking = [
@@ -282,8 +319,9 @@ def run_missing(
             tqdm(total=total, unit="simulation", disable=not terminal, file=sys.stderr) as bar,
         ):
             for count, (simulation, finished) in enumerate(outcomes, start=1):
-                line = f"{simulation.label}: {finished.status}"
-                line += f", {finished.sentence or f'{finished.seconds:.2f} s'}"
+                ended = "complete" if finished.status in COMPLETE else finished.status
+                details = finished.sentence or f"{finished.seconds:.2f} s"
+                line = f"{simulation.label}: {ended}, {details}"
                 if not terminal:
                     click.echo(f"[{count}/{total}] {line}")
                 elif finished.status not in COMPLETE:

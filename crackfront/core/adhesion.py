@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Literal, get_args
 
 import numpy as np
 from scipy.fft import fft2, fftfreq, irfft2, rfft2, rfftfreq
+from scipy.special import ndtr
 
 from crackfront.core.arrays import Array
 from crackfront.core.units import CONTACT_MODULUS, WORK_OF_ADHESION
@@ -54,6 +55,24 @@ def front_stress_intensity(heights: Array, pixel: float, modulus: float = CONTAC
     kernel *= -modulus / np.sqrt(2)
     kernel *= rfft2(heights)
     return np.asarray(irfft2(kernel, s=(n_x, n_y)))
+
+
+def overlap_share(elastic_energy: float) -> float:
+    r"""Part of a front where the solids would overlap, on Gaussian roughness of an e_el.
+
+    The solids overlap where K_JKR + K is negative, which needs a K beyond -K_JKR (supplement,
+    Sec. I B). With K_JKR^2 = 2 E' w_int and the mean square 2 E' e_el of K this is the part
+
+    .. math:: \Phi\left(-\sqrt{w_{int} / e_{el}}\right)
+
+    of the normal distribution. e_el is in units of w_int.
+
+    Examples
+    --------
+    >>> f"{overlap_share(0.177):.1%}"
+    '0.9%'
+    """
+    return float(ndtr(-(elastic_energy**-0.5)))
 
 
 def half_derivative_mean_square(heights: Array, pixel: float) -> float:

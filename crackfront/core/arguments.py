@@ -47,14 +47,6 @@ def check_positive(**values: float) -> None:
             raise ValueError(f"{name} is {value}; it must be positive and finite")
 
 
-def check_fractions(**values: float) -> None:
-    """Raise if an argument is not a number, or does not lie between 0 and 1."""
-    check_numbers(**values)
-    for name, value in values.items():
-        if not 0 < value < 1:
-            raise ValueError(f"{name} is {value}; it must lie between 0 and 1")
-
-
 def nearest_name(name: str, names: Iterable[str], otherwise: str = "choose one of") -> str:
     """What to do about an unknown name: the known one that is near it, or else all of them.
 

@@ -51,6 +51,9 @@ SI = {
 }
 """Lengths from below an atom to planets, moduli from below foams to above diamond, and so on."""
 
+POISSON = Range(-0.99, 0.5)
+"""Poisson's ratios of isotropic bodies that are not infinitely compressible."""
+
 TOLERANCE = Range(1e-16, 1.0)
 """Force that may be left, relative to w_int per front length."""
 

@@ -277,16 +277,30 @@ class SelfAffineSpectrum(Spectrum):
 
 @dataclass(frozen=True, slots=True)
 class TabulatedSpectrum(Spectrum):
-    """Isotropic 2D spectrum of values at wavelengths, as of a measurement.
+    """Isotropic 2D spectrum by its values at some wavelengths, as of a measurement.
 
-    Flat above the longest wavelength, a power law between neighbours, zero below the shortest. The
-    two or more wavelengths stand from long to short (Units: length), the densities are C there
-    (Units: length**4 for heights). ValueError if numbers are not positive and finite, the
-    wavelengths do not fall, or there are not as many densities.
+    The spectrum is flat above the longest wavelength, a power law between neighbours, and zero
+    below the shortest.
+
+    Parameters
+    ----------
+    wavelengths : (n,) array_like
+        Two or more wavelengths, from long to short; stored as a tuple. (Units: length)
+    densities : (n,) array_like
+        Values of C there; stored as a tuple. (Units: length**4 for heights)
+
+    Raises
+    ------
+    TypeError
+        If one of them is not a sequence of numbers.
+    ValueError
+        If a number is not positive and finite, the wavelengths do not fall, or there are not as
+        many densities as wavelengths.
 
     Examples
     --------
-    >>> table = TabulatedSpectrum((0.5, 0.02), (1.0, (0.5 / 0.02) ** -3.6))
+    >>> wavelengths = np.array([0.5, 0.02])
+    >>> table = TabulatedSpectrum(wavelengths, (wavelengths / 0.5) ** 3.6)
     >>> fractal = SelfAffineSpectrum(short_cutoff=0.02, roll_off=0.5, hurst=0.8)
     >>> round(table.elastic_energy / fractal.elastic_energy, 12)
     1.0
@@ -301,9 +315,11 @@ class TabulatedSpectrum(Spectrum):
 
     def __post_init__(self) -> None:
         for name in ("wavelengths", "densities"):
-            for value in getattr(self, name):
+            values = _numbers(name, getattr(self, name))
+            for value in values:
                 if not (math.isfinite(value) and value > 0):
                     raise ValueError(f"{name} contain {value}; they must be positive and finite")
+            object.__setattr__(self, name, values)
         if len(self.wavelengths) < 2 or len(self.wavelengths) != len(self.densities):
             raise ValueError(
                 f"{len(self.wavelengths)} wavelengths and {len(self.densities)} densities make no "
@@ -354,3 +370,15 @@ class TabulatedSpectrum(Spectrum):
         # Where all of it is flat, the first density applies at any longer wavelength as well.
         values = (self.densities[0], *self.densities[1 : len(longer)], end)
         return TabulatedSpectrum((*longer, wavelength), values)
+
+
+def _numbers(name: str, values: ArrayLike) -> tuple[float, ...]:
+    """Numbers of an array or a sequence; TypeError if it is something else."""
+    try:
+        array = np.asarray(values, dtype=float)
+    except (TypeError, ValueError):
+        array = np.zeros((0, 0))
+    if array.ndim != 1:
+        kind = type(values).__name__
+        raise TypeError(f"{name} is a {kind}; give one sequence of numbers, as in [0.5, 0.02]")
+    return tuple(array.tolist())

@@ -18,6 +18,17 @@ CONTACT_MODULUS = 0.75
 """Contact modulus E' in reduced units."""
 
 
+def plane_strain_modulus(modulus: float, poisson: float) -> float:
+    """Contact modulus E' = E / (1 - nu^2) of a body against a rigid one (Units: as the modulus).
+
+    Examples
+    --------
+    >>> f"{plane_strain_modulus(0.7e6, poisson=0.5):.4g}"
+    '9.333e+05'
+    """
+    return modulus / (1 - poisson**2)
+
+
 @dataclass(frozen=True, slots=True)
 class Scales:
     """Values of the reduced units for one sphere, in SI or any consistent set of units.

@@ -3,5 +3,5 @@
 Data pass through the folders in the order `scan`, `density`, `spectrum`, `prediction`, `page`; each
 imports from those before it. `options` has what a user may choose, `predict` the functions of the
 library, `tile` a scan as a surface to press on, `tables` the reader of all tables, `samples` series
-of predictions, and `loops` measured loops.
+of predictions, `loops` measured loops, and `perimeters` the edge of a contact in a video.
 """

@@ -17,8 +17,8 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationEr
 from pydantic_core import ErrorDetails
 
 from crackfront.core.arguments import check_type, nearest_name
-from crackfront.core.bounds import SI, check_within
-from crackfront.core.units import Scales
+from crackfront.core.bounds import POISSON, SI, check_within
+from crackfront.core.units import Scales, plane_strain_modulus
 from crackfront.core.words import counted
 from crackfront.surfaces.written_units import is_unit, si_value
 
@@ -349,6 +349,14 @@ class PredictionOptions(Options):
     range: Length | None = None
     """Range of the attraction, as in 0.3nm; by default 0.5nm, as for van der Waals forces."""
 
+    thickness: Length | None = None
+    """Thickness of the soft body, as in 2mm, which is compared with the contact; by default a
+    half-space is assumed."""
+
+    work_of_adhesion_error: Energy | None = None
+    """Standard error of w_int, as in 3mJ/m2, which widens the intervals; by default w_int is
+    exact."""
+
 
 class PsdOptions(Options):
     """Convention of a spectral density, if its file does not state it."""
@@ -400,7 +408,7 @@ class SphereOptions(Options):
     modulus: Annotated[float, quantity("Pa", "pressure", "0.7MPa")] | None = None
     """Young's modulus, as in 0.7MPa."""
 
-    poisson: Annotated[float, Field(ge=-0.99, le=0.5)] | None = None
+    poisson: Annotated[float, Field(ge=POISSON.least, le=POISSON.most)] | None = None
     """Poisson's ratio, as in 0.5."""
 
     radius: Length | None = None
@@ -419,4 +427,4 @@ def sphere_scales(options: SphereOptions, prefix: str = "") -> Scales:
         raise ValueError(
             f"the sphere is incomplete; name all of {', '.join(names[:-1])} and {names[-1]}"
         )
-    return Scales(radius, adhesion, modulus / (1 - poisson**2))
+    return Scales(radius, adhesion, plane_strain_modulus(modulus, poisson))

@@ -13,15 +13,19 @@ from crackfront.core.arguments import check_type
 from crackfront.core.units import Scales
 from crackfront.measured.density.bands import analysed_scan
 from crackfront.measured.options import (
+    Options,
     PredictionOptions,
     PsdOptions,
     ReadingOptions,
     SelfAffineOptions,
+    SphereOptions,
     check_option_names,
     checked_options,
+    named_options,
     reading_options,
+    sphere_scales,
 )
-from crackfront.measured.prediction.prediction import Prediction, check_and_predict
+from crackfront.measured.prediction.prediction import Prediction, prediction_or_reason
 from crackfront.measured.prediction.remarks import remark_text
 from crackfront.measured.scan.library import surface_library
 from crackfront.measured.scan.psd import read_psd_file
@@ -154,58 +158,92 @@ def self_affine_surface(**numbers: Any) -> StatedSurface:
 
 def predict(
     scans: File | Iterable[File] | StatedSurface,
-    sphere: Scales,
+    sphere: Scales | None = None,
     *,
     strict: bool = False,
     **options: Any,
 ) -> Prediction:
     """Predict the adhesion of a sphere on a measured surface, by the law of k.
 
+    If the theory does not apply, the result says so: its `applies` is False, its `reason` names the
+    conditions that fail, and its numbers are NaN.
+
     Parameters
     ----------
     scans : path or list of paths, or StatedSurface
         One or several measurements of the surface, maps or lines; or a result of :func:`read_psd`
         or :func:`self_affine_surface`.
-    sphere : Scales
-        Sphere that is pressed on the surface.
+    sphere : Scales, optional
+        Sphere that is pressed on the surface; or state it as the command does, by the options
+        modulus (Young's modulus), poisson, radius and work_of_adhesion.
     strict : bool, optional
-        Whether reservations on the theory raise a ValueError.
+        Whether a theory that does not apply, or only with reservations, raises a ValueError.
     **options
         Options of :func:`read_scan`, and fields of
         :class:`~crackfront.measured.options.PredictionOptions`, as ``range="0.3nm"``: pull_off,
-        range. A list gives every scan its own channel, crop, surface, unit, height_unit, size or
-        tip_radius.
+        range, thickness, work_of_adhesion_error. A list gives every scan its own channel, crop,
+        surface, unit, height_unit, size or tip_radius.
 
     Returns
     -------
     Prediction
         e_el, k, w_appr, w_retr, pull-off forces and more, in SI units, with intervals. Printed, it
-        is a page with the most important numbers.
+        is a page with the most important numbers. `plot()` draws the forces of both branches,
+        `to_dict()` has all numbers.
 
     Raises
     ------
     ValueError
-        If a file cannot be used, or the theory does not apply.
+        If a file cannot be used, or the sphere is stated twice or incompletely.
     TypeError
         If an argument is of another type.
     OSError
         If a file cannot be opened.
+
+    Examples
+    --------
+    >>> rough = self_affine_surface(rms="20nm", roll_off="2um", hurst=0.8, short_cutoff="20nm")
+    >>> sphere = {"radius": "1.25mm", "work_of_adhesion": "63mJ/m2", "poisson": 0.5}
+    >>> series = [predict(rough, modulus=modulus, **sphere) for modulus in ("0.7MPa", "1GPa")]
+    >>> [prediction.applies for prediction in series]
+    [True, False]
+    >>> f"{1e3 * series[0].hysteresis.value:.1f} mJ/m2, {series[1].hysteresis.value} mJ/m2"
+    '2.0 mJ/m2, nan mJ/m2'
     """
-    is_stated = isinstance(scans, StatedSurface)
-    records = [PredictionOptions] if is_stated else [PredictionOptions, ReadingOptions]
+    records: list[type[Options]] = [PredictionOptions, SphereOptions]
+    if not isinstance(scans, StatedSurface):
+        records.append(ReadingOptions)
     check_option_names("predict", options, *records)
-    check_scales(sphere)
+    scales = _sphere(sphere, options)
     prediction_options = checked_options(PredictionOptions, options)
     surface: Surface = scans if isinstance(scans, StatedSurface) else _measured(scans, options)
-    verdict, prediction = check_and_predict(surface, sphere, prediction_options)
-    if prediction is None:
-        failing = map(remark_text, verdict.with_severity("fails", "undecided"))
-        raise ValueError(f"the theory does not apply: {' '.join(failing)}")
-    reservations = verdict.with_severity("undecided", "reservation")
-    if strict and reservations:
+    prediction = prediction_or_reason(surface, scales, prediction_options)
+    if strict:
+        _check_reservations(prediction)
+    return prediction
+
+
+def _sphere(sphere: Scales | None, options: dict[str, Any]) -> Scales:
+    """The sphere, from itself or from options; ValueError unless it is stated in one way."""
+    names = named_options(SphereOptions, options)
+    if sphere is None:
+        return sphere_scales(checked_options(SphereOptions, options))
+    check_scales(sphere)
+    if names:
+        raise ValueError(
+            f"{names[0]} is {options[names[0]]!r}, and a sphere is given; leave out one of them"
+        )
+    return sphere
+
+
+def _check_reservations(prediction: Prediction) -> None:
+    """Raise ValueError if the theory does not apply, or only with reservations."""
+    if not prediction.applies:
+        raise ValueError(f"the theory does not apply: {prediction.reason}")
+    reservations = prediction.verdict.with_severity("undecided", "reservation")
+    if reservations:
         sentences = " ".join(map(remark_text, reservations))
         raise ValueError(f"the theory applies with reservations: {sentences}")
-    return prediction
 
 
 def _measured(scans: File | Iterable[File], options: dict[str, Any]) -> MeasuredSurface:

@@ -6,8 +6,6 @@ Data in SI units are drawn in SI units.
 from __future__ import annotations
 
 import math
-from contextlib import AbstractContextManager, nullcontext
-from numbers import Integral
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -15,7 +13,6 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from xarray import DataArray, Dataset
 
-from crackfront.core.arguments import check_type
 from crackfront.core.arrays import Array
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.plots.axis_units import REDUCED, AxisUnits
@@ -23,13 +20,14 @@ from crackfront.plots.density_axes import draw_spectrum
 from crackfront.plots.fronts import draw_field, draw_fronts, draw_heights, draw_straight_fronts
 from crackfront.plots.instability_maps import draw_instabilities
 from crackfront.plots.loop_figures import draw_loop, draw_pinning
-from crackfront.plots.style import COLUMN, blank_figure, house_style, shown_axes
+from crackfront.plots.style import COLUMN, axes_to_draw_on, blank_figure, house_style
 from crackfront.simulate.cycle_files import cycle_record
 from crackfront.surfaces.random_surface import stated_spectrum
 from crackfront.surfaces.si_units import Labelled, in_reduced_units, stated_scales
 from crackfront.surfaces.surface_adhesion import surface_adhesion
 from crackfront.surfaces.surface_array import surface_kind
 from crackfront.surfaces.tile_measures import tile_modes
+from crackfront.validation import Count, checked_call
 
 _ORDERS = (0.0, 0.5, 1.0)
 """Orders of the derivatives whose dominant scales are drawn: heights, half-derivatives, slopes."""
@@ -41,24 +39,12 @@ _BINS_A_DECADE = 20
 """Bins of a spectrum in a decade of wavevectors."""
 
 
-def _drawing(axes: Axes | None) -> AbstractContextManager[Axes]:
-    """The user's axes as they are, or new axes in the style of the package."""
-    check_type("axes", axes, (Axes, type(None)), "one Axes of matplotlib, as axes[0] of several")
-    return shown_axes() if axes is None else nullcontext(axes)
-
-
 def _reduced(data: Labelled) -> tuple[Labelled, AxisUnits]:
     """Data in reduced units, and the units for their axes."""
     scales = stated_scales(data)
     if scales is None:
         return data, REDUCED
     return in_reduced_units(data, scales), AxisUnits(scales)
-
-
-def _check_loop(loop: object) -> None:
-    """Raise TypeError unless an argument is a dataset."""
-    remedy = "an xarray.Dataset, as run_loop returns it or crackfront cycle has written it"
-    check_type("loop", loop, Dataset, remedy)
 
 
 def _check_states(loop: Dataset, name: str) -> None:
@@ -85,6 +71,7 @@ def _fronts(loop: Dataset, name: str, site: str) -> tuple[Array, Array, NDArray[
     return loop[site].values, fronts.values, direction.values
 
 
+@checked_call
 def plot_surface(surface: DataArray, axes: Axes | None = None) -> Axes:
     """Heights, or works of adhesion, on the tile.
 
@@ -111,7 +98,7 @@ def plot_surface(surface: DataArray, axes: Axes | None = None) -> Axes:
     surface, units = _reduced(surface)
     adhesion = surface_adhesion(surface)
     x, y = surface.x.values, surface.y.values
-    with _drawing(axes) as drawn:
+    with axes_to_draw_on(axes) as drawn:
         if kind == "roughness":
             draw_heights(drawn, x, y, surface.transpose("x", "y").values, units)
         else:
@@ -120,6 +107,7 @@ def plot_surface(surface: DataArray, axes: Axes | None = None) -> Axes:
     return drawn
 
 
+@checked_call
 def plot_spectrum(surface: DataArray, axes: Axes | None = None) -> Axes:
     """Isotropic power spectrum of a rough surface, with the scales that dominate it.
 
@@ -166,11 +154,12 @@ def plot_spectrum(surface: DataArray, axes: Axes | None = None) -> Axes:
     if shape is not None and energy is not None and 0.5 < adhesion.e_el / float(energy) < 2:
         ideal = shape.with_elastic_energy(float(energy)).density(wavevector)
     rms = np.sqrt(sums[:, -1])
-    with _drawing(axes) as drawn:
+    with axes_to_draw_on(axes) as drawn:
         draw_spectrum(drawn, wavevector, density, rms, shortest, longest, ideal, units)
     return drawn
 
 
+@checked_call
 def plot_loop(loop: Dataset, axes: Axes | None = None) -> Axes:
     """Force against mean radius, with the JKR curves of both branches and of the paper.
 
@@ -195,11 +184,10 @@ def plot_loop(loop: Dataset, axes: Axes | None = None) -> Axes:
     TypeError
         If an argument is of another type.
     """
-    _check_loop(loop)
     if "pinning_force" in loop:
         states = cycle_record(loop).states
         _check_states(loop, "pinning_force")
-        with _drawing(axes) as drawn:
+        with axes_to_draw_on(axes) as drawn:
             draw_pinning(drawn, states)
         return drawn
     loop, units = _reduced(loop)
@@ -210,7 +198,7 @@ def plot_loop(loop: Dataset, axes: Axes | None = None) -> Axes:
     w_appr, w_retr, lowest, highest, energy = (float(loop.get(name, math.nan)) for name in names)
     measures = (w_appr, w_retr), (lowest, highest)
     kind = loop.attrs.get("kind", "roughness")
-    with _drawing(axes) as drawn:
+    with axes_to_draw_on(axes) as drawn:
         draw_loop(drawn, states, *measures, elastic_energy=energy, kind=kind, units=units)
     return drawn
 
@@ -223,8 +211,9 @@ def loop_figure(loop: Dataset) -> Figure:
         return figure
 
 
+@checked_call
 def plot_fronts(
-    loop: Dataset, surface: DataArray | None = None, axes: Axes | None = None, most: int = 12
+    loop: Dataset, surface: DataArray | None = None, axes: Axes | None = None, most: Count = 12
 ) -> Axes:
     """Fronts of both branches, drawn over the work of adhesion if the surface is given.
 
@@ -251,27 +240,21 @@ def plot_fronts(
     TypeError
         If an argument is of another type.
     """
-    _check_loop(loop)
-    if isinstance(surface, Axes):
-        raise TypeError("surface is an Axes of matplotlib; give axes by name, as axes=...")
     if ("radius" not in loop and "position" not in loop) or loop.sizes.get("step") == 0:
         raise ValueError(
             "the loop has no fronts; run it with fronts=True, or crackfront cycle with "
             "--record fronts"
         )
-    check_type("most", most, Integral, "a whole number")
-    if most < 1:
-        raise ValueError(f"most is {most}; draw 1 front or more")
     if "position" in loop:
         if surface is not None:
             raise ValueError("straight fronts are drawn without a surface; leave it out")
         curves = _fronts(loop, "position", "y")
-        with _drawing(axes) as drawn:
+        with axes_to_draw_on(axes) as drawn:
             draw_straight_fronts(drawn, *curves, most)
         return drawn
     loop, units = _reduced(loop)
     curves = _fronts(loop, "radius", "angle")
-    with _drawing(axes) as drawn:
+    with axes_to_draw_on(axes) as drawn:
         if surface is not None:
             _draw_pinning_field(drawn, surface, units)
         draw_fronts(drawn, *curves, most, units)
@@ -288,6 +271,7 @@ def _draw_pinning_field(axes: Axes, surface: DataArray, units: AxisUnits) -> Non
     draw_field(axes, x, y, values, float(np.mean(values)), reach, units)
 
 
+@checked_call
 def plot_instabilities(jumps: Dataset, axes: Axes | None = None) -> Axes:
     """Area that each instability of a branch swept, coloured by the dissipated energy.
 
@@ -310,7 +294,6 @@ def plot_instabilities(jumps: Dataset, axes: Axes | None = None) -> Axes:
     TypeError
         If an argument is of another type.
     """
-    check_type("jumps", jumps, Dataset, "what find_instabilities returns")
     if "before" not in jumps or "travel" not in jumps.attrs:
         raise ValueError("jumps is another dataset; give what find_instabilities returns")
     if jumps.before.size == 0:
@@ -318,6 +301,6 @@ def plot_instabilities(jumps: Dataset, axes: Axes | None = None) -> Axes:
     jumps, units = _reduced(jumps)
     fronts = jumps.before.values, jumps.after.values
     energy, travel = jumps.dissipated_energy.values, float(jumps.attrs["travel"])
-    with _drawing(axes) as drawn:
+    with axes_to_draw_on(axes) as drawn:
         draw_instabilities(drawn, jumps.angle.values, *fronts, energy, travel, units)
     return drawn

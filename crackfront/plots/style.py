@@ -9,10 +9,11 @@ import functools
 import logging
 import textwrap
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from crackfront.core.arguments import check_type
 from crackfront.simulate.storage import replace_atomically
 
 if TYPE_CHECKING:
@@ -120,6 +121,14 @@ def shown_axes() -> Iterator[Axes]:
         except BaseException:
             pyplot.close(figure)
             raise
+
+
+def axes_to_draw_on(axes: Axes | None) -> AbstractContextManager[Axes]:
+    """The user's axes as they are, or new ones in the package's style; TypeError for others."""
+    from matplotlib.axes import Axes
+
+    check_type("axes", axes, (Axes, type(None)), "one Axes of matplotlib, as axes[0] of several")
+    return shown_axes() if axes is None else nullcontext(axes)
 
 
 _DATES = {".pdf": "CreationDate", ".png": "Software", ".svg": "Date"}

@@ -14,9 +14,9 @@ file. A new kind must provide the following:
 5. The result, :class:`Averages`: the works of adhesion of a run, and the size of the fronts that
    they average.
 6. The forecast, :class:`Forecast`: the number of states, which decides the cost, and the stiffness
-   with which the edge is held, which decides k by the law.
+   with which the contact restores its edge, which decides k by the law.
 7. If a contact has a largest penetration, also :class:`Pressed`: sweeps advise to penetrate deeper.
-   If springs of a constant length hold its front, also :class:`OnSprings`: tables have the length.
+   If springs of a constant length pull its front, also :class:`OnSprings`: tables have the length.
 8. If the loads of a sweep depend on the surface, a second dataclass that derives from
    :class:`SurfaceLoads`; else a sweep has the :class:`Schedule` itself.
 9. For configurations, its keys in `LoadSection` of `sweep/sections.py`. For `run_loop` and
@@ -158,10 +158,10 @@ class Forecast(ABC):
 
     @abstractmethod
     def spring_at(self, work_of_adhesion: float) -> float:
-        """Length L_kappa of the springs that hold the front at the largest load (Units: length).
+        """Length L_kappa of the springs on the front at the largest load (Units: length).
 
-        The work of adhesion (Units: w_int) is the apparent one of a branch. ValueError if nothing
-        holds the front.
+        The work of adhesion (Units: w_int) is the apparent one of a branch. ValueError if the
+        edge is unstable.
         """
 
 
@@ -188,6 +188,25 @@ class Pressed(ABC):
         Works of adhesion of approach and retraction (Units: w_int) and the travel after which a
         branch is steady (Units: length) are expected ones. (Units: reduced vertical length)
         """
+
+    def steadier_start(
+        self, surface: RandomSurface, works: tuple[float, float], travel: float, n_state: int
+    ) -> float | None:
+        """Start that leaves so many steady states without a deeper contact, as above.
+
+        None if no start does, or the loads always begin at first contact. (Units: reduced vertical
+        length)
+        """
+        return None
+
+    def steadier_travel(
+        self, surface: RandomSurface, works: tuple[float, float], travel: float, n_state: int
+    ) -> float | None:
+        """Way from state to state that leaves so many steady ones, as above.
+
+        None if no way does, or the loads are steps. (Units: correlation length)
+        """
+        return None
 
 
 class OnSprings(ABC):

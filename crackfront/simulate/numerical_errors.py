@@ -22,8 +22,9 @@ def numerical_error(
 ) -> tuple[float, float]:
     """Standard errors (w_appr, w_retr) that the numerics leave (Units: w_int).
 
-    The size of the front, as in :mod:`crackfront.simulate.laws`, is by default the usual one, and
-    the length of the longest front that of a smooth contact (Units: reduced lateral length).
+    The size of the front, as in :mod:`crackfront.simulate.laws`, is by default the usual one. By
+    default `front_length` is the length of the longest front of a smooth contact (Units: reduced
+    lateral length).
     """
     sizes, cutoff = simulation.resolution, simulation.spectrum.short_cutoff
     if front_length is None:

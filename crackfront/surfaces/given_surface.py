@@ -5,15 +5,15 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
+from pydantic import InstanceOf, SkipValidation
 
-from crackfront.core.adhesion import FieldKind, check_kind
-from crackfront.core.arguments import check_numbers, check_type
+from crackfront.core.adhesion import FieldKind
 from crackfront.core.arrays import Array
 from crackfront.core.bounds import NUMBER, Range, check_within
-from crackfront.core.units import WORK_OF_ADHESION
+from crackfront.core.units import WORK_OF_ADHESION, Scales
 from crackfront.core.variables import LATERAL, VERTICAL
 from crackfront.simulate.labels import stated_unit
-from crackfront.surfaces.scales import Scales, check_scales, in_si
+from crackfront.surfaces.scales import in_si
 from crackfront.surfaces.surface_adhesion import (
     check_mean,
     check_real,
@@ -21,6 +21,7 @@ from crackfront.surfaces.surface_adhesion import (
 )
 from crackfront.surfaces.surface_array import UNEQUAL, spacing, surface_array
 from crackfront.surfaces.written_units import is_unit, unit_value
+from crackfront.validation import checked_call
 
 _SIDES = Range(1e-9, 1.0)
 """Sides of tiles that a sphere is pressed on. (Units: m)"""
@@ -35,13 +36,14 @@ _SI: dict[FieldKind, str] = {"roughness": "m", "chemical": "J/m^2"}
 """Unit of SI, by the kind of the values."""
 
 
+@checked_call
 def surface(
-    values: ArrayLike,
+    values: SkipValidation[ArrayLike],
     side: float | str,
     *,
     kind: FieldKind = "roughness",
     units: str | None = None,
-    sphere: Scales | None = None,
+    sphere: InstanceOf[Scales] | None = None,
 ) -> xr.DataArray:
     """A surface from an array of heights or of works of adhesion.
 
@@ -82,12 +84,11 @@ def surface(
     >>> wave = np.cos(2 * np.pi * np.arange(64) / 8)[:, None].repeat(64, axis=1)
     >>> surface(0.01 * wave, side=4.0).name
     'height'
+    >>> from crackfront import Scales
     >>> pdms = Scales(radius="1mm", work_of_adhesion="50mJ/m2", contact_modulus="1MPa")
     >>> ripples = surface(20 * wave, side="100um", units="nm", sphere=pdms)
     >>> patches = surface(1 + 0.2 * wave, side=4.0, kind="chemical", units="w_int")
     """
-    check_kind(kind)
-    check_type("units", units, (str, type(None)), "the name of a unit")
     if isinstance(values, xr.DataArray):
         values, units = _stated(values, units)
     samples = _samples(values)
@@ -118,10 +119,10 @@ def _samples(values: ArrayLike) -> Array:
 def _reduced_side(side: float | str, sphere: Scales | None) -> float:
     """Side of a tile in reduced lateral lengths."""
     if sphere is None:
-        check_numbers(side=side)
-        check_within("side", float(side), NUMBER)
-        return float(side)
-    check_scales(sphere)
+        if isinstance(side, str):
+            raise TypeError(f"side is {side!r}, which needs the sphere; give it, or a number")
+        check_within("side", side, NUMBER)
+        return side
     metres = in_si("side", side, "m")
     check_within("side", metres, _SIDES, "m")
     return metres / sphere.lateral

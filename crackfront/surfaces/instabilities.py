@@ -13,7 +13,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from crackfront.core.arguments import check_positive
 from crackfront.core.arrays import Array
 from crackfront.core.cycle.energy import dissipated_energy
 from crackfront.core.cycle.follow import Load, converged_front, follow
@@ -31,11 +30,13 @@ class Motion:
     """One step between two metastable fronts."""
 
     start: float
+    """Load of the first front, on a sphere its penetration. (Units: reduced vertical length)"""
     end: float
-    """Loads of the two, penetrations of a sphere. (Units: reduced vertical length)"""
+    """Load of the second front. (Units: as start)"""
     before: Array
+    """First front, (n_site,). (Units: reduced lateral length)"""
     after: Array
-    """The fronts, (n_site,). (Units: reduced lateral length)"""
+    """Second front, (n_site,). (Units: reduced lateral length)"""
     unstable: bool
     """Whether the front jumped, however small the step."""
 
@@ -58,9 +59,8 @@ def resolved_motion(
     further than `travel` (Units: reduced lateral length). A larger motion within a step of
     `precision` (Units: reduced vertical length, as the loads) is an instability: instabilities
     closer in load come out as one. A tolerance of the solver above the precision delays them.
-    ValueError if travel or precision are not positive, or a relaxation fails.
+    ValueError if a relaxation fails.
     """
-    check_positive(travel=travel, precision=precision)
     requested: list[Load] = []
     # Loads are read from the list when a step is wanted: all steps share the samples of the field.
     steps = follow(field, front, iter(requested.pop, None), solver)

@@ -6,7 +6,6 @@ import xarray as xr
 
 from crackfront.analysis.table import SweepAxes, SweepRow
 from crackfront.core.adhesion import FieldKind
-from crackfront.core.arguments import check_type
 from crackfront.core.cycle.record import CycleRecord
 from crackfront.core.geometry.sphere import ContactState, sphere
 from crackfront.core.spectrum import Spectrum
@@ -87,19 +86,10 @@ def check_units(data: xr.DataArray | xr.Dataset) -> None:
             )
 
 
-def as_dataset(
-    data: xr.DataArray | xr.Dataset,
-    name: str = "data",
-    expected: str = "an xarray.DataArray or xarray.Dataset",
-) -> xr.Dataset:
-    """A dataset, or the dataset of an array.
-
-    ValueError if an array lacks a name, TypeError if the data are something else; `expected` says
-    what they must be.
-    """
+def as_dataset(data: xr.DataArray | xr.Dataset) -> xr.Dataset:
+    """A dataset, or the dataset of an array; ValueError if an array lacks a name."""
     if isinstance(data, xr.Dataset):
         return data
-    check_type(name, data, xr.DataArray, expected)
     if data.name is None:
         raise ValueError(
             "the array lacks a name; give it one that says what its values are, as in "

@@ -20,18 +20,10 @@ from abc import ABC, abstractmethod
 from collections.abc import Iterable
 from dataclasses import dataclass
 from itertools import pairwise
-from numbers import Integral
 
 from crackfront.analysis.steady_adhesion import SteadyAdhesion
-from crackfront.core.arguments import check_fractions, check_numbers, check_type
 from crackfront.core.arrays import Array
-from crackfront.core.bounds import (
-    DENSITY,
-    NUMBER,
-    SITES,
-    Range,
-    check_within,
-)
+from crackfront.core.bounds import NUMBER, Range, check_within
 from crackfront.core.cycle.follow import Load
 from crackfront.core.cycle.record import CycleRecord
 from crackfront.core.field.fields import TileField
@@ -75,8 +67,7 @@ class LoopSetup(ABC):
 class LoopNumerics:
     """How a run on a user's surface is resolved.
 
-    ValueError if an error is given together with sites or samples, or a number is out of range;
-    TypeError if it is not a number.
+    ValueError if an error is given together with sites or samples.
     """
 
     error: float | None = None
@@ -89,19 +80,11 @@ class LoopNumerics:
     """Error where neither is given and the surface states its spectrum."""
 
     def __post_init__(self) -> None:
-        if self.error is not None:
-            check_fractions(error=self.error)
-            if self.by_pixels:
-                raise ValueError(
-                    f"error is {self.error:g}, which decides sites and samples; leave these out, "
-                    "or the error"
-                )
-        if self.sites is not None:
-            check_type("sites", self.sites, Integral, "a whole number")
-            check_within("sites", self.sites, SITES)
-        if self.samples is not None:
-            check_numbers(samples=self.samples)
-            check_within("samples", self.samples, DENSITY)
+        if self.error is not None and self.by_pixels:
+            raise ValueError(
+                f"error is {self.error:g}, which decides sites and samples; leave these out, "
+                "or the error"
+            )
 
     @property
     def by_pixels(self) -> bool:

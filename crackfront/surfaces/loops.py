@@ -5,23 +5,22 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable
 from dataclasses import replace
-from typing import get_args
+from typing import Annotated, Any
 
 import numpy as np
+from pydantic import PlainValidator
 from xarray import DataArray, Dataset
 
 from crackfront.analysis.estimate import with_error
 from crackfront.analysis.steady_adhesion import SteadyAdhesion, SteadyMeasures
 from crackfront.analysis.table import SweepAxes, SweepRow
-from crackfront.core.arguments import check_numbers, check_positive, check_type
 from crackfront.core.cycle.follow import Load, front_at
 from crackfront.core.cycle.load_schedule import LoadSchedule
 from crackfront.core.cycle.record import CycleRecord, Recorder
 from crackfront.core.cycle.touch import first_touch
-from crackfront.core.geometry.sphere import ContactState
 from crackfront.core.outcome import Direction
 from crackfront.core.resources import check_memory
-from crackfront.core.solver.relax import Newton, named_solver
+from crackfront.core.solver.relax import SOLVERS, Newton, named_solver
 from crackfront.core.variables import variables
 from crackfront.core.versions import PHYSICS_VERSION
 from crackfront.simulate.cycle_files import cycle_dataset
@@ -35,23 +34,25 @@ from crackfront.surfaces.loop_setup import (
     load_values,
 )
 from crackfront.surfaces.pressed_sphere import PressedSphere
+from crackfront.validation import Density, Finite, Fraction, Positive, Sites, checked_call, one_of
 
-_KNOWN = {item.name: item for kind in (SweepAxes, SweepRow) for item in variables(kind)}
+_VARIABLES = {item.name: item for kind in (SweepAxes, SweepRow) for item in variables(kind)}
 
 
+@checked_call
 def run_loop(
     surface: DataArray | LoopContact,
     *,
-    loads: Iterable[float] | None = None,
-    max_penetration: float | None = None,
-    step: float | None = None,
-    error: float | None = None,
-    sites: int | None = None,
-    samples: float | None = None,
-    solver: str = "newton",
+    loads: Annotated[Iterable[float], PlainValidator(load_values)] | None = None,
+    max_penetration: Finite | None = None,
+    step: Positive | None = None,
+    error: Fraction | None = None,
+    sites: Sites | None = None,
+    samples: Density | None = None,
+    solver: Annotated[str, one_of(SOLVERS)] = "newton",
     fronts: bool = True,
     energy: bool = False,
-    progress: Callable[[ContactState[float]], None] | None = None,
+    progress: Callable[[Any], None] | None = None,
 ) -> Dataset:
     """States of a sphere on a surface, or of a straight front, under any loads.
 
@@ -126,13 +127,7 @@ def run_loop(
     >>> pulled.position.dims
     ('step', 'y')
     """
-    numbers = {"max_penetration": max_penetration, "step": step}
-    check_numbers(**{name: number for name, number in numbers.items() if number is not None})
-    for name, value in (("fronts", fronts), ("energy", energy)):
-        check_type(name, value, bool, "True or False")
-    if not callable(progress):
-        check_type("progress", progress, type(None), "a function of a state")
-    visited = None if loads is None else load_values(loads)
+    visited = None if loads is None else tuple(loads)
     if visited is None and max_penetration is None and not isinstance(surface, LoopContact):
         max_penetration = 1.0
     if step is None:
@@ -186,7 +181,10 @@ def loop_dataset(record: CycleRecord, setup: LoopSetup) -> Dataset:
     result = _result_sentence(record, steady, setup.remark)
     sentences = {"result": result, "steady_sentence": steady.sentence}
     whole = curves.assign(
-        {name: labelled(replace(_KNOWN[name], dims=()), value) for name, value in values.items()}
+        {
+            name: labelled(replace(_VARIABLES[name], dims=()), value)
+            for name, value in values.items()
+        }
     )
     return whole.drop_attrs(deep=False).assign_attrs(sentences | curves.attrs, kind=measures.kind)
 
@@ -207,17 +205,18 @@ def _result_sentence(record: CycleRecord, steady: SteadyAdhesion, remark: str) -
     return "; ".join(filter(None, (f"{', '.join(works)} (w_int)", remark, forces)))
 
 
+@checked_call
 def find_instabilities(
-    surface: DataArray,
+    surface: DataArray | LoopContact,
     *,
     direction: Direction = -1,
-    max_penetration: float = 1.0,
-    step: float = 0.02,
-    travel: float = 0.05,
-    precision: float | None = None,
-    error: float | None = None,
-    sites: int | None = None,
-    samples: float | None = None,
+    max_penetration: Finite = 1.0,
+    step: Positive = 0.02,
+    travel: Positive = 0.05,
+    precision: Positive | None = None,
+    error: Fraction | None = None,
+    sites: Sites | None = None,
+    samples: Density | None = None,
 ) -> Dataset:
     """The single instabilities of a branch, from first contact or to pull-off.
 
@@ -267,21 +266,15 @@ def find_instabilities(
             "instabilities are located on a sphere, between first contact and pull-off, which a "
             "straight front lacks; give the surface itself"
         )
-    if direction not in get_args(Direction):
-        raise ValueError(f"direction is {direction!r}; give 1 for approach or -1 for retraction")
-    check_numbers(max_penetration=max_penetration, step=step, travel=travel)
     schedule = LoadSchedule(max_penetration, step)
-    check_positive(travel=travel)
     numerics = LoopNumerics(error, sites, samples, usual_error=0.05)
     contact = PressedSphere(surface, max_penetration).setup(None, step, numerics)
     reach = travel * contact.measures.correlation_length
     if precision is None:
         precision = min(2e-5, step / 10, max(reach**2, _round_off(contact)))
-    check_numbers(precision=precision)
-    if not 0 < precision <= step / 10:
+    if precision > step / 10:
         raise ValueError(
-            f"precision is {precision:g}; it must be positive, and at most a tenth of the step, "
-            f"{step / 10:g}"
+            f"precision is {precision:g}; it must be at most a tenth of the step, {step / 10:g}"
         )
     _check_resolved_motion(contact, travel, precision, direction)
     field, solver = contact.field, Newton(min(contact.tolerance, precision / 10))

@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-import math
-from numbers import Integral
-
 import numpy as np
+from pydantic import InstanceOf
 from xarray import DataArray
 
-from crackfront.core.adhesion import FieldKind, check_kind
-from crackfront.core.arguments import check_fractions, check_numbers, check_type
-from crackfront.core.bounds import SEED
+from crackfront.core.adhesion import FieldKind
 from crackfront.core.resources import check_memory
 from crackfront.core.spectrum import SelfAffineSpectrum, Spectrum
 from crackfront.core.units import WORK_OF_ADHESION
@@ -22,19 +18,21 @@ from crackfront.simulate.sphere.full_cycle import FullCycle
 from crackfront.simulate.tiles import gaussian_values
 from crackfront.surfaces.surface_array import surface_array
 from crackfront.surfaces.tile_measures import tile_modes
+from crackfront.validation import Fraction, Positive, Seed, checked_call
 
 
+@checked_call
 def random_surface(
-    short_cutoff: float | Spectrum,
-    elastic_energy: float,
+    short_cutoff: Positive | InstanceOf[Spectrum],
+    elastic_energy: Fraction,
     *,
     kind: FieldKind = "roughness",
-    roll_off: float | None = None,
+    roll_off: Positive | None = None,
     hurst: float | None = None,
-    side: float | None = None,
-    error: float = 0.03,
-    seed: int = 0,
-    realisation: int = 0,
+    side: Positive | None = None,
+    error: Fraction = 0.03,
+    seed: Seed = 0,
+    realisation: Seed = 0,
 ) -> DataArray:
     """A Gaussian surface on a periodic tile, self-affine or of another spectrum.
 
@@ -82,14 +80,6 @@ def random_surface(
     ('height', ('x', 'y'), -2.0)
     """
     spectrum = _shape(short_cutoff, roll_off, hurst)
-    check_kind(kind)
-    check_fractions(error=error, elastic_energy=elastic_energy)
-    for name, number in (("seed", seed), ("realisation", realisation)):
-        check_type(name, number, Integral, "a whole number")
-        if isinstance(number, bool):
-            raise TypeError(f"{name} is {number}; give a whole number")
-        if not SEED.least <= number <= SEED.most:
-            raise ValueError(f"{name} is {number}; it must lie between 0 and {SEED.most}")
     least, most = measured_energies()
     if not least <= elastic_energy <= most:
         raise ValueError(
@@ -130,7 +120,6 @@ def _shape(short_cutoff: float | Spectrum, roll_off: float | None, hurst: float 
         if numbers:
             raise ValueError(f"a whole spectrum is given; leave out {' and '.join(numbers)}")
         return short_cutoff
-    check_numbers(short_cutoff=short_cutoff, **numbers)
     if hurst is not None and roll_off is None:
         raise ValueError(
             f"hurst is {hurst:g}, but without a roll_off the spectrum is flat and lacks a Hurst "
@@ -157,9 +146,8 @@ def chosen_simulation(
     """
     numerics = Numerics(error)
     if side is not None:
-        check_numbers(side=side)
         longest = spectrum.longest_feature
-        if not longest <= side < math.inf:
+        if not longest <= side:
             raise ValueError(
                 f"side is {side}; the tile must fit the longest waves of the spectrum, of "
                 f"{longest:g}, or its e_el is not the one that is asked for"

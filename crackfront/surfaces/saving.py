@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from os import PathLike
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -14,12 +12,14 @@ from crackfront.core.arguments import check_type
 from crackfront.simulate.provenance import provenance
 from crackfront.simulate.storage import read_dataset, write_dataset
 from crackfront.surfaces.labelled import SURFACES, as_dataset
+from crackfront.validation import PathName, checked_call
 
 _STORABLE = (str, bool, int, float, np.generic, np.ndarray, list, tuple)
 """Types of attributes that netCDF can store, truth values as numbers."""
 
 
-def save_result(result: xr.DataArray | xr.Dataset, path: str | Path) -> None:
+@checked_call
+def save_result(result: xr.DataArray | xr.Dataset, path: PathName) -> None:
     """Save a surface or a loop as netCDF with checksums of its arrays, atomically.
 
     Reading an array that was damaged later raises an error. Files by `to_netcdf` of xarray can be
@@ -41,13 +41,12 @@ def save_result(result: xr.DataArray | xr.Dataset, path: str | Path) -> None:
     OSError
         If the file cannot be written.
     """
-    check_type("path", path, (str, PathLike), "the path of a file")
-    dataset = as_dataset(result, "result", "a surface or a loop").copy()
+    dataset = as_dataset(result).copy()
     dataset.attrs = _storable(dataset.attrs)
     for part in dataset.variables.values():
         part.attrs = _storable(part.attrs)
     # netCDF would expand ~ to the home folder, other functions would not.
-    write_dataset(Path(path).expanduser(), dataset, provenance())
+    write_dataset(path.expanduser(), dataset, provenance())
 
 
 def _storable(attributes: Mapping[Any, Any]) -> dict[Any, Any]:
@@ -59,7 +58,8 @@ def _storable(attributes: Mapping[Any, Any]) -> dict[Any, Any]:
     return storable
 
 
-def load_result(path: str | Path) -> xr.DataArray | xr.Dataset:
+@checked_call
+def load_result(path: PathName) -> xr.DataArray | xr.Dataset:
     """What :func:`save_result` saved: a surface as an array, anything else as a dataset.
 
     Parameters
@@ -79,8 +79,7 @@ def load_result(path: str | Path) -> xr.DataArray | xr.Dataset:
     TypeError
         If an argument is of another type.
     """
-    check_type("path", path, (str, PathLike), "the path of a file")
-    dataset = read_dataset(Path(path).expanduser())
+    dataset = read_dataset(path.expanduser())
     for item in SURFACES.values():
         if [*dataset] == [item.name]:
             return dataset[item.name]

@@ -9,7 +9,8 @@ from numbers import Real
 from typing import Any
 
 from crackfront.core import units
-from crackfront.core.arguments import check_type
+from crackfront.core.arguments import check_numbers, check_type
+from crackfront.core.bounds import POISSON, check_within
 from crackfront.surfaces.written_units import si_value
 
 CONVERTED_FOR = "sphere_"
@@ -29,19 +30,25 @@ class Scales(units.Scales):
         (Units: m)
     work_of_adhesion : float or str
         Intrinsic work of adhesion w_int, as '63mJ/m2'. (Units: J / m^2)
-    contact_modulus : float or str
-        Contact modulus E' = E / (1 - nu^2), as '0.93MPa'. (Units: Pa)
+    contact_modulus : float or str, optional
+        Contact modulus E' = E / (1 - nu^2), as '0.93MPa', in place of `modulus` and `poisson`.
+        (Units: Pa)
+    modulus : float or str, optional
+        Young's modulus E, as '0.7MPa'. (Units: Pa)
+    poisson : float, optional
+        Poisson's ratio nu, as 0.5.
 
     Raises
     ------
     ValueError
-        If a parameter is not positive and finite, or a text is not such a quantity.
+        If a parameter is not positive and finite, a text is not such a quantity, or the modulus is
+        stated twice or incompletely.
     TypeError
         If a parameter is neither a number nor a text.
 
     Examples
     --------
-    >>> sphere = Scales(radius="1.25mm", work_of_adhesion="63mJ/m2", contact_modulus=0.7e6 / 0.75)
+    >>> sphere = Scales(radius="1.25mm", work_of_adhesion="63mJ/m2", modulus="0.7MPa", poisson=0.5)
     >>> f"{sphere.lateral * 1e6:.1f} um, {sphere.vertical * 1e6:.2f} um"
     '62.9 um, 3.16 um'
     """
@@ -49,13 +56,41 @@ class Scales(units.Scales):
     __slots__ = ()
 
     def __init__(
-        self, radius: float | str, work_of_adhesion: float | str, contact_modulus: float | str
+        self,
+        radius: float | str,
+        work_of_adhesion: float | str,
+        contact_modulus: float | str | None = None,
+        *,
+        modulus: float | str | None = None,
+        poisson: float | None = None,
     ) -> None:
         super().__init__(
             in_si("radius", radius, "m"),
             in_si("work_of_adhesion", work_of_adhesion, "J/m^2"),
-            in_si("contact_modulus", contact_modulus, "Pa"),
+            _stated_modulus(contact_modulus, modulus, poisson),
         )
+
+
+def _stated_modulus(
+    contact_modulus: float | str | None, modulus: float | str | None, poisson: float | None
+) -> float:
+    """Contact modulus, from itself or from Young's modulus and Poisson's ratio (Units: Pa)."""
+    if contact_modulus is not None:
+        if modulus is not None or poisson is not None:
+            name, value = ("poisson", poisson) if modulus is None else ("modulus", modulus)
+            raise ValueError(
+                f"contact_modulus is {contact_modulus!r} and {name} is {value!r}; give the contact "
+                "modulus E / (1 - nu^2) alone, or Young's modulus E as modulus with poisson"
+            )
+        return in_si("contact_modulus", contact_modulus, "Pa")
+    if modulus is None or poisson is None:
+        raise ValueError(
+            f"modulus is {modulus!r} and poisson is {poisson!r}; give both, or contact_modulus, "
+            "which is E / (1 - nu^2)"
+        )
+    check_numbers(poisson=poisson)
+    check_within("poisson", poisson, POISSON)
+    return units.plane_strain_modulus(in_si("modulus", modulus, "Pa"), poisson)
 
 
 def in_si(name: str, value: float | str, unit: str) -> float:
@@ -68,7 +103,7 @@ def in_si(name: str, value: float | str, unit: str) -> float:
 
 def check_scales(sphere: object) -> None:
     """Raise TypeError if an argument is not a sphere."""
-    expected = "crackfront.Scales(radius, work_of_adhesion, contact_modulus)"
+    expected = "crackfront.Scales(radius, work_of_adhesion, modulus=..., poisson=...)"
     check_type("sphere", sphere, units.Scales, expected)
 
 

@@ -7,9 +7,9 @@ from dataclasses import asdict
 from typing import Any, TypeVar
 
 import xarray as xr
+from pydantic import InstanceOf
 
 from crackfront.core import units
-from crackfront.core.arguments import check_type
 from crackfront.core.units import ReducedUnit
 from crackfront.simulate.labels import stated_unit, unit_attributes
 from crackfront.surfaces.labelled import (
@@ -23,15 +23,16 @@ from crackfront.surfaces.scales import (
     CONVERTED_FOR,
     are_equal,
     attributes_sphere,
-    check_scales,
     sphere_attributes,
 )
 from crackfront.surfaces.written_units import unit_value
+from crackfront.validation import checked_call
 
 Labelled = TypeVar("Labelled", xr.DataArray, xr.Dataset)
 
 
-def in_si_units(data: Labelled, scales: units.Scales | None = None) -> Labelled:
+@checked_call
+def in_si_units(data: Labelled, scales: InstanceOf[units.Scales] | None = None) -> Labelled:
     """A copy of a surface, a cycle or the table of a sweep in SI units, which states the sphere.
 
     Parameters
@@ -61,7 +62,6 @@ def in_si_units(data: Labelled, scales: units.Scales | None = None) -> Labelled:
                 "the data do not state a sphere, as tables of sweeps with a section scales do; "
                 "name it: in_si_units(data, crackfront.Scales(radius, ...))"
             )
-    check_scales(scales)
     check_units(data)
     converted = _converted(data, lambda unit, _: _si(unit, scales))
     return converted.assign_attrs(sphere_attributes(scales))
@@ -78,7 +78,8 @@ def stated_scales(data: xr.DataArray | xr.Dataset) -> units.Scales | None:
     return sphere
 
 
-def in_reduced_units(data: Labelled, scales: units.Scales) -> Labelled:
+@checked_call
+def in_reduced_units(data: Labelled, scales: InstanceOf[units.Scales]) -> Labelled:
     """The same surface or cycle in reduced units.
 
     Parameters
@@ -112,8 +113,6 @@ def in_reduced_units(data: Labelled, scales: units.Scales) -> Labelled:
     >>> bool(np.allclose(reduced * scales.vertical, [1e-9, 2e-9]))
     True
     """
-    check_scales(scales)
-    check_type("data", data, (xr.DataArray, xr.Dataset), "an xarray.DataArray or xarray.Dataset")
     stated_sphere = attributes_sphere(data.attrs, CONVERTED_FOR)
     if stated_sphere is not None and not are_equal(stated_sphere, scales):
         sphere = ", ".join(f"{name} {value:g}" for name, value in asdict(stated_sphere).items())

@@ -11,9 +11,7 @@ from xarray import DataArray
 
 from crackfront.analysis.steady_adhesion import SteadyAdhesion, passing_adhesion
 from crackfront.core.adhesion import AdhesionMap
-from crackfront.core.arguments import check_numbers
 from crackfront.core.arrays import Array
-from crackfront.core.bounds import NUMBER, check_within
 from crackfront.core.cycle.load_schedule import protocol
 from crackfront.core.cycle.record import CycleRecord
 from crackfront.core.geometry.line import initial_front, line_field
@@ -33,6 +31,7 @@ from crackfront.surfaces.loop_setup import (
 from crackfront.surfaces.surface_adhesion import surface_adhesion
 from crackfront.surfaces.surface_array import surface_kind
 from crackfront.surfaces.tile_measures import tile_measures
+from crackfront.validation import Positive, checked_call
 
 _ROUND_OFF = 1e-9
 """Relative distance by which a front may be shorter than a bound."""
@@ -160,7 +159,8 @@ class StraightFront(LoopContact):
         return ""
 
 
-def straight_front(surface: DataArray, spring: float) -> StraightFront:
+@checked_call
+def straight_front(surface: DataArray, spring: Positive) -> StraightFront:
     """A straight front for :func:`crackfront.run_loop`, whose loads are places of its springs.
 
     The front is as long as the side of the surface along y. Where this is below ten times the
@@ -188,6 +188,4 @@ def straight_front(surface: DataArray, spring: float) -> StraightFront:
         If an argument is of another type.
     """
     surface_kind(surface)
-    check_numbers(spring=spring)
-    check_within("spring", spring, NUMBER)
-    return StraightFront(surface, float(spring))
+    return StraightFront(surface, spring)

@@ -29,8 +29,10 @@ In a periodic tile the edges are lines like all others.
 """
 
 _LEAST_MEAN = 0.5
+"""Least mean work of adhesion; less suggests a wrong unit. (Units: w_int)"""
+
 _LARGEST_MEAN = 2.0
-"""Bounds of the mean work of adhesion (Units: w_int); others suggest a wrong unit."""
+"""Largest mean work of adhesion; more suggests a wrong unit. (Units: w_int)"""
 
 
 def surface_adhesion(surface: xr.DataArray) -> AdhesionMap:
@@ -113,10 +115,10 @@ def _check_values(name: str, values: Array, unit: float) -> None:
         )
     beyond = np.argwhere((values < VALUES.least * unit) | (values > VALUES.most * unit))
     if beyond.size:
-        place = tuple(beyond[0].tolist())
+        index = tuple(beyond[0].tolist())
         bounds = f"{VALUES.least:g} and {VALUES.most:g}"
         raise ValueError(
-            f"{name} is {float(values[place]) / unit:g} at index {', '.join(map(str, place))} "
+            f"{name} is {float(values[index]) / unit:g} at index {', '.join(map(str, index))} "
             f"({counted(len(beyond), 'such value')}); it must lie between {bounds}"
         )
 
@@ -128,8 +130,8 @@ def _check_seam(heights: Array) -> None:
         *inside, seam = np.sqrt(np.mean(steps**2, axis=1 - axis))
         if seam > _SEAM * max(inside):
             raise ValueError(
-                f"the heights jump by {seam:.3g} from one end of {name} to the other, where those "
-                f"of neighbouring points differ by up to {max(inside):.3g}: the tile is not "
+                f"the heights jump by {seam:.3g} from one end of {name} to the other, while "
+                f"neighbouring heights differ by up to {max(inside):.3g}: the tile is not "
                 "periodic. Level the map and mirror or window it, as read_scan does; an edge that "
                 "is meant is said by the attribute periodic=1"
             )

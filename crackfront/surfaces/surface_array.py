@@ -8,7 +8,6 @@ import numpy as np
 import xarray as xr
 
 from crackfront.core.adhesion import FieldKind
-from crackfront.core.arguments import check_type
 from crackfront.core.arrays import Array
 from crackfront.core.bounds import NUMBER, check_within
 from crackfront.core.variables import LATERAL, Variable
@@ -64,10 +63,8 @@ def surface_array(
 def surface_kind(surface: xr.DataArray) -> FieldKind:
     """Kind of the values of a surface, by its name.
 
-    ValueError if no surface has that name, TypeError if it is not a labelled array.
+    ValueError if no surface has that name.
     """
-    expected = "an xarray.DataArray height(x, y), as surface, random_surface and read_scan make it"
-    check_type("surface", surface, xr.DataArray, expected)
     kinds = {item.name: kind for kind, item in SURFACES.items()}
     if surface.name not in kinds:
         raise ValueError(

@@ -47,10 +47,10 @@ class Modes:
         The bins have equal widths on a logarithmic scale; `area` is the area of the tile (Units:
         length**2).
         """
-        place = np.floor(bins_a_decade * np.log10(self.wavevector)).astype(int)
-        _, place = np.unique(place, return_inverse=True)
-        power, count = (np.bincount(place, values) for values in (self.power, self.count))
-        total = np.bincount(place, self.count * self.wavevector)
+        decade_bin = np.floor(bins_a_decade * np.log10(self.wavevector)).astype(int)
+        _, used_bin = np.unique(decade_bin, return_inverse=True)
+        power, count = (np.bincount(used_bin, values) for values in (self.power, self.count))
+        total = np.bincount(used_bin, self.count * self.wavevector)
         return total / count, area * power / count
 
 
@@ -73,11 +73,13 @@ class TileMeasures:
     """Measures of the tile of a loop."""
 
     kind: FieldKind
-    """Whether the mean work of adhesion lies below w_int by e_el, as on a rough surface."""
+    """Roughness if the mean work of adhesion lies below w_int by e_el, else chemical."""
     e_el: float
+    """Energy of full conformity. (Units: w_int)"""
     w_rms: float
+    """Rms of the work of adhesion. (Units: w_int)"""
     mean: float
-    """Energy of full conformity, rms and mean work of adhesion. (Units: w_int)"""
+    """Mean work of adhesion. (Units: w_int)"""
     period: float
     """Side along x. (Units: reduced lateral length)"""
     correlation_length: float
@@ -86,13 +88,20 @@ class TileMeasures:
 
 
 def tile_measures(adhesion: AdhesionMap) -> TileMeasures:
-    """Measures of a tile; its kind follows from its mean work of adhesion."""
-    values, energy = adhesion.work_of_adhesion, adhesion.e_el
-    mean, period = float(np.mean(values)) / WORK_OF_ADHESION, adhesion.pixel * len(values)
-    lacking = 1 - mean
-    kind: FieldKind = "chemical"
-    if abs(lacking - energy) < _MEAN_ERROR * energy:
-        kind = "roughness"
+    """Measures of a tile.
+
+    A user's map of works of adhesion may come from heights: a mean of w_int - e_el then tells that
+    the errors of the numerics are those of a rough surface.
+    """
+    values = adhesion.work_of_adhesion
+    mean = float(np.mean(values)) / WORK_OF_ADHESION
+    is_rough = abs(1 - mean - adhesion.e_el) < _MEAN_ERROR * adhesion.e_el
     modes = tile_modes(values, adhesion.pixel)
-    length = modes.mean_wavelength if modes.power.size else adhesion.pixel
-    return TileMeasures(kind, energy, adhesion.w_rms, mean, period, length)
+    return TileMeasures(
+        kind="roughness" if is_rough else "chemical",
+        e_el=adhesion.e_el,
+        w_rms=adhesion.w_rms,
+        mean=mean,
+        period=adhesion.pixel * len(values),
+        correlation_length=modes.mean_wavelength if modes.power.size else adhesion.pixel,
+    )

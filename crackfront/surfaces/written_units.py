@@ -139,16 +139,20 @@ def prefixed(unit: str, *values: float, digits: int = 3) -> str:
     """Values in a unit with the prefix that the first of them calls for.
 
     They are a number, or a number and the ends of its interval, in an SI unit without a prefix, and
-    are written with so many significant digits.
+    are written with so many significant digits. An interval that these digits do not show is left
+    out.
 
     Examples
     --------
     >>> prefixed("m", 2.1e-6), prefixed("J/m2", 0.0329, 0.0282, 0.0376)
     ('2.1 um', '32.9 mJ/m2 (28.2 to 37.6)')
+    >>> prefixed("N", 105.01e-6, 104.99e-6, 105.02e-6)
+    '105 uN'
     """
     has_size = abs(values[0]) > 0 and math.isfinite(values[0])
     power = 3 * math.floor(math.log10(abs(values[0]) * (1 + 1e-9)) / 3) if has_size else 0
     power = min(max(power, min(_PREFIXES)), max(_PREFIXES))
     first, *ends = (f"{float(f'{value / 10.0**power:.{digits}g}'):g}" for value in values)
-    interval = f" ({ends[0]} to {ends[1]})" if ends and math.isfinite(values[1]) else ""
+    is_shown = bool(ends) and math.isfinite(values[1]) and {*ends} != {first}
+    interval = f" ({ends[0]} to {ends[1]})" if is_shown else ""
     return f"{first} {_PREFIXES[power]}{unit}{interval}"

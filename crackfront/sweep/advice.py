@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 from crackfront.analysis.law import mean_w_loc
@@ -14,6 +14,12 @@ from crackfront.simulate.contact import Pressed
 from crackfront.simulate.line.line_loads import front_rms
 from crackfront.simulate.simulation import Simulation
 from crackfront.sweep.sweep import Sweep
+
+_DOUBTFUL_STATES = FEWEST_STATES + 1
+"""Expected steady states below which surfaces may lack a steady part: with 3, 20 of 48 did."""
+
+_ENOUGH_STATES = FEWEST_STATES + 2
+"""Expected steady states with which all of 120 simulations had a steady part."""
 
 _LAST_SITE = 1.0
 """Lag of the last site behind the mean of a front, over its rms; from 144 runs."""
@@ -28,10 +34,14 @@ class Expectation:
     size: float
     """g, L_kappa over the Larkin length, of a sphere at its largest penetration."""
     factor: float | None
-    """k by the law; None so close to pull-off that nothing holds the edge."""
+    """k by the law; None near pull-off, where the edge is unstable."""
     needed_penetration: float | None = None
-    """Set if the largest one leaves no steady part. (Units: reduced vertical length, or as in
+    """Set if the largest one may leave no steady part. (Units: reduced vertical length, or as in
     the configuration)"""
+    needed_start: float | None = None
+    """Start of steady loads that helps as well, if there is one. (Units: as above)"""
+    needed_travel: float | None = None
+    """Travel of steady loads that helps as well, if there is one. (Units: correlation length)"""
 
 
 def expectation(simulation: Simulation) -> Expectation:
@@ -48,14 +58,17 @@ def expectation(simulation: Simulation) -> Expectation:
         return Expectation(disorder, size, factor)
 
     works, travel = _expected_works(simulation, factor), _steady_travel(simulation, size)
-    # Rather some states more than the fewest: surfaces differ.
-    fewest, needed = (
-        schedule.steady_penetration(simulation.surface, works, travel, n_state)
-        for n_state in (FEWEST_STATES, 3 * FEWEST_STATES)
-    )
-    if fewest <= schedule.max_penetration:
+    expected = simulation.surface, works, travel
+    if schedule.steady_penetration(*expected, _DOUBTFUL_STATES) <= schedule.max_penetration:
         return Expectation(disorder, size, factor)
-    return Expectation(disorder, size, factor, float(f"{needed:.2g}"))
+    return Expectation(
+        disorder,
+        size,
+        factor,
+        schedule.steady_penetration(*expected, _ENOUGH_STATES),
+        schedule.steadier_start(*expected, _ENOUGH_STATES),
+        schedule.steadier_travel(*expected, _ENOUGH_STATES),
+    )
 
 
 def _steady_travel(simulation: Simulation, size: float) -> float:
@@ -76,9 +89,11 @@ def expectations(sweep: Sweep) -> dict[str, list[Expectation]]:
     vertical = 1.0 if sweep.scales is None else sweep.scales.vertical
 
     def converted(expected: Expectation) -> Expectation:
-        if (needed := expected.needed_penetration) is None:
+        if expected.needed_penetration is None:
             return expected
-        return replace(expected, needed_penetration=vertical * needed)
+        depth, start = vertical * expected.needed_penetration, expected.needed_start
+        start = None if start is None else vertical * start
+        return replace(expected, needed_penetration=depth, needed_start=start)
 
     return {
         item.name: [converted(expectation(first)) for first in sweep.one_per_amplitude(item)]
@@ -87,21 +102,42 @@ def expectations(sweep: Sweep) -> dict[str, list[Expectation]]:
 
 
 def steady_part_warnings(sweep: Sweep) -> Iterator[str]:
-    """A sentence for each spectrum that may have no steady part, with the penetration it needs."""
+    """A sentence for each spectrum that may have no steady part, with what helps."""
     if not isinstance(sweep.schedule, Pressed):
         return
-    vertical, name = (1.0, "") if sweep.scales is None else (sweep.scales.vertical, " m")
+    vertical, unit = (1.0, "") if sweep.scales is None else (sweep.scales.vertical, " m")
+    largest = f"{vertical * sweep.schedule.max_penetration:g}{unit}"
     for spectrum, expected in expectations(sweep).items():
-        needed = {
-            elastic_energy: cell.needed_penetration
+        doubtful = {
+            elastic_energy: cell
             for elastic_energy, cell in zip(sweep.elastic_energies, expected, strict=True)
             if cell.needed_penetration is not None
         }
-        if needed:
-            energies = ", ".join(f"{elastic_energy:g}" for elastic_energy in needed)
-            largest = f"{vertical * sweep.schedule.max_penetration:g}{name}"
+        if doubtful:
+            energies = ", ".join(f"{elastic_energy:g}" for elastic_energy in doubtful)
             yield (
                 f"{spectrum} may have no steady part at e_el {energies}: up to the largest "
                 f"penetration, {largest}, its front does not forget where both branches begin; "
-                f"penetrate to {max(needed.values()):.2g}{name} or deeper"
+                f"{_remedies([*doubtful.values()], unit)}"
             )
+
+
+def _remedies(doubtful: Sequence[Expectation], unit: str) -> str:
+    """Keys of the load that help at all of these amplitudes, each with its value."""
+    depth = max(cell.needed_penetration or 0.0 for cell in doubtful)
+    remedies = [f"raise max_penetration to {_two_digits(depth, math.ceil)}{unit}"]
+    starts = [cell.needed_start for cell in doubtful if cell.needed_start is not None]
+    if len(starts) == len(doubtful):
+        remedies.append(f"lower start to {_two_digits(min(starts), math.floor)}{unit}")
+    travels = [cell.needed_travel for cell in doubtful if cell.needed_travel is not None]
+    if len(travels) == len(doubtful):
+        remedies.append(f"lower travel to {_two_digits(min(travels), math.floor)}")
+    return " or ".join(reversed(remedies))
+
+
+def _two_digits(value: float, rounded: Callable[[float], int]) -> str:
+    """Number of two digits, rounded in one direction."""
+    if value == 0:
+        return "0"
+    unit = 10.0 ** (math.floor(math.log10(abs(value))) - 1)
+    return f"{rounded(value / unit) * unit:.2g}"

@@ -14,14 +14,7 @@ from typing import Annotated, Literal
 from pydantic import Field, model_validator
 
 from crackfront.core.adhesion import FieldKind
-from crackfront.sweep.section import (
-    Count,
-    Section,
-    Seed,
-    section_error,
-    validated,
-    yaml_mapping,
-)
+from crackfront.sweep.section import Section, section_error, validated, yaml_mapping
 from crackfront.sweep.section_checks import check_distinct
 from crackfront.sweep.sections import (
     AmplitudesSection,
@@ -31,6 +24,7 @@ from crackfront.sweep.sections import (
     ScalesSection,
 )
 from crackfront.sweep.spectrum_sections import SpectrumSection
+from crackfront.validation import Count, Seed
 
 
 class Configuration(Section):

@@ -6,14 +6,12 @@ import contextlib
 import os
 import warnings
 from collections import Counter
-from os import PathLike
 from pathlib import Path
 
 import numpy as np
 from tqdm import tqdm
 from xarray import Dataset
 
-from crackfront.core.arguments import check_type
 from crackfront.simulate.labels import flag_words
 from crackfront.simulate.provenance import Provenance, provenance
 from crackfront.simulate.storage import read_derived, write_text
@@ -31,6 +29,7 @@ from crackfront.sweep.section import movable_text
 from crackfront.sweep.store import Announce, Store
 from crackfront.sweep.sweep import Sweep
 from crackfront.sweep.tasks import run_and_store
+from crackfront.validation import PathName, checked_call
 
 
 def opened(
@@ -51,9 +50,10 @@ def opened(
     return sweep, store, provenance(movable_text(configuration))
 
 
+@checked_call
 def run_sweep(
-    configuration: str | PathLike[str],
-    output: str | PathLike[str] | None = None,
+    configuration: PathName,
+    output: PathName | None = None,
     *,
     progress: bool = True,
 ) -> Dataset:
@@ -87,11 +87,9 @@ def run_sweep(
     KeyboardInterrupt
         After Ctrl-C or SIGTERM. Finished simulations are stored; the same call continues.
     """
-    for name, path in (("configuration", configuration), ("output", output or "")):
-        check_type(name, path, (str, PathLike), "the path of a file or folder")
-    sweep, store, origin = opened(Path(configuration), None if output is None else Path(output))
+    sweep, store, origin = opened(configuration, output)
     shards = sweep.shards()
-    write_source(Path(configuration), store.folder)
+    write_source(configuration, store.folder)
     with deferring_stops(), store.locked(shards):
         lacking = [(shard, store.unfinished(sweep, [shard]).simulations()) for shard in shards]
         n_missing = sum(len(simulations) for _, simulations in lacking)

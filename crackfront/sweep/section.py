@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import re
-import reprlib
 from collections.abc import Iterator
 from itertools import count
 from pathlib import Path
 from typing import Annotated, Any, TypeVar, get_args
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError, ValidationInfo
+from pydantic import AfterValidator, BaseModel, ConfigDict, ValidationError, ValidationInfo
 from pydantic_core import ErrorDetails, PydanticCustomError
 from ruamel.yaml import YAML
 from ruamel.yaml.constructor import SafeConstructor
@@ -17,39 +16,13 @@ from ruamel.yaml.error import MarkedYAMLError
 from ruamel.yaml.nodes import MappingNode, ScalarNode
 
 from crackfront.core.arguments import nearest_name, regular_file
-from crackfront.core.bounds import (
-    COUNT,
-    DENSITY,
-    NUMBER,
-    PLATEAU,
-    SEED,
-    Range,
-)
+from crackfront.validation import PathName, sentence
 
 
 def section_error(message: str) -> PydanticCustomError:
     """An error of a section with its own sentence."""
     return PydanticCustomError("section", "{message}", {"message": message})
 
-
-def bounds_validator(bounds: Range) -> AfterValidator:
-    """Validator that raises an error for numbers outside of bounds."""
-
-    def bounded(value: float) -> float:
-        if not bounds.least <= value <= bounds.most:
-            must = f"it must lie between {bounds.least:g} and {bounds.most:g}"
-            raise PydanticCustomError("range", "{must}", {"must": must})
-        return value
-
-    return AfterValidator(bounded)
-
-
-Positive = Annotated[float, Field(gt=0, allow_inf_nan=False), bounds_validator(NUMBER)]
-Plateau = Annotated[float, Field(gt=0, allow_inf_nan=False), bounds_validator(PLATEAU)]
-Density = Annotated[float, Field(gt=0, allow_inf_nan=False), bounds_validator(DENSITY)]
-Count = Annotated[int, Field(ge=1), bounds_validator(COUNT)]
-Seed = Annotated[int, Field(ge=0), bounds_validator(SEED)]
-Energy = Annotated[float, Field(gt=0, lt=1), bounds_validator(NUMBER)]
 
 _MOST_BYTES = 5e5
 """Largest size of a file; people write some thousands. (Units: byte)"""
@@ -66,7 +39,7 @@ def resolved_path(path: Path, info: ValidationInfo) -> Path:
     return Path(info.context or "") / path
 
 
-InputFile = Annotated[Path, Field(strict=False), AfterValidator(resolved_path)]
+InputFile = Annotated[PathName, AfterValidator(resolved_path)]
 """A file that a configuration names; a relative path begins in the folder of the configuration."""
 
 _HOME = "# Relative paths begin in "
@@ -209,29 +182,9 @@ def _sentence(error: ErrorDetails, schema: type[Section]) -> str:
         return f"unknown key {place}; {_known_keys(error['loc'], schema)}"
     if error["type"] == "missing":
         return f"key {place} is missing; add it"
-    value = list(error["input"]) if isinstance(error["input"], tuple) else error["input"]
-    shown = f"{place} is {_SHOWN.repr(value)}"
-    if error["type"] == "too_short":
-        least = error["ctx"]["min_length"]
-        return f"{shown}; it must have at least {'one entry' if least == 1 else f'{least} entries'}"
-    must = re.sub(r"^(Input|String|Tuple|Value) should", "it must", error["msg"])
     key = next((part for part in reversed(error["loc"]) if isinstance(part, str)), "")
-    return f"{shown}; {_EXPECTED.get(error['type'], must)}{_MEANING.get(key, '')}"
+    return f"{sentence(error, place)}{_MEANING.get(key, '')}"
 
-
-_SHOWN = reprlib.Repr()
-_SHOWN.maxlist, _SHOWN.maxstring, _SHOWN.maxother = 8, 80, 80
-"""How a value is shown that may be long."""
-
-_EXPECTED = {
-    "model_type": "it must be a mapping of keys",
-    "model_attributes_type": "it must be a mapping of keys",
-    "tuple_type": "it must be a list",
-    "string_pattern_mismatch": "it must consist of letters, digits, _ and -",
-    "finite_number": "it must be finite",
-    "path_type": "it must be the name of a file",
-}
-"""Expectations in place of the messages of pydantic, by the types of its errors."""
 
 _MEANING = {
     "elastic_energy": " (in units of w_int: full conformity needs an energy below w_int)",

@@ -16,24 +16,14 @@ from crackfront.core.bounds import (
     Range,
 )
 from crackfront.core.field.fields import Interpolation
-from crackfront.core.solver import DEFAULT_TOLERANCE
-from crackfront.core.solver.relax import named_solver
+from crackfront.core.solver.relax import SOLVERS
 from crackfront.simulate.contact import SweepLoad
 from crackfront.simulate.line.line_loads import LAW_LENGTH, LineLoad, SpringUnit
 from crackfront.simulate.numerics import Numerics
 from crackfront.simulate.settings import Settings
 from crackfront.simulate.sphere.full_cycle import FullCycle
 from crackfront.simulate.sphere.steady_branches import SteadySchedule
-from crackfront.sweep.section import (
-    ConfigurationError,
-    Count,
-    Density,
-    Energy,
-    Positive,
-    Section,
-    bounds_validator,
-    section_error,
-)
+from crackfront.sweep.section import ConfigurationError, Section, section_error
 from crackfront.sweep.section_checks import (
     check_distinct,
     check_exactly_one,
@@ -41,6 +31,7 @@ from crackfront.sweep.section_checks import (
     check_not_overruled,
     missing_keys,
 )
+from crackfront.validation import Count, Density, Fraction, Positive, one_of, within
 
 Rms = Annotated[float, Field(gt=0, lt=2, allow_inf_nan=False)]
 
@@ -48,15 +39,15 @@ Rms = Annotated[float, Field(gt=0, lt=2, allow_inf_nan=False)]
 class ScalesSection(Section):
     """Scene in SI units."""
 
-    radius: Annotated[float, bounds_validator(SI["m"])]
-    work_of_adhesion: Annotated[float, bounds_validator(SI["J/m^2"])]
-    contact_modulus: Annotated[float, bounds_validator(SI["Pa"])]
+    radius: Annotated[float, within(SI["m"])]
+    work_of_adhesion: Annotated[float, within(SI["J/m^2"])]
+    contact_modulus: Annotated[float, within(SI["Pa"])]
 
 
 class AmplitudesSection(Section):
     """Amplitudes relative to w_int, or to the heights of a measured surface, in one measure."""
 
-    elastic_energy: Annotated[tuple[Energy, ...], Field(min_length=1)] | None = None
+    elastic_energy: Annotated[tuple[Fraction, ...], Field(min_length=1)] | None = None
     work_of_adhesion_rms: Annotated[tuple[Rms, ...], Field(min_length=1)] | None = None
     measured: Annotated[tuple[Positive, ...], Field(min_length=1)] | None = None
 
@@ -102,15 +93,15 @@ class NumericsSection(Section):
     """An error or a resolution, and the solver, as in `Numerics`."""
 
     error: Annotated[float, Field(gt=0, lt=1)] | None = None
-    angles: Annotated[int, bounds_validator(SITES)] | None = None
+    angles: Annotated[int, within(SITES)] | None = None
     angles_per_cutoff: Density | None = None
     samples_per_cutoff: Density | None = None
     interpolation: Interpolation | None = None
-    pixels_per_cutoff: Annotated[float, bounds_validator(PIXELS)] | None = None
+    pixels_per_cutoff: Annotated[float, within(PIXELS)] | None = None
     tile: TileSection
-    tolerance: Annotated[float, bounds_validator(TOLERANCE)] | None = None
+    tolerance: Annotated[float, within(TOLERANCE)] | None = None
     max_sweeps: Count
-    solver: str
+    solver: Annotated[str, one_of(SOLVERS)]
 
     @model_validator(mode="after")
     def _usable(self) -> NumericsSection:
@@ -127,7 +118,6 @@ class NumericsSection(Section):
                 (self.angles, self.angles_per_cutoff),
                 otherwise="give one, or ask for an error",
             )
-        check_makes(lambda: named_solver(self.solver, DEFAULT_TOLERANCE, self.max_sweeps))
         return self
 
     def numerics(self) -> Numerics:
@@ -210,8 +200,8 @@ class FitSection(Section):
     """Range of the fit."""
 
     lowest_elastic_energy: Positive
-    highest_elastic_energy: Energy
-    bootstrap: Annotated[int, bounds_validator(Range(FEWEST_BOOTSTRAP, 10**7))]
+    highest_elastic_energy: Fraction
+    bootstrap: Annotated[int, within(Range(FEWEST_BOOTSTRAP, 10**7))]
 
     @model_validator(mode="after")
     def _ordered(self) -> FitSection:

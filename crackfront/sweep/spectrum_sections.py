@@ -20,13 +20,13 @@ from crackfront.core.spectrum import SelfAffineSpectrum, TabulatedSpectrum
 from crackfront.sweep.section import (
     ConfigurationError,
     InputFile,
-    Positive,
     Section,
     resolved_path,
     section_error,
 )
 from crackfront.sweep.section_checks import check_makes, check_not_overruled, missing_keys
 from crackfront.sweep.sweep import NamedSpectrum
+from crackfront.validation import Positive
 
 # Imported where a configuration names a measured surface.
 if TYPE_CHECKING:

@@ -90,9 +90,12 @@ class Store:
         """Configuration with which the folder was filled last."""
         return self.folder / "configuration.yaml"
 
-    def has_configuration(self, text: str) -> bool:
-        """Whether this is the text of the configuration that is there."""
-        return self.configuration.is_file() and self.configuration.read_bytes() == text.encode()
+    def keep_configuration(self, text: str) -> None:
+        """Write the configuration that results follow, unless it is there already."""
+        path = self.configuration
+        if not (path.is_file() and path.read_bytes() == text.encode()):
+            forget_sums(self.folder)
+            write_text(path, text)
 
     @property
     def hysteresis(self) -> Path:
@@ -411,6 +414,7 @@ class Store:
         read = (shard_columns(*block) for block in blocks)
         parts = [[*itertools.islice(read, len(spectrum))] for spectrum in chosen]
         forget_sums(self.folder)
+        self.keep_configuration(origin.configuration)
         write_request(self.folder, table_request(sweep))
         write_hysteresis(self.hysteresis, sweep, parts, origin)
         return self.hysteresis

@@ -2,20 +2,14 @@
 
 from __future__ import annotations
 
-from base64 import encodebytes
 from collections.abc import Mapping
 from html import escape
 from pathlib import Path
 
 from markdown_it import MarkdownIt
 
-_STYLE = (
-    "body{font:15px/1.5 sans-serif;max-width:75em;margin:2em auto;padding:0 1em;color:#222}"
-    "table{border-collapse:collapse;margin:1em 0;font-size:90%}"
-    "th,td{border:1px solid #bbb;padding:.25em .6em;text-align:left;vertical-align:top}"
-    "th{background:#eee}pre{background:#f5f5f5;padding:1em;overflow-x:auto}"
-    "section p{max-width:50em}figure{margin:1.5em 0}img{max-width:100%;max-height:34em}"
-)
+from crackfront.plots.html_page import html_page, html_pairs, html_picture
+from crackfront.sweep.rows import COMPLETE
 
 
 def summary_page(
@@ -34,39 +28,29 @@ def summary_page(
     # Raw HTML in the text stays text.
     markdown = MarkdownIt("commonmark", {"html": False}).enable("table")
     result, heading, rest = fit.partition("\n## ")
-    return "\n".join(
+    return html_page(
+        title,
         [
-            f'<!doctype html><html lang="en"><head><meta charset="utf-8"><title>{escape(title)}'
-            f"</title><style>{_STYLE}</style></head><body>",
             f"<section>{markdown.render(result)}",
-            *(_picture(caption, path) for caption, path in figures.items()),
+            *(
+                html_picture(path.read_bytes(), path.stem, caption)
+                for caption, path in figures.items()
+            ),
             "</section>",
             markdown.render(heading + rest),
             "<h2>Simulations</h2>",
-            _table(("status", "simulations"), {k: str(n) for k, n in sorted(statuses.items())}),
+            html_pairs(("status", "simulations"), _endings(statuses)),
             "<h2>Origin</h2>",
-            _table(("", ""), origin),
+            html_pairs(("", ""), origin),
             "<h2>Configuration</h2>",
             f"<pre>{escape(configuration)}</pre>",
-            "</body></html>\n",
-        ]
+        ],
     )
 
 
-def _picture(caption: str, path: Path) -> str:
-    """A picture that is embedded in the page, with its caption."""
-    # In short lines, which the report of the workflow needs, as it shows this part of the page.
-    data = encodebytes(path.read_bytes()).decode()
-    return (
-        f'<figure><img src="data:image/png;base64,{data}" alt="{escape(path.stem)}">'
-        f"<figcaption>{escape(caption)}</figcaption></figure>"
-    )
-
-
-def _table(head: tuple[str, str], rows: Mapping[str, str]) -> str:
-    """A table of two columns."""
-    cells = [f"<tr><th>{head[0]}</th><th>{head[1]}</th></tr>"] if any(head) else []
-    cells += [
-        f"<tr><td>{escape(name)}</td><td>{escape(value)}</td></tr>" for name, value in rows.items()
-    ]
-    return f"<table>{''.join(cells)}</table>"
+def _endings(statuses: Mapping[str, int]) -> dict[str, str]:
+    """Numbers of simulations by how they ended; a complete cycle ends when contact is lost."""
+    return {
+        f"{status} (complete)" if status in COMPLETE else status: str(number)
+        for status, number in sorted(statuses.items())
+    }

@@ -21,7 +21,7 @@ from crackfront.simulate.simulation import Simulation, simulation_of
 class NamedSpectrum:
     """A spectrum, lengths in the reduced lateral unit, and what the configuration calls it.
 
-    A straight front is held by springs of so many units of its load.
+    Springs of so many units of the load pull a straight front.
     """
 
     name: str
@@ -71,7 +71,7 @@ class Sweep:
     numerics: Numerics
     """How simulations are resolved and solved."""
     schedule: SweepLoad
-    """Loads of all simulations, or how straight fronts are held."""
+    """Loads of all simulations, or the springs of straight fronts."""
     record: tuple[Literal["fronts", "energy"], ...]
     """What to record in addition to the curves."""
     failed_fraction: float
@@ -150,10 +150,10 @@ class Sweep:
     def named_shard(self, item: NamedSpectrum, realisations: range) -> Shard:
         """Shard of a spectrum and a block of realisations, which the sweep must have."""
         everything = range(self.n_realisation)
-        if not realisations or realisations[0] < 0 or realisations[-1] >= everything.stop:
+        if realisations.stop > everything.stop:
             raise ValueError(
-                f"realisations {realisations.start} to {realisations.stop - 1} are not among those "
-                f"of the sweep, 0 to {self.n_realisation - 1}"
+                f"realisations {realisations.start} to {realisations.stop - 1} are not all in the "
+                f"sweep, which has 0 to {self.n_realisation - 1}"
             )
         block = f".{realisations.start}-{realisations.stop - 1}"
         return Shard(item, realisations, item.name + ("" if realisations == everything else block))

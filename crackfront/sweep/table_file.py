@@ -92,7 +92,7 @@ def read_table(path: Path) -> SweepTable:
     """Arrays of a sweep that a fit needs, from a file that :func:`write_hysteresis` wrote.
 
     UnreadableFileError if the file is missing, truncated, or not the table of a sweep, or if a
-    value is far from that of any contact.
+    value exceeds what any contact can have.
     """
     names = sorted(set(SweepTable.__dataclass_fields__) - {"contact_radius", "parameters"})
     dataset = _read(path, (*names, *_WINDOW))

@@ -28,7 +28,7 @@ from crackfront.simulate.run_simulation import (
     run_simulation,
 )
 from crackfront.simulate.simulation import Simulation
-from crackfront.simulate.storage import set_aside, set_aside_if_damaged, write_text
+from crackfront.simulate.storage import set_aside, set_aside_if_damaged
 from crackfront.sweep import parallel
 from crackfront.sweep.checkpoints import CheckpointTimer
 from crackfront.sweep.curves import BATCH, FinishedSimulation, curves_dataset, write_curves
@@ -131,9 +131,9 @@ def run_and_store(
         folder.mkdir(parents=True, exist_ok=True)
         writers[folder] = BatchWriter(folder, origin, seconds)
         tasks += [_Task(simulation, folder, origin, seconds) for simulation in simulations]
-    if tasks or not store.has_configuration(origin.configuration):
+    if tasks:
         forget_sums(store.folder)
-        write_text(store.configuration, origin.configuration)
+    store.keep_configuration(origin.configuration)
     tasks.sort(key=lambda task: -expected_cost(task.simulation).seconds)
     for solver, kind in {(t.simulation.solver.name, type(t.simulation.schedule)) for t in tasks}:
         compile_solver(solver, kind)

@@ -127,7 +127,7 @@ def _prediction() -> Mapping[str, Number]:
     """Factor k of the first film, predicted and simulated."""
     film = next(comparisons())
     return {
-        "k predicted": interval_number(film.prediction.factors.both),
+        "k predicted": interval_number(film.prediction.k),
         "k simulated": interval_number(film.simulations.k),
     }
 

@@ -23,6 +23,7 @@ from crackfront.sweep.integrity import write_sums
 from crackfront.sweep.watching import with_progress
 from studies.accuracy import energies as synthetic
 from studies.accuracy import energy_balance as balance
+from studies.accuracy import individual_pinning as pinning
 from studies.accuracy import measured_loops as rigs
 from studies.accuracy import movement as settled
 from studies.accuracy import predictions as films
@@ -168,6 +169,17 @@ def energy_balance(keep: bool) -> None:
     announce_compilation()
     parts = {"Energy balance": balance.energy_table()}
     tell("accuracy", parts, keep=keep)
+
+
+@commands.command(
+    "individual-pinning", epilog=examples("python -m studies accuracy individual-pinning")
+)
+@keep_option
+def individual_pinning(keep: bool) -> None:
+    """Measure the hysteresis of straight fronts far beyond w_rms = w_int; print a table."""
+    announce_compilation()
+    table, numbers = pinning.measured_pinning()
+    tell("accuracy", {"Individual pinning": table}, numbers=numbers, keep=keep)
 
 
 @commands.command(epilog=examples("python -m studies accuracy loops --loops 40"))

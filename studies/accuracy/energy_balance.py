@@ -1,7 +1,7 @@
 """Dissipated energy of a cycle against its load step, by three quadratures.
 
 The dissipated energies equal, to round-off, the work of the load steps as they are made: the front
-is held while the load changes (unless its edge comes to lie in compression), and jumps at the new
+is fixed while the load changes (unless its edge comes to lie in compression), and jumps at the new
 load. This overshoots the quasi-static loop by an error of first order; the trapezoidal rule on the
 force curve and the extrapolation of two steps come nearer.
 """
@@ -51,11 +51,13 @@ def energies(record: CycleRecord) -> tuple[float, float, float]:
     assert record.dissipated_energy is not None, "the cycle records energies"
     assert record.pull_off_energy is not None, "the cycle records energies"
     change = np.diff(np.append(record.states.penetration, record.end_load))
-    held = record.states.force + 2 * CONTACT_MODULUS * record.states.mean_radius * change
-    # Contact is lost at the last load by the front that was held on the way to it.
-    after = np.append(record.states.force[1:], held[-1])
+    fixed_front = record.states.force + 2 * CONTACT_MODULUS * record.states.mean_radius * change
+    # Contact is lost at the last load by the front that was fixed on the way to it.
+    after = np.append(record.states.force[1:], fixed_front[-1])
     lost = record.dissipated_energy.sum() + record.pull_off_energy
-    work, trapezoid = (np.sum((record.states.force + end) * change) / 2 for end in (held, after))
+    work, trapezoid = (
+        np.sum((record.states.force + end) * change) / 2 for end in (fixed_front, after)
+    )
     return float(lost), float(work), float(trapezoid)
 
 

@@ -98,7 +98,7 @@ def comparison_table(items: Iterable[Comparison]) -> str:
                 f"{1e6 * film.roll_off:g}",
                 f"{law.e_el.value / law.work_of_adhesion:.3f}",
                 f"{law.correlation_length / law.contact_radius:.4f}",
-                with_interval(law.factors.both),
+                with_interval(law.k),
                 with_interval(simulations.k),
                 with_interval(law.front_hysteresis.each(lambda work: 1e3 * work)),
                 with_interval(simulations.hysteresis.each(lambda work: 1e3 * work)),

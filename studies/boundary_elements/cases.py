@@ -19,12 +19,8 @@ from crackfront.core.cycle.follow import Load
 from crackfront.core.cycle.load_schedule import LoadSchedule
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.synthesis import gaussian_field
-from crackfront.sweep.section import (
-    Positive,
-    Section,
-    bounds_validator,
-    section_error,
-)
+from crackfront.sweep.section import Section, section_error
+from crackfront.validation import Positive, within
 from studies.boundary_elements.contact import HalfSpaceContact, half_space_contact
 
 VERSION = 1
@@ -66,7 +62,7 @@ class Loads(Section):
 
     max_penetration: Positive
     step: Positive
-    shown_penetration: Annotated[float, bounds_validator(Range(-NUMBER.most, NUMBER.most))]
+    shown_penetration: Annotated[float, within(Range(-NUMBER.most, NUMBER.most))]
     steady: SteadyBranches | None = None
 
     @model_validator(mode="after")

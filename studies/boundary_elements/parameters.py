@@ -10,15 +10,8 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from crackfront.core.resources import check_memory
-from crackfront.sweep.section import (
-    Count,
-    Positive,
-    Section,
-    Seed,
-    section_error,
-    validated,
-    yaml_mapping,
-)
+from crackfront.sweep.section import Section, section_error, validated, yaml_mapping
+from crackfront.validation import Count, Positive, Seed
 from studies.boundary_elements.cases import Case, Loads
 from studies.boundary_elements.contact import check_resolution
 

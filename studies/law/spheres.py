@@ -1,4 +1,4 @@
-"""Spheres held against the law of k, to which nothing is adjusted."""
+"""Spheres compared with the law of k, to which nothing is adjusted."""
 
 from __future__ import annotations
 
@@ -159,7 +159,7 @@ def departures(rows: Sequence[SphereRow]) -> list[float]:
 def sphere_table(rows: Sequence[SphereRow]) -> str:
     """Table of simulated and predicted k in Markdown, and how far they are apart.
 
-    The intervals of the law are held against simulations with the errors of both.
+    Compares the law's intervals with simulations, with the errors of both.
     """
     header = "spectrum | e_el/w_int | radius | g | k, line alone | k, simulated | difference"
     laws = [law_of(row) for row in rows]

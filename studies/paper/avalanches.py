@@ -13,7 +13,7 @@ from crackfront.core.arrays import Array
 from crackfront.core.cycle.energy import dissipated_energy
 from crackfront.core.variables import ADHESION, AREA, ENERGY, LATERAL, VERTICAL, variable
 from crackfront.surfaces.instabilities import resolved_motion, swept_clusters
-from crackfront.sweep.section import Count, Positive
+from crackfront.validation import Count, Positive
 from studies.paper.events import EventParameters, EventRecord, event_record
 from studies.paper.figure import Integers, Progress, values_of
 from studies.paper.rough import (

@@ -19,8 +19,9 @@ from crackfront.plots.style import BLACK, BLUE, PAGE, VERMILION, blank_figure, e
 from crackfront.simulate.run_simulation import compile_solver
 from crackfront.simulate.simulation import simulation_adhesion, simulation_field
 from crackfront.simulate.sphere.full_cycle import FullCycle
+from studies.paper.checks import Check, close_to
 from studies.paper.drawing import BRANCHES, Animation
-from studies.paper.figure import Check, Figure, Integers, Progress, close_to, values_of
+from studies.paper.figure import Figure, Integers, Progress, values_of
 from studies.paper.rough import RoughCycleParameters, patch_of, whole_cycle
 
 _STATE, _ANGLE, _X, _Y = "state", "angle", "x", "y"

@@ -26,8 +26,9 @@ from crackfront.plots.style import (
     explain,
     house_style,
 )
+from studies.paper.checks import Check
 from studies.paper.drawing import THEORY, name_panels
-from studies.paper.figure import Check, Figure
+from studies.paper.figure import Figure
 from studies.paper.front_spectra import (
     RoughnessFit,
     RoughnessRecord,
@@ -40,6 +41,13 @@ from studies.paper.roughness import SPHERE, STRONG_LINE, WEAK_LINE, roughness_re
 _EXPONENTS = (0.388, 0.5, 0.388, 0.5)
 """Roughness exponents of a line with long-range elasticity at its threshold (Rosso and Krauth,
 Phys. Rev. E 65, 025101), and where disorder is a perturbation: strong and weak disorder."""
+
+_EXPECTATION = (
+    "Roughness of fronts: beyond the Larkin length a line with long-range elasticity has the "
+    "exponent 0.388 of its depinning threshold (Rosso and Krauth, Phys. Rev. E 65, 025101), below "
+    "it 0.5, where disorder is a perturbation. The range of a fit may contain the crossover."
+)
+"""Where the expectations come from, and why exponents may differ."""
 
 _TOLERANCE = 0.05
 """Largest deviation of an exponent, about as large as by a crossover in the range of the fit."""
@@ -63,6 +71,7 @@ def roughness_checks(record: RoughnessRecord) -> tuple[Check, ...]:
             f"{weak.exponent - strong.exponent:.3f}",
             weak.exponent - strong.exponent > float(np.hypot(strong.reach, weak.reach)),
             "intervals over surfaces alone, not of the choice of the range",
+            expectation=_EXPECTATION,
         ),
     )
 
@@ -87,7 +96,8 @@ def _exponent_check(record: RoughnessRecord, index: int, fit: RoughnessFit, clai
         f"{low:.3g} to {high:.3g} ({np.log10(high / low):.2f} decades), their shorter half "
         f"{halves[0]:.3f}, longer half {halves[1]:.3f}; Larkin length "
         f"{record.larkin_length[index]:.3g}; the stiffness of the {held}, "
-        f"{record.ring_stiffness[index]:.2g} beside n, is in the abscissa",
+        f"{record.ring_stiffness[index]:.2g} next to n, is in the abscissa",
+        expectation=_EXPECTATION,
     )
 
 

@@ -142,7 +142,10 @@ _REDUCED: Mapping[str, tuple[Mapping[str, Any], Callable[[Any], Numbers]]] = {
     "main-3cd": ({"short_cutoff": 0.01, "roll_off": 0.16}, _pinned_loop),
     "main-4": ({}, _mapping),
     "main-5a": ({}, _film_scales),
-    "main-5bc": ({"short_cutoff": 0.525e-6, "tile_roll_offs": 10}, _nanodiamond),
+    "main-5bc": (
+        {"short_cutoff": 0.525e-6, "tile_roll_offs": 10, "n_surface": 1},
+        _nanodiamond,
+    ),
     "si-6": ({"realisations": 1}, _synthetic_film),
     "beyond-animation": ({}, _motion),
     "beyond-avalanches": (

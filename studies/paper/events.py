@@ -15,7 +15,7 @@ import numpy as np
 from crackfront.core.arrays import Array
 from crackfront.core.variables import variable
 from crackfront.surfaces.instabilities import resolved_motion, swept_areas, swept_clusters
-from crackfront.sweep.section import Positive
+from crackfront.validation import Positive
 from studies.paper.figure import Integers, Progress
 from studies.paper.rough import surface_means
 from studies.paper.straight import StraightParameters

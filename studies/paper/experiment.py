@@ -11,9 +11,10 @@ from crackfront.analysis.estimate import REACH, Estimate
 from crackfront.analysis.finding import PAPER_FACTOR
 from crackfront.analysis.validity import front_excess
 from crackfront.plots.style import BLACK, BLUE, COLUMN, GREEN, VERMILION, blank_figure, house_style
+from studies.canaries import interval_number
 from studies.numbers import Number
 from studies.pages import markdown_table
-from studies.paper.main_5bc import MEASURED
+from studies.paper.main_5bc import MEASURED, widest_instability_estimate
 from studies.paper.nanodiamond import NanodiamondContact
 
 
@@ -81,6 +82,12 @@ def hystereses_numbers(shown: tuple[Hysteresis, ...]) -> dict[str, Number]:
         "nanodiamond, prediction": Number(1e3 * prediction.value, 1e3 * reach, unit),
         "nanodiamond, measured over prediction": Number(ratio, ratio_reach),
     }
+
+
+def instability_numbers(contact: NanodiamondContact) -> dict[str, Number]:
+    """Widest single instability of an approach on nanodiamond."""
+    widest = widest_instability_estimate(contact)
+    return {"nanodiamond, widest instability": interval_number(widest, "um")}
 
 
 def hystereses_figure(shown: tuple[Hysteresis, ...]) -> Figure:

@@ -8,15 +8,14 @@ from __future__ import annotations
 
 import importlib
 import sys
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass, fields
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, cast, get_type_hints
+from typing import TYPE_CHECKING, Any, cast, get_type_hints
 
 import numpy as np
 from numpy.typing import NDArray
 
-from crackfront.analysis.estimate import with_error
 from crackfront.sweep.section import (
     ConfigurationError,
     Section,
@@ -27,76 +26,13 @@ from crackfront.sweep.section import (
 if TYPE_CHECKING:
     from matplotlib.figure import Figure as Drawing
 
+    from studies.paper.checks import Check
     from studies.paper.drawing import Animation
 
 Integers = NDArray[np.int64]
 
 Progress = Callable[[str], None]
 """Called with a line when a part of a computation is done."""
-
-
-@dataclass(frozen=True, slots=True)
-class Check:
-    """One claim and whether the data agree with it."""
-
-    claim: str  # what the paper states, or what must be true
-    expected: str  # its number, with the tolerance
-    computed: str  # what the data of the figure say
-    passed: bool
-    remark: str = ""  # where the difference comes from, or what the number rests on
-    law: str = ""  # number of the law of k, if the computed one agrees with it
-
-    @property
-    def result(self) -> Result:
-        """How the check ends; a difference that the law of k predicts does not fail."""
-        if self.passed:
-            return "agrees"
-        return "differs as the law of k says" if self.law else "FAIL"
-
-
-Result = Literal["agrees", "differs as the law of k says", "FAIL"]
-"""How a check ends."""
-
-
-def close_to(
-    claim: str,
-    measured: float,
-    expected: float,
-    tolerance: float,
-    *,
-    units: str = "",
-    remark: str = "",
-    law: tuple[float, float] | None = None,
-) -> Check:
-    """Check that a number lies within an absolute tolerance of another.
-
-    `law` is the number that the law of k gives, and the half of its interval.
-    """
-    after = f" {units}" if units else ""
-    said = ""
-    if law is not None and abs(measured - law[0]) <= law[1]:
-        said = f"{with_error(*law)}{after}"
-    return Check(
-        claim,
-        f"{with_error(expected, tolerance)}{after}",
-        f"{measured:.6g}{after}",
-        abs(measured - expected) <= tolerance,
-        remark,
-        said,
-    )
-
-
-def checks_table(checks: Iterable[Check]) -> Iterator[str]:
-    """Lines of a Markdown table, one row a check."""
-    yield "| claim | expected | found | result | remark |"
-    yield "| --- | --- | --- | --- | --- |"
-    for check in checks:
-        result: str = check.result
-        if result == "FAIL":
-            result = f"**{result}**"
-        elif check.law and not check.passed:
-            result = f"{result}: {check.law}"
-        yield f"| {check.claim} | {check.expected} | {check.computed} | {result} | {check.remark} |"
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,12 +12,8 @@ from pydantic import Field, model_validator
 from crackfront.core.arrays import Array
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.variables import variable
-from crackfront.sweep.section import (
-    InputFile,
-    Plateau,
-    Positive,
-    Section,
-)
+from crackfront.sweep.section import InputFile, Section
+from crackfront.validation import Plateau, Positive
 from studies.paper.measured import read_profile_density
 from studies.paper.rough import rough_spectrum
 

@@ -20,9 +20,11 @@ from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.core.variables import ADHESION, FORCE, LATERAL, VERTICAL, variable
 from crackfront.plots.parts import FORCE_LABEL, RADIUS_LABEL, draw_arrow
 from crackfront.plots.style import COLUMN, VERMILION, blank_figure, house_style
-from crackfront.sweep.section import Positive, Section, section_error
+from crackfront.sweep.section import Section, section_error
+from crackfront.validation import Positive
+from studies.paper.checks import Check, close_to
 from studies.paper.drawing import BRANCHES, DOTTED, draw_jump, write_beside
-from studies.paper.figure import Check, Figure, Integers, Progress, close_to, values_of
+from studies.paper.figure import Figure, Integers, Progress, values_of
 from studies.paper.rings import INNERMOST, circle_steps
 
 _STATE = "state"

@@ -19,14 +19,11 @@ from crackfront.core.arrays import Array
 from crackfront.core.cycle.load_schedule import LoadSchedule
 from crackfront.core.variables import ADHESION, FORCE, LATERAL, VERTICAL, variable
 from crackfront.plots import parts, style
-from crackfront.sweep.section import (
-    Count,
-    Positive,
-    Section,
-    section_error,
-)
+from crackfront.sweep.section import Section, section_error
+from crackfront.validation import Count, Positive
+from studies.paper.checks import Check, close_to
 from studies.paper.drawing import BRANCHES, write_beside
-from studies.paper.figure import Check, Figure, Integers, Progress, close_to, values_of
+from studies.paper.figure import Figure, Integers, Progress, values_of
 from studies.paper.rings import INNERMOST, Rings, first_stops, folds, steady_stiffness
 
 _STATE, _LOOP, _CASE = "state", "loop", "case"

@@ -27,9 +27,11 @@ from crackfront.surfaces.instabilities import (
     resolved_motion,
     shortest_instability,
 )
-from crackfront.sweep.section import Count, Positive, section_error
+from crackfront.sweep.section import section_error
+from crackfront.validation import Count, Positive
+from studies.paper.checks import Check, close_to
 from studies.paper.drawing import BRANCHES, draw_jump, name_panels, write_beside
-from studies.paper.figure import Check, Figure, Integers, Progress, close_to
+from studies.paper.figure import Figure, Integers, Progress
 from studies.paper.rough import STRONG, WEAK, DisorderParameters, RoughContact, flat_spectrum
 
 _DISORDER, _EVENT, _ANGLE, _STATE = "disorder", "instability", "angle", "state"

@@ -9,6 +9,8 @@ from typing import Annotated
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
+from matplotlib.image import AxesImage
+from matplotlib.patches import Rectangle
 from numpy.typing import NDArray
 from pydantic import Field
 
@@ -29,9 +31,10 @@ from crackfront.plots.parts import ADHESION_LABEL, field_colours
 from crackfront.plots.style import BLACK, BLUE, PAGE, VERMILION, blank_figure, explain, house_style
 from crackfront.simulate.numerical_errors import stated_error
 from crackfront.simulate.simulation import simulation_adhesion, simulation_field
-from crackfront.sweep.section import Positive
+from crackfront.validation import Positive
+from studies.paper.checks import Check, close_to
 from studies.paper.drawing import name_panels
-from studies.paper.figure import Check, Figure, Integers, Progress, close_to, values_of
+from studies.paper.figure import Figure, Integers, Progress, values_of
 from studies.paper.rough import (
     ONE_DIGIT,
     RoughCycleParameters,
@@ -43,6 +46,7 @@ from studies.paper.rough import (
 )
 
 _STATE, _ANGLE, _FRONT, _X, _Y = "state", "angle", "front", "x", "y"
+_BRANCH, _CLOSE_X, _CLOSE_Y = "branch", "close_x_point", "close_y_point"
 
 FRONTS = ("approach", "retraction", "rigid circle")
 """Order of the fronts at b = 0."""
@@ -53,6 +57,9 @@ _N_ARC = 32
 _PATCH_POINTS = 600
 """Points along a side of the patch of the field."""
 
+_CLOSE_POINTS = 240
+"""Points along a side of the patch around one front."""
+
 
 class PinnedLoopParameters(RoughCycleParameters):
     """What Fig. 3c and 3d show."""
@@ -60,6 +67,7 @@ class PinnedLoopParameters(RoughCycleParameters):
     roll_off: Positive  # of the spectrum (reduced lateral length)
     hurst: Annotated[float, Field(gt=0, le=1)]
     patch_side: Positive  # of the part of the field that is shown (reduced lateral length)
+    close_side: Positive  # and of the parts around a front, where its meandering is seen
 
     @property
     def spectrum(self) -> SelfAffineSpectrum:
@@ -93,6 +101,11 @@ class PinnedLoop:
     x: Array = variable("abscissa of the patch, along the first ray", LATERAL, _X)
     y: Array = variable("ordinate of the patch", LATERAL, _Y)
     patch: NDArray[np.float32] = variable("local work of adhesion", ADHESION, _X, _Y)
+    close_x: Array = variable("abscissa around a front", LATERAL, _BRANCH, _CLOSE_X)
+    close_y: Array = variable("ordinate around the fronts", LATERAL, _CLOSE_Y)
+    close_patch: NDArray[np.float32] = variable(
+        "local work of adhesion around a front", ADHESION, _BRANCH, _CLOSE_X, _CLOSE_Y
+    )
 
 
 def pinned_loop(parameters: PinnedLoopParameters, progress: Progress) -> PinnedLoop:
@@ -120,6 +133,8 @@ def pinned_loop(parameters: PinnedLoopParameters, progress: Progress) -> PinnedL
     front = np.stack([*fronts, np.full(fronts[0].size, circle)])
     across = (np.arange(_PATCH_POINTS) / (_PATCH_POINTS - 1) - 0.5) * parameters.patch_side
     x = across + np.mean([front[0, 0], front[1, 0]])
+    close = (np.arange(_CLOSE_POINTS) / (_CLOSE_POINTS - 1) - 0.5) * parameters.close_side
+    close_x = close + front[:2, :1]
     return PinnedLoop(
         status=record.status.value,
         **values_of(parameters, "short_cutoff", "roll_off", "hurst"),
@@ -137,6 +152,9 @@ def pinned_loop(parameters: PinnedLoopParameters, progress: Progress) -> PinnedL
         x=x,
         y=across,
         patch=patch_of(field, x, across),
+        close_x=close_x,
+        close_y=close,
+        close_patch=np.stack([patch_of(field, along, close) for along in close_x]),
     )
 
 
@@ -227,46 +245,98 @@ def _front_checks(loop: PinnedLoop) -> tuple[Check, ...]:
 
 
 def pinned_loop_figure(loop: PinnedLoop) -> Drawing:
-    """The loop, and the fronts of both branches at b = 0."""
+    """The loop, the fronts of both branches at b = 0, and both fronts from close by."""
     with house_style():
         figure = blank_figure(PAGE, 0.46 * PAGE)
-        loop_axes, front_axes = figure.subplots(1, 2)
+        panels = figure.subplot_mosaic(
+            [["c", "d", "approach"], ["c", "d", "retraction"]], width_ratios=(1.2, 1.1, 0.6)
+        )
         works, window = (loop.approach, loop.retraction), (loop.lowest_radius, loop.highest_radius)
-        draw_loop(loop_axes, loop, works, window, elastic_energy=loop.elastic_energy)
-        _draw_fronts(front_axes, loop)
-        name_panels((loop_axes, front_axes), "cd")
-        explain(figure, "arrows: the direction of motion; d: the fronts at $b=0$")
+        draw_loop(panels["c"], loop, works, window, elastic_energy=loop.elastic_energy)
+        _draw_fronts(panels["d"], loop)
+        for branch, name in enumerate(FRONTS[:2]):
+            image = _draw_close(panels[name], loop, branch)
+            _outline(panels["d"], loop, branch)
+        bar = figure.colorbar(image, ax=[panels[name] for name in FRONTS[:2]], extend="both")
+        bar.set_label(rf"local {ADHESION_LABEL}")
+        name_panels((panels["c"], panels["d"]), "cd")
+        explain(
+            figure,
+            "arrows: the direction of motion; d: the fronts at $b=0$; right: the squares of d, "
+            f"{loop.close_y[-1] - loop.close_y[0]:.2g} wide; in approach the front rests at places "
+            "of low adhesion (white), in retraction at places of high adhesion",
+        )
         return figure
+
+
+_STYLES = ((BLUE, "-"), (VERMILION, RETRACTION), (BLACK, (0, (4, 2))))
+"""Colours and line styles of the fronts."""
 
 
 def _draw_fronts(axes: Axes, loop: PinnedLoop) -> None:
     """The part of the fronts that crosses the patch of the field."""
+    _draw_field(axes, loop, loop.x, loop.y, loop.patch)
+    for front in range(len(FRONTS)):
+        _draw_front(axes, loop, front, loop.y[-1])
+    label_plane(axes)
+    axes.legend(
+        loc="lower center",
+        bbox_to_anchor=(0.56, 1.0),
+        ncols=3,
+        columnspacing=0.7,
+        handlelength=1.2,
+        handletextpad=0.4,
+    )
+
+
+def _draw_close(axes: Axes, loop: PinnedLoop, branch: int) -> AxesImage:
+    """Field and front of a branch from close by."""
+    x = loop.close_x[branch]
+    image = _draw_field(axes, loop, x, loop.close_y, loop.close_patch[branch])
+    _draw_front(axes, loop, branch, loop.close_y[-1])
+    axes.set(xticks=[], yticks=[], title=FRONTS[branch])
+    return image
+
+
+def _outline(axes: Axes, loop: PinnedLoop, branch: int) -> None:
+    """Square around the part of a front that is also shown from close by."""
+    x, y = loop.close_x[branch], loop.close_y
+    square = Rectangle(
+        (x[0], y[0]), x[-1] - x[0], y[-1] - y[0], fill=False, color=BLACK, linewidth=0.8, zorder=4
+    )
+    axes.add_patch(square)
+
+
+def _draw_field(
+    axes: Axes, loop: PinnedLoop, x: Array, y: Array, patch: NDArray[np.float32]
+) -> AxesImage:
+    """A patch of the field, with the greys of all patches."""
     mean, reach = 1 - loop.elastic_energy, 4 * np.sqrt(loop.elastic_energy)
+    extent = (x[0], x[-1], y[0], y[-1])
     image = axes.imshow(
-        loop.patch.T,
+        patch.T,
         origin="lower",
-        extent=(loop.x[0], loop.x[-1], loop.y[0], loop.y[-1]),
+        extent=extent,
         cmap=field_colours(),
         vmin=mean - reach,
         vmax=mean + reach,
         interpolation="antialiased",
     )
-    bar = axes.figure.colorbar(image, ax=axes, extend="both", pad=0.02)
-    bar.set_label(rf"local {ADHESION_LABEL}")
+    axes.set(xlim=extent[:2], ylim=extent[2:])
+    return image
+
+
+def _draw_front(axes: Axes, loop: PinnedLoop, front: int, reach: float) -> None:
+    """A front about the first ray, as far as ordinates of a reach need."""
     # From -pi to pi, so that the part about the first ray is one line.
     half = loop.angle.size // 2
     angle = np.roll(np.where(loop.angle < np.pi, loop.angle, loop.angle - 2 * np.pi), half)
-    colours, styles = (BLUE, VERMILION, BLACK), ("-", RETRACTION, (0, (4, 2)))
-    for front, colour, style, label in zip(loop.front, colours, styles, FRONTS, strict=True):
-        radius = np.roll(front, half)
-        near = np.abs(angle) < 2 * loop.y[-1] / loop.x[0]
-        x, y = (radius * np.cos(angle))[near], (radius * np.sin(angle))[near]
-        axes.plot(x, y, color=colour, linestyle=style, linewidth=1.2, label=label)
-        # A white rim, as fronts and field are of similar greys in print.
-        axes.plot(x, y, color="white", linewidth=3.0, zorder=1.5)
-    axes.set(xlim=(loop.x[0], loop.x[-1]), ylim=(loop.y[0], loop.y[-1]))
-    label_plane(axes)
-    axes.legend(loc="lower center", bbox_to_anchor=(0.55, 1.0), ncols=3, columnspacing=1.0)
+    radius, (colour, style) = np.roll(loop.front[front], half), _STYLES[front]
+    near = np.abs(angle) < 2 * reach / loop.x[0]
+    x, y = (radius * np.cos(angle))[near], (radius * np.sin(angle))[near]
+    axes.plot(x, y, color=colour, linestyle=style, linewidth=1.2, label=FRONTS[front])
+    # A white rim, as fronts and field are of similar greys in print.
+    axes.plot(x, y, color="white", linewidth=3.0, zorder=1.5)
 
 
 FIGURE = Figure(

@@ -24,16 +24,11 @@ from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.core.variables import ADHESION, LATERAL, VERTICAL, variable
 from crackfront.plots.parts import HEIGHT_LABEL, LENGTH_LABEL, label_panel
 from crackfront.plots.style import BLUE, PAGE, VERMILION, blank_figure, explain, house_style
-from crackfront.sweep.section import (
-    Count,
-    Energy,
-    Positive,
-    Section,
-    Seed,
-    section_error,
-)
+from crackfront.sweep.section import Section, section_error
+from crackfront.validation import Count, Fraction, Positive, Seed
+from studies.paper.checks import Check, close_to
 from studies.paper.drawing import DOTTED, write_beside
-from studies.paper.figure import Check, Figure, Integers, Progress, close_to
+from studies.paper.figure import Figure, Integers, Progress
 from studies.paper.rough import rough_spectrum
 from studies.paper.tile_sizes import tile_mean_square
 
@@ -53,7 +48,7 @@ class MappingParameters(Section):
     short_cutoff: Positive  # spectrum of the heights (reduced lateral length, the last 1)
     roll_off: Positive
     hurst: Annotated[float, Field(gt=0, le=1)]
-    elastic_energy: Energy  # of full conformity (w_int)
+    elastic_energy: Fraction  # of full conformity (w_int)
     side: Positive  # of the periodic tile (reduced lateral length)
     patch: Positive  # side of the part that is shown
     n_point: Count  # points along a side of the tile

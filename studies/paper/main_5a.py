@@ -12,9 +12,11 @@ from pydantic import model_validator
 from crackfront.core.arrays import Array
 from crackfront.core.variables import variable
 from crackfront.plots import density_axes, style
-from crackfront.sweep.section import Positive, section_error
+from crackfront.sweep.section import section_error
+from crackfront.validation import Positive
+from studies.paper.checks import Check, close_to
 from studies.paper.drawing import write_beside
-from studies.paper.figure import Check, Figure, Progress, close_to, values_of
+from studies.paper.figure import Figure, Progress, values_of
 from studies.paper.film import CONVERTED_LABEL, FilmDensities, FilmParameters, conformity_energy
 
 _ORDER = "order"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from functools import partial
 from typing import Any
@@ -14,22 +14,29 @@ from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure as Drawing
 
-from crackfront.analysis.estimate import REACH
+from crackfront.analysis.estimate import REACH, Estimate, mean_estimate, with_interval
 from crackfront.analysis.finding import PAPER_FACTOR
 from crackfront.analysis.steady_adhesion import steady_adhesion
 from crackfront.core import jkr
 from crackfront.core.arrays import Array
 from crackfront.core.cycle.follow import Load
-from crackfront.core.cycle.record import Recorder
+from crackfront.core.cycle.record import CycleRecord, Recorder
 from crackfront.core.outcome import Status
 from crackfront.plots.style import BLACK, ORANGE, PAGE, blank_figure, explain, house_style
 from crackfront.simulate.simulation import simulation_adhesion, simulation_field
+from studies.paper.checks import Check, close_to
 from studies.paper.drawing import BRANCHES, name_panels
-from studies.paper.figure import Check, Figure, Progress, close_to, values_of
+from studies.paper.figure import Figure, Progress, values_of
 from studies.paper.measured import ForceRadius, fitted_adhesion
 from studies.paper.nanodiamond import EVERY_WAVELENGTH, NanodiamondContact, NanodiamondParameters
-from studies.paper.perimeters import STRIDES, Perimeters
+from studies.paper.perimeters import Advance, Perimeters, widest_instability
 from studies.paper.rough import ONE_DIGIT, expected_seconds, recorded
+
+_MICRO = 1e6
+"""Micrometres in a metre."""
+
+_SEVERAL_TENS = (20.0, 100.0)
+"""Extents that count as several tens of micrometres (Units: um)."""
 
 _SYNTHETIC_POINTS = 40
 """Points of a synthetic measurement."""
@@ -42,50 +49,47 @@ def nanodiamond_contact(
     parameters: NanodiamondParameters, progress: Progress
 ) -> NanodiamondContact:
     """Approach to the largest force, retraction until contact is lost, and the fits of w_int."""
-    scales, simulation = parameters.scales, parameters.simulation()
-    adhesion = simulation_adhesion(simulation)
-    passed = simulation.spectrum.correlation_length
-    every = max(1, round(parameters.line_step / parameters.step))
-    perimeters = Perimeters(passed, parameters.shown_force / scales.force, every)
-    recorder = Recorder(observers=[perimeters])
-    field, loads = simulation_field(simulation, adhesion), _loads(parameters, recorder, progress)
-    record = recorded(simulation, field, loads, recorder)
+    scales = parameters.scales
+    surface = _Surface(parameters, 0)
+    record = surface.record(_cycle(parameters, surface.recorder, progress))
+    perimeters = surface.perimeters
     if not np.any(record.states.direction < 0):
         raise ValueError(f"the largest force was not reached: {record.status.value}")
     if not perimeters.lines:
         raise ValueError("no state lies between jump-in and shown_force; raise shown_force")
     progress(f"retraction: {record.status.value}")
-    steady = steady_adhesion(record, passed)
+    steady = steady_adhesion(record, surface.correlation_length)
     if steady.sentence:
         raise ValueError(steady.sentence)
-    states, points, surface = record.states, parameters.points(), scales.work_of_adhesion
-    energy, whole = adhesion.e_el * surface, parameters.whole_elastic_energy
+    energy, whole = surface.elastic_energy, parameters.whole_elastic_energy
+    arc, extents, widest = _instabilities(parameters, surface, progress)
+    states, points, adhesion = record.states, parameters.points(), scales.work_of_adhesion
     radius, force = states.mean_radius * scales.lateral, states.force * scales.force
     simulated = ForceRadius(force, radius, states.direction)
     synthetic = _synthetic_points(parameters, radius)
-    widest, first = perimeters.widest, STRIDES[0]
-    arc = widest[first]
     return NanodiamondContact(
         status=record.status.value,
         sphere_radius=scales.radius,
         **values_of(scales, "work_of_adhesion", "contact_modulus"),
         **values_of(parameters, "factor", "whole_elastic_energy", "short_cutoff", "roll_off"),
-        **values_of(parameters, "hurst", "largest_force", "shown_force"),
+        **values_of(parameters, "hurst", "largest_force", "shown_force", "precision"),
         elastic_energy=energy,
         jump_in=perimeters.states[0].penetration * scales.vertical,
         direction=states.direction,
         penetration=states.penetration * scales.vertical,
         radius=radius,
         force=force,
-        approach=surface * np.array([steady.w_appr, steady.w_appr_error]),
-        retraction=surface * np.array([steady.w_retr, steady.w_retr_error]),
+        approach=adhesion * np.array([steady.w_appr, steady.w_appr_error]),
+        retraction=adhesion * np.array([steady.w_retr, steady.w_retr_error]),
         angle=perimeters.angle,
         line=(np.array(perimeters.lines) * scales.lateral).astype(np.float32),
         line_force=np.array([state.force for state in perimeters.states]) * scales.force,
-        threshold=passed * scales.lateral,
-        load_step=parameters.step * np.array(STRIDES),
-        extent=scales.lateral * np.array([widest[stride].extent for stride in STRIDES]),
-        extents=scales.lateral * np.array(perimeters.extents[first]),
+        threshold=surface.correlation_length * scales.lateral,
+        load_step=parameters.step,
+        tile_side=surface.simulation.resolution.tile_side * scales.lateral,
+        surface=np.repeat(np.arange(len(extents)), [len(widths) for widths in extents]),
+        extents=np.concatenate(extents) * scales.lateral,
+        widest=np.array(widest) * scales.lateral,
         arc_angle=arc.angle,
         arc_inner=arc.inner * scales.lateral,
         arc_outer=arc.outer * scales.lateral,
@@ -98,18 +102,76 @@ def nanodiamond_contact(
     )
 
 
-def _loads(
-    parameters: NanodiamondParameters, recorder: Recorder, progress: Progress
+class _Surface:
+    """One surface, its field, and what is kept of an approach on it."""
+
+    def __init__(self, parameters: NanodiamondParameters, realisation: int) -> None:
+        scales, self.simulation = parameters.scales, parameters.simulation(realisation)
+        adhesion = simulation_adhesion(self.simulation)
+        self.elastic_energy = adhesion.e_el * scales.work_of_adhesion
+        self.field = simulation_field(self.simulation, adhesion)
+        self.correlation_length = self.simulation.spectrum.correlation_length
+        self.perimeters = Perimeters(
+            self.correlation_length,
+            parameters.shown_force / scales.force,
+            wide=_SEVERAL_TENS[0] / _MICRO / scales.lateral,
+            every=max(1, round(parameters.line_step / parameters.step)),
+        )
+        self.recorder = Recorder(observers=[self.perimeters])
+
+    def record(self, loads: Iterable[Load]) -> CycleRecord:
+        """States at some loads."""
+        return recorded(self.simulation, self.field, loads, self.recorder)
+
+    def widest(self, precision: float) -> Advance:
+        """Widest single instability of the approach (Units: reduced lengths)."""
+        steps, solver = self.perimeters.steps, self.simulation.solver
+        return widest_instability(self.field, steps, self.correlation_length, precision, solver)
+
+
+def _instabilities(
+    parameters: NanodiamondParameters, first: _Surface, progress: Progress
+) -> tuple[Advance, list[list[float]], list[float]]:
+    """Widest instability of the first surface; of all surfaces widths in load steps, and widest.
+
+    (Units: reduced lateral length)
+    """
+    scales, precision = parameters.scales, parameters.precision / parameters.scales.vertical
+    arc = first.widest(precision)
+    extents, widest = [first.perimeters.extents], [arc.extent]
+    for realisation in range(1, parameters.n_surface):
+        surface = _Surface(parameters, realisation)
+        surface.record(_approach(parameters, surface.recorder, parameters.shown_force))
+        extents.append(surface.perimeters.extents)
+        widest.append(surface.widest(precision).extent)
+    for realisation, extent in enumerate(widest):
+        text = f"{extent * scales.lateral * _MICRO:.0f} um"
+        progress(f"surface {realisation}: widest instability {text}")
+    return arc, extents, widest
+
+
+def _approach(
+    parameters: NanodiamondParameters, recorder: Recorder, largest_force: float
 ) -> Iterator[Load]:
-    """Penetrations of the approach to the largest force, and down from there."""
+    """Penetrations of the approach to a force (N)."""
     scales = parameters.scales
     for count in itertools.count():
         yield Load(count * parameters.step / scales.vertical, 1)
         if recorder.status is not Status.CONVERGED:
             return
-        last = recorder.states[-1]
-        if last.force * scales.force >= parameters.largest_force:
-            break
+        if recorder.states[-1].force * scales.force >= largest_force:
+            return
+
+
+def _cycle(
+    parameters: NanodiamondParameters, recorder: Recorder, progress: Progress
+) -> Iterator[Load]:
+    """Penetrations of the approach to the largest force, and down from there."""
+    scales = parameters.scales
+    yield from _approach(parameters, recorder, parameters.largest_force)
+    if recorder.status is not Status.CONVERGED:
+        return
+    last = recorder.states[-1]
     penetration = last.penetration
     progress(f"approach: mean radius {last.mean_radius * scales.lateral:.4g} m at the turn")
     while True:
@@ -137,9 +199,6 @@ _PAPER_ENERGY = 11.1
 MEASURED = 0.08
 """Hysteresis of the experiment, of which the paper states no error (Units: J / m^2)."""
 
-_SEVERAL_TENS = (20.0, 100.0)
-"""Extents that count as several tens of micrometres."""
-
 
 def nanodiamond_checks(contact: NanodiamondContact) -> tuple[Check, ...]:
     """Energies, hysteresis, instabilities and the fit."""
@@ -152,12 +211,19 @@ def _surface_checks(contact: NanodiamondContact) -> tuple[Check, ...]:
     every = replace(contact.spectrum, short_cutoff=EVERY_WAVELENGTH * contact.spectrum.roll_off)
     share = contact.spectrum.mean_square(0.5) / every.mean_square(0.5)
     reached, largest = 1e3 * float(contact.force.max()), 1e3 * contact.largest_force
+    width = 2 * _MICRO * float(contact.radius.max())
     return (
         Check(
             "the cycle is whole: it reaches the largest force and ends by losing contact",
             f"{largest:g} mN; {Status.LOST_CONTACT.value}",
             f"{reached:.4g} mN; {contact.status}",
             reached >= largest and contact.status == Status.LOST_CONTACT.value,
+        ),
+        Check(
+            "the surface does not repeat under the contact",
+            f"a tile of {width:.0f} um or more",
+            f"{_MICRO * contact.tile_side:.0f} um",
+            _MICRO * contact.tile_side >= width,
         ),
         _near("e_el of all wavelengths", 1e3 * contact.whole_elastic_energy, _PAPER_ENERGY, 0.05),
         _near(
@@ -208,26 +274,30 @@ def _hysteresis_checks(contact: NanodiamondContact) -> tuple[Check, ...]:
     )
 
 
+def widest_instability_estimate(contact: NanodiamondContact) -> Estimate[float]:
+    """Widest single instability of an approach, a mean over surfaces (Units: um)."""
+    mean, _ = mean_estimate(_MICRO * contact.widest)
+    return mean.each(float)
+
+
 def _instability_check(contact: NanodiamondContact) -> Check:
-    """Lateral extent of the widest instability, and what it owes to the load step."""
-    (low, high), widths = _SEVERAL_TENS, 1e6 * contact.extents
-    widest = float(1e6 * contact.extent[0])
-    by_step = ", ".join(
-        f"{1e6 * extent:.0f} um at {1e9 * step:.0f} nm"
-        for extent, step in zip(contact.extent, contact.load_step, strict=True)
-    )
-    since = (contact.direction > 0) & (contact.penetration >= contact.jump_in)
-    advance = 1e6 * float(np.mean(np.diff(contact.radius[since])))
+    """Lateral extent of the widest instability on several surfaces."""
+    low, high = _SEVERAL_TENS
+    widest, extents = _MICRO * contact.widest, _MICRO * contact.extents
+    mean, order = widest_instability_estimate(contact), np.argsort(widest)
+    each = ", ".join(f"{extent:.0f}" for extent in widest[order])
+    merged = ", ".join(f"{extents[contact.surface == surface].max():.0f}" for surface in order)
     return Check(
         "instabilities of the approach after jump-in: up to several tens of um wide",
-        f"the widest: {low:g} to {high:g} um",
-        f"{widest:.0f} um",
-        low <= widest <= high,
-        "connected sites that advance by more than the correlation length of w_loc, "
-        f"{1e6 * contact.threshold:.2f} um, in a load step whose mean advance is {advance:.2f} um: "
-        f"{widths.size}, of which {np.count_nonzero((widths >= low) & (widths <= high))} are "
-        f"{low:g} to {high:g} um wide and {np.count_nonzero(widths > high)} wider; the widest by "
-        f"load step: {by_step}",
+        f"the widest of a surface: {low:g} to {high:g} um, within the 95% interval of the mean",
+        f"{with_interval(mean)} um",
+        mean.high >= low and mean.low <= high,
+        f"of {widest.size} surfaces: {each} um; connected sites that advance by more than the "
+        f"correlation length of w_loc, {_MICRO * contact.threshold:.2f} um, separated to "
+        f"{1e9 * contact.precision:.2g} nm of penetration; in whole load steps of "
+        f"{1e9 * contact.load_step:.0f} nm, which merge some, the widest are {merged} um, and of "
+        f"{extents.size} parts {np.count_nonzero(extents > low)} are wider than {low:g} um and "
+        f"{np.count_nonzero(extents > high)} wider than {high:g} um",
     )
 
 
@@ -272,9 +342,6 @@ def _fit_checks(contact: NanodiamondContact) -> tuple[Check, ...]:
     return tuple(checks)
 
 
-_MICRO = 1e6
-"""Micrometres in a metre."""
-
 _MILLI = 1e3
 """Millijoules in a joule."""
 
@@ -307,7 +374,7 @@ def _draw_perimeters(axes: Axes, contact: NanodiamondContact) -> None:
     axes.add_collection(LineCollection(list(closed), colors=BLACK, linewidths=0.3, label=label))
     around = np.concatenate([contact.arc_angle, contact.arc_angle[::-1]])
     radius = np.concatenate([contact.arc_inner, contact.arc_outer[::-1]]) * _MICRO
-    label = f"widest instability:\n{contact.extent[0] * _MICRO:.0f} µm along the perimeter"
+    label = f"widest instability:\n{contact.widest[0] * _MICRO:.0f} µm along the perimeter"
     outline = radius * np.cos(around), radius * np.sin(around)
     axes.fill(*outline, color=ORANGE, linewidth=0.6, zorder=3, label=label)
     reach = 1.03 * float(np.abs(lines).max())
@@ -356,5 +423,6 @@ FIGURE = Figure(
     compute=nanodiamond_contact,
     checks=nanodiamond_checks,
     draw=nanodiamond_figure,
-    seconds=expected_seconds,
+    # An approach and the separation of its instabilities take about as long as a cycle.
+    seconds=lambda parameters: parameters.n_surface * expected_seconds(parameters),
 )

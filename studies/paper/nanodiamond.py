@@ -18,7 +18,8 @@ from crackfront.core.units import Scales
 from crackfront.core.variables import variable
 from crackfront.simulate.simulation import Simulation
 from crackfront.simulate.sphere.full_cycle import FullCycle
-from crackfront.sweep.section import Positive, section_error
+from crackfront.sweep.section import section_error
+from crackfront.validation import Count, Positive
 from studies.paper.figure import Integers
 from studies.paper.film import FilmSection
 from studies.paper.measured import ForceRadius, read_force_radius
@@ -26,7 +27,7 @@ from studies.paper.rough import RoughParameters
 
 _STATE, _POINT = "state", "point"
 _LINE, _ANGLE = "line", "angle"
-_STRIDE, _ARC = "stride", "arc"
+_SURFACE, _INSTABILITY, _ARC = "surface", "instability", "arc"
 _SURFACE_ENERGY = "J m-2"
 _FIT = (_SURFACE_ENERGY, "bound")
 
@@ -48,6 +49,8 @@ class NanodiamondParameters(RoughParameters, FilmSection):
     step: Positive  # penetration between states of the approach (m)
     retraction_step: Positive  # and of the retraction
     line_step: Positive  # and between the shown perimeters
+    n_surface: Count  # surfaces whose widest instability is measured
+    precision: Positive  # penetration to which it is separated from others (m)
     factor: Positive = PAPER_FACTOR  # the k with which w_int is found from an approach
 
     @model_validator(mode="after")
@@ -81,8 +84,8 @@ class NanodiamondParameters(RoughParameters, FilmSection):
         """e_el = E'/4 [h_rms^(1/2)]^2 (Units: J / m^2)."""
         return self.contact_modulus / 4 * spectrum.mean_square(0.5)
 
-    def simulation(self) -> Simulation:
-        """The simulation, whose field is large enough for the largest force."""
+    def simulation(self, realisation: int = 0) -> Simulation:
+        """Simulation of a surface, whose field is large enough for the largest force."""
         scales, energy = self.scales, self._energy_of(self.spectrum) / self.work_of_adhesion
         reduced = SelfAffineSpectrum(
             self.short_cutoff / scales.lateral, self.roll_off / scales.lateral, self.hurst
@@ -91,7 +94,7 @@ class NanodiamondParameters(RoughParameters, FilmSection):
         largest = jkr.radius_at_force(self.largest_force / scales.force, 1 - energy)
         deepest = float(jkr.equilibrium_penetration(largest, 1 - energy))
         schedule = FullCycle(deepest, self.step / scales.vertical)
-        return self.simulation_of(reduced, energy, schedule)
+        return self.simulation_of(reduced, energy, schedule, realisation)
 
     def points(self) -> ForceRadius:
         """What was measured."""
@@ -124,10 +127,15 @@ class NanodiamondContact:
     line: NDArray[np.float32] = variable("perimeters of the approach", "m", _LINE, _ANGLE)
     line_force: Array = variable("normal force at the perimeters", "N", _LINE)
     threshold: float = variable("advance above which a site has jumped", "m")
-    load_step: Array = variable("penetration between compared states", "m", _STRIDE)
-    extent: Array = variable("widest instability up to the shown force", "m", _STRIDE)
-    extents: Array = variable("widths of all in the first load step", "m", "instability")
-    arc_angle: Array = variable("the widest instability of the first load step", "rad", _ARC)
+    load_step: float = variable("penetration between states of the approach", "m")
+    precision: float = variable("penetration to which instabilities are separated", "m")
+    tile_side: float = variable("side of the periodic tile", "m")
+    surface: Integers = variable("number of the surface", "1", _INSTABILITY)
+    extents: Array = variable(
+        "widths of the parts that jump in a load step up to the shown force", "m", _INSTABILITY
+    )
+    widest: Array = variable("widest single instability up to the shown force", "m", _SURFACE)
+    arc_angle: Array = variable("the widest instability of the first surface", "rad", _ARC)
     arc_inner: Array = variable("radius before it", "m", _ARC)
     arc_outer: Array = variable("radius after it", "m", _ARC)
     synthetic_fit: Array = variable("w_int from synthetic points: value, low, high", *_FIT)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,10 +10,10 @@ from scipy.ndimage import find_objects, label
 
 from crackfront.core.arrays import Array
 from crackfront.core.cycle.record import Recorder
+from crackfront.core.field.fields import Field
 from crackfront.core.geometry.sphere import ContactState
-
-STRIDES = (1, 2, 4)
-"""Strides, in load steps of the approach, over which the widest instability is looked for."""
+from crackfront.core.solver.relax import Solver
+from crackfront.surfaces.instabilities import resolved_motion
 
 _MOST_SITES = 4096
 """Sites of a perimeter that are kept for drawing."""
@@ -60,50 +61,89 @@ def advances(before: Array, after: Array, threshold: float) -> list[Advance]:
     return parts
 
 
+@dataclass(frozen=True, slots=True)
+class WideStep:
+    """Load step of an approach in which a wide part of the front has advanced."""
+
+    start: float
+    end: float
+    """Penetrations at both ends. (Units: reduced vertical length)"""
+    before: Array
+    after: Array
+    extent: float
+    """Width of its widest part, which several instabilities may share."""
+
+
 class Perimeters:
     """What is kept of the fronts of an approach after jump-in: an observer of its states.
 
-    All sites have then travelled by more than `passed`; a site that advances by more has jumped.
-    Fronts up to the force `highest` count; `every` so many load steps one is kept in `lines`, with
-    its state in `states`, at few enough angles for a drawing. For each of STRIDES
-    `widest` has the widest advance and `extents` the widths of all. A state does not
-    depend on the load step that led there (no passing), so that every second state is what twice
-    the step would find.
+    All sites have then travelled by more than `passed`; a site that advances by more in a load step
+    has jumped. Fronts up to the force `highest` count. `extents` has the widths of all connected
+    parts that jump in a load step, and `steps` the load steps with a part wider than `wide`. Every
+    so many load steps a front is kept in `lines`, with its state in `states`, at few enough angles
+    for a drawing.
     """
 
-    def __init__(self, passed: float, highest: float, every: int) -> None:
-        self._passed, self._highest, self._every = passed, highest, every
-        self._before: dict[int, Array | None] = dict.fromkeys(STRIDES)
+    def __init__(self, passed: float, highest: float, *, wide: float, every: int) -> None:
+        self._passed, self._highest, self._wide, self._every = passed, highest, wide, every
+        self._before: tuple[float, Array] | None = None
         self._count = 0
-        self.widest = {stride: Advance(*(np.empty(0),) * 3) for stride in STRIDES}
-        self.extents: dict[int, list[float]] = {stride: [] for stride in STRIDES}
+        self.extents: list[float] = []
+        self.steps: list[WideStep] = []
         self.states: list[ContactState[float]] = []
         self.lines: list[Array] = []
         self.angle = np.empty(0)
 
     def __call__(self, recorder: Recorder) -> None:
-        """Compare a front with the ones before, and keep every few of them."""
+        """Compare a front with the one before."""
         state, front = recorder.states[-1], recorder.front
         # Before it jumps into contact, the sphere rests on a few places about its apex.
         landed = state.direction > 0 and state.least_travel > self._passed
         if not landed or state.force > self._highest:
             return
-        self.follow(front)
-        if self._count % self._every == 1 % self._every:
+        if self._before is not None:
+            self._compare(*self._before, state.penetration, front)
+        if self._count % self._every == 0:
             sites = slice(None, None, -(-front.size // _MOST_SITES))
             self.angle = (2 * np.pi * np.arange(front.size) / front.size)[sites]
             self.states.append(state)
             self.lines.append(front[sites])
-
-    def follow(self, front: Array) -> None:
-        """Compare the front of the next state, (n_angle,) radii, with earlier ones."""
-        for stride, before in self._before.items():
-            if self._count % stride:
-                continue
-            if before is not None:
-                moved = advances(before, front, self._passed)
-                self.extents[stride] += [part.extent for part in moved]
-                candidates = [self.widest[stride], *moved]
-                self.widest[stride] = max(candidates, key=lambda part: part.extent)
-            self._before[stride] = front
+        self._before = state.penetration, front
         self._count += 1
+
+    def _compare(self, start: float, before: Array, end: float, after: Array) -> None:
+        """Add what jumps in a load step."""
+        extents = [part.extent for part in advances(before, after, self._passed)]
+        self.extents += extents
+        widest = max(extents, default=0.0)
+        if widest > self._wide:
+            self.steps.append(WideStep(start, end, before, after, widest))
+
+
+def widest_instability(
+    field: Field, steps: Sequence[WideStep], threshold: float, precision: float, solver: Solver
+) -> Advance:
+    """The widest instability of some load steps, each halved until its instabilities are separate.
+
+    A front only advances, so that no instability is wider than the parts that jump in its load
+    step: load steps are halved from the widest on, down to the first that cannot contain a wider
+    instability. Those closer in load than `precision` count as one.
+    """
+    widest = Advance(*(np.empty(0),) * 3)
+    for step in sorted(steps, key=lambda step: -step.extent):
+        if step.extent <= widest.extent:
+            break
+        motion = resolved_motion(
+            field,
+            step.before,
+            step.start,
+            [step.end],
+            1,
+            travel=threshold,
+            precision=precision,
+            solver=solver,
+        )
+        for move in filter(lambda move: move.unstable, motion):
+            for part in advances(move.before, move.after, threshold):
+                widest = max(widest, part, key=lambda part: part.extent)
+    return widest

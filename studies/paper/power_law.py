@@ -40,6 +40,11 @@ class PowerLaw:
     smallest: float  # where the law begins
     n_value: int  # values above it
 
+    @property
+    def decades(self) -> float:
+        """Decades between the smallest value and the cut-off."""
+        return float(np.log10(self.cutoff / self.smallest))
+
     def density(self, values: ArrayLike) -> Array:
         """Density at values above the smallest, normalised there."""
         scaled = np.asarray(values, dtype=float) / self.smallest
@@ -58,16 +63,28 @@ def truncated_power_law(values: Array, smallest: float, rng: np.random.Generator
     ----------
     .. [1] Clauset, Shalizi, Newman, SIAM Rev. 51, 661 (2009).
     """
+    used = _above(values, smallest)
+    exponent, cutoff = best = _most_likely(used)
+    again = [_most_likely(rng.choice(used, used.size), best)[0] for _ in range(_N_BOOTSTRAP)]
+    low, high = _interval(exponent, again)
+    return PowerLaw(exponent, low, high, cutoff * smallest, smallest, int(used.size))
+
+
+def exponent_and_cutoff(values: Array, smallest: float) -> tuple[float, float]:
+    """Exponent and cut-off of :func:`truncated_power_law`, without the interval."""
+    exponent, cutoff = _most_likely(_above(values, smallest))
+    return exponent, cutoff * smallest
+
+
+def _above(values: Array, smallest: float) -> Array:
+    """Values from the smallest on, in units of it."""
     used = values[values >= smallest] / smallest
     if used.size < _FEWEST:
         raise ValueError(
             f"{used.size} values lie above {smallest:g}; a power law needs {_FEWEST}, so lower the "
             "smallest or take more surfaces"
         )
-    exponent, cutoff = best = _most_likely(used)
-    again = [_most_likely(rng.choice(used, used.size), best)[0] for _ in range(_N_BOOTSTRAP)]
-    low, high = _interval(exponent, again)
-    return PowerLaw(exponent, low, high, cutoff * smallest, smallest, int(used.size))
+    return used
 
 
 def _interval(exponent: float, again: Sequence[float]) -> tuple[float, float]:

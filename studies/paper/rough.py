@@ -36,15 +36,9 @@ from crackfront.simulate.simulation import (
     simulation_of,
 )
 from crackfront.simulate.sphere.full_cycle import FullCycle
-from crackfront.sweep.section import (
-    Count,
-    Energy,
-    Positive,
-    Section,
-    Seed,
-    section_error,
-)
-from studies.paper.figure import Check
+from crackfront.sweep.section import Section, section_error
+from crackfront.validation import Count, Fraction, Positive, Seed
+from studies.paper.checks import Check
 
 ONE_DIGIT = 0.5
 """How far k may be from a value that is given with one digit."""
@@ -64,12 +58,22 @@ class RoughParameters(Section):
     tile_roll_offs: Positive  # side of the periodic tile, 200 short cutoffs or more
 
     def simulation_of(
-        self, spectrum: SelfAffineSpectrum, elastic_energy: float, schedule: FullCycle
+        self,
+        spectrum: SelfAffineSpectrum,
+        elastic_energy: float,
+        schedule: FullCycle,
+        realisation: int = 0,
     ) -> Simulation:
-        """Simulation of the first surface of the seed; raises if its numerics miss the error."""
+        """Simulation of a surface of the seed; raises if its numerics miss the error."""
         numerics = Numerics(self.error, self.tile_roll_offs)
         simulation = simulation_of(
-            "roughness", spectrum, elastic_energy, schedule, numerics, seed=self.seed
+            "roughness",
+            spectrum,
+            elastic_energy,
+            schedule,
+            numerics,
+            seed=self.seed,
+            realisation=realisation,
         )
         if least_error := missed_error(simulation, self.error):
             raise section_error(
@@ -92,7 +96,7 @@ class RoughCycleParameters(RoughParameters):
     """What a figure of one cycle needs, apart from the shape of its spectrum."""
 
     short_cutoff: Positive  # shortest wavelength (reduced lateral length)
-    elastic_energy: Energy  # of full conformity (w_int)
+    elastic_energy: Fraction  # of full conformity (w_int)
     max_penetration: Positive  # penetrations to visit (reduced vertical length)
     step: Positive
 
@@ -120,8 +124,8 @@ class DisorderParameters(Section):
     """What a figure needs that follows single fronts in strong and in weak disorder."""
 
     short_cutoff: Positive  # shortest wavelength of the flat spectrum (reduced lateral length)
-    strong: Energy  # e_el of the two kinds of surfaces (w_int)
-    weak: Energy
+    strong: Fraction  # e_el of the two kinds of surfaces (w_int)
+    weak: Fraction
     max_penetration: Positive  # where a retraction begins (reduced vertical length)
     error: Positive  # of the factor k, that the resolution may leave
     seed: Count  # of the surfaces of both kinds

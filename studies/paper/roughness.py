@@ -10,7 +10,8 @@ from pydantic import model_validator
 from scipy.fft import rfft
 
 from crackfront.core.arrays import Array
-from crackfront.sweep.section import Count, Positive, section_error
+from crackfront.sweep.section import section_error
+from crackfront.validation import Count, Positive
 from studies.paper.figure import Integers, Progress
 from studies.paper.front_spectra import (
     RoughnessRecord,

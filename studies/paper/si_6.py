@@ -26,14 +26,11 @@ from crackfront.plots.style import (
     explain,
     house_style,
 )
-from crackfront.sweep.section import (
-    Count,
-    Positive,
-    Seed,
-    section_error,
-)
+from crackfront.sweep.section import section_error
+from crackfront.validation import Count, Positive, Seed
+from studies.paper.checks import Check, close_to
 from studies.paper.drawing import DOTTED, write_beside
-from studies.paper.figure import Check, Figure, Progress, close_to, values_of
+from studies.paper.figure import Figure, Progress, values_of
 from studies.paper.film import CONVERTED_LABEL, POINTS_PER_DECADE, FilmDensities, FilmParameters
 from studies.paper.tile_sizes import tile_mean_square
 

@@ -21,7 +21,8 @@ from crackfront.simulate.line.line_loads import LineLoad
 from crackfront.simulate.numerics import Numerics
 from crackfront.simulate.settings import Settings
 from crackfront.simulate.simulation import simulation_adhesion, simulation_field, simulation_of
-from crackfront.sweep.section import Positive, Section
+from crackfront.sweep.section import Section
+from crackfront.validation import Positive
 from studies.paper.rough import flat_spectrum
 
 _KIND: FieldKind = "roughness"

@@ -17,7 +17,6 @@ from studies.pages import keep_option, output_option, tell
 from studies.records import write_records
 from studies.speed import cost_ratios as cost_model
 from studies.speed import needs as requests
-from studies.speed import profile as kernels
 from studies.speed import scaling as sweeps
 from studies.speed import solvers as pairs
 from studies.speed.machine import in_fresh_process
@@ -76,20 +75,6 @@ def solvers(groups: tuple[Group, ...], repeats: int, seed: int, output: Path, ke
     numbers = {f"newton faster, {row.label}": Number(row.ratio) for row in rows}
     title = "The solvers against the reference"
     _write(output / "solvers", title, parts, rows, keep=keep, numbers=numbers)
-
-
-@commands.command(epilog=examples("python -m studies speed profile"))
-@_output
-@keep_option
-def profile(output: Path, keep: bool) -> None:
-    """Measure the share of each kernel in default simulations, with Linux's perf."""
-    check_writable(output)
-    try:
-        rows = kernels.shares()
-    except RuntimeError as error:
-        raise click.ClickException(str(error)) from error
-    parts = {"profile": kernels.page(rows)}
-    _write(output / "profile", "Where the time of a simulation goes", parts, rows, keep=keep)
 
 
 @commands.command(epilog=examples("python -m studies speed needs"))

@@ -144,43 +144,18 @@ def million(
     return shards
 
 
-_HAND_OUT = """
-import sys, time
-from pathlib import Path
-from crackfront.cli.sweep_commands import run_missing
-from crackfront.sweep import parallel, tasks
-from crackfront.sweep.run_sweep import opened
-run, first = tasks._run, []
-def answer(task, between):
-    first[:] = first or [run(task, between)]
-    return first[0]
-tasks._run = answer
-folder, configuration, n_task = sys.argv[1:]
-with parallel.ranks() as workers:
-    if workers is not None:
-        sweep, store, origin = opened(Path(configuration), Path(folder))
-        shard = sweep.shards()[0]
-        simulations = [*sweep.simulations(shard.item)] * int(n_task)
-        run_missing(store, [(shard, simulations[:50])], origin, workers)
-        started = time.perf_counter()
-        run_missing(store, [(shard, simulations[: int(n_task)])], origin, workers)
-        print((time.perf_counter() - started) / int(n_task))
-"""
-"""Ranks that run one simulation each, and answer with its curve and row from then on."""
-
-
 def hand_out_seconds(n_worker: int = 4, n_task: int = 5000) -> float:
     """Time of the rank that hands out, for a simulation of the default sweep that it stores."""
     mpiexec = [str(Path(sys.executable).with_name("mpiexec")), "-n", str(n_worker + 1)]
     with tempfile.TemporaryDirectory() as folder:
-        (script := Path(folder) / "dispatch.py").write_text(_HAND_OUT)
         arguments = [folder, str(ROOT / "config/default.yaml"), str(n_task)]
         done = subprocess.run(
-            [*mpiexec, sys.executable, str(script), *arguments],
+            [*mpiexec, sys.executable, "-m", "studies.speed.dispatch", *arguments],
             capture_output=True,
             text=True,
             timeout=250,
             check=True,
+            cwd=ROOT,
         )
     return float(done.stdout.split()[-1])
 

@@ -9,7 +9,7 @@ from scipy.special import stdtr
 from crackfront.analysis.estimate import Estimate, mean_estimate
 from crackfront.analysis.fit_text import fit_notes, fit_table, trend_sentence
 from crackfront.analysis.law import law_value, shipped_law, spectral_breadth
-from crackfront.analysis.result import SweepFit
+from crackfront.analysis.result import HALF_WIDTHS, SweepFit
 from crackfront.analysis.sweep_fit import fit_sweep
 from crackfront.analysis.sweep_law import SweepLaw
 from crackfront.analysis.table import REALISATION, SweepTable
@@ -173,10 +173,51 @@ def test_a_constant_midpoint_shift_is_found_and_is_improbable():
     assert as_planted.midpoint_probability > 0.01
     assert fit.midpoint_probability < 1e-4
     assert fit.midpoint_largest > as_planted.midpoint_largest
-    # Of 15 cells with four realisations each, by Bonferroni.
-    by_chance = 15 * 2 * stdtr(3, -fit.midpoint_largest)
+    # Of 15 independent cells with four realisations each.
+    by_chance = 1 - (1 - 2 * stdtr(3, -fit.midpoint_largest)) ** 15
     assert fit.midpoint_probability == pytest.approx(by_chance)
     assert np.all(fit.spectra.midpoint_slope.low > 1)
+
+
+def test_the_probability_of_a_midpoint_is_uniform_if_the_law_is_exact(rng):
+    tables = (synthetic_table(rng, constant, lengths=LENGTHS[:1]) for _ in range(100))
+    probabilities = [fit_all(table, n_bootstrap=100).midpoint_probability for table in tables]
+    # Three standard errors of the mean of so many uniform numbers are 0.09.
+    assert np.mean(probabilities) == pytest.approx(0.5, abs=0.09)
+    assert np.max(probabilities) < 1
+
+
+def test_so_many_realisations_as_a_fit_names_give_the_interval_that_it_names(rng):
+    few = fit_all(synthetic_table(rng, constant, noise=0.2, n_realisation=12))
+    for index, half_width in enumerate(HALF_WIDTHS[1:], start=1):
+        number = int(few.pooled_n_needed[index])
+        fit = fit_all(synthetic_table(rng, constant, noise=0.2, n_realisation=number))
+        pooled = fit.pooled.factor
+        assert (pooled.high - pooled.low) / 2 == pytest.approx(half_width, rel=0.3)
+        assert fit.pooled_n_needed[index] == pytest.approx(number, rel=0.6)
+    # An interval that is narrow enough needs no further ones.
+    assert few.pooled_n_needed[0] == 12
+    assert np.all(few.n_needed[:, 2] > few.pooled_n_needed[2])
+
+
+def test_a_fit_without_an_interval_names_no_number_of_realisations(rng):
+    fit = fit_all(synthetic_table(rng, constant, n_realisation=1))
+    assert np.isnan(fit.pooled_n_needed).all()
+    assert "nan" not in fit_table(fit)
+
+
+def test_the_exponent_by_the_law_is_the_measured_one_of_fronts_that_obey_it():
+    table, _, _ = by_the_law(straight=True)
+    fit = fit_all(table)
+    np.testing.assert_allclose(fit.law_exponent, fit.spectra.exponent.value, rtol=1e-9)
+    assert fit.pooled_law_exponent == pytest.approx(float(fit.pooled.exponent.value))
+    assert np.ptp(fit.law_exponent) > 0.05
+    # It is of the amplitudes that are measured.
+    gaps = np.zeros(table.e_el.shape, bool)
+    gaps[0, 2:] = True
+    fewer = fit_all(with_gaps(table, gaps))
+    np.testing.assert_allclose(fewer.law_exponent, fewer.spectra.exponent.value, rtol=1e-9)
+    assert fewer.law_exponent[0] != pytest.approx(fit.law_exponent[0], rel=1e-3)
 
 
 def test_a_chemical_field_leaves_the_midpoint_at_w_int():
@@ -186,7 +227,7 @@ def test_a_chemical_field_leaves_the_midpoint_at_w_int():
     assert covered(fit.pooled.midpoint_slope, 0.0)
     assert fit.midpoint_probability > 0.01
     assert fit_all(chemical).midpoint_probability < 1e-4
-    assert "| paper |  |  | 3 | 3 | 2 | 0 | 0 |" in fit_table(fit)
+    assert "| paper |  |  | 3 | 3 | 2 | 2 | 0 | 0 |" in fit_table(fit)
 
 
 def test_failed_simulations_are_left_out_and_told(rng):

@@ -2,6 +2,7 @@
 
 import copy
 import json
+import re
 from dataclasses import asdict, replace
 from pathlib import Path
 
@@ -41,6 +42,54 @@ def test_a_load_that_is_too_shallow_is_found_and_at_the_named_depth_there_is_a_s
         steady.append(not found.sentence)
         assert (expectation(one).needed_penetration is None) == steady[-1]
     assert steady == [False, True]
+
+
+@pytest.mark.parametrize("key", ["max_penetration", "start", "travel"])
+def test_each_key_that_a_plan_advises_leaves_a_steady_part_with_its_value(key):
+    flat, shallow = SelfAffineSpectrum(0.05, 0.05, hurst=1.0), SteadySchedule(1.0, 1.5, 1.5, 0.05)
+
+    def simulation(load, realisation=0):
+        return simulation_of(
+            "roughness", flat, 0.02, load, NUMERICS, seed=1, realisation=realisation
+        )
+
+    def steady(load):
+        results = (run_simulation(simulation(load, number)) for number in range(2))
+        return [not result.steady_adhesion.sentence for result in results]
+
+    doubt = expectation(simulation(shallow))
+    needed = {
+        "max_penetration": doubt.needed_penetration,
+        "start": doubt.needed_start,
+        "travel": doubt.needed_travel,
+    }
+    assert needed["max_penetration"] > 1.5
+    assert 0 < needed["start"] < 1.0
+    assert 0 < needed["travel"] < 1.5
+    assert steady(shallow) == [False, False]
+    helped = replace(shallow, **{key: needed[key]})
+    assert steady(helped) == [True, True]
+    assert expectation(simulation(helped)).needed_penetration is None
+
+
+def test_a_plan_does_not_advise_far_more_than_is_needed():
+    flat, shallow = SelfAffineSpectrum(0.1, 0.1, hurst=1.0), SteadySchedule(1.0, 2.5, 1.5, 0.05)
+    one = simulation_of("roughness", flat, 0.15, shallow, NUMERICS, seed=1)
+    needed = expectation(one).needed_penetration
+    slightly_less = replace(one, schedule=replace(shallow, max_penetration=needed / 1.3))
+    assert expectation(slightly_less).needed_penetration is not None
+
+
+def test_a_steady_load_that_failed_names_keys_that_it_has():
+    flat = SelfAffineSpectrum(0.1, 0.1, hurst=1.0)
+    sentences = []
+    for load in SHALLOW:
+        one = simulation_of("roughness", flat, 0.05, load, NUMERICS, seed=1)
+        sentences.append(run_simulation(one).steady_adhesion.sentence)
+    cycle, steady = sentences
+    assert "step" in cycle
+    assert "step" not in steady
+    assert {"max_penetration", "start", "travel"} <= set(re.findall(r"\w+", steady))
 
 
 def test_a_plan_tells_lengths_in_the_units_of_its_configuration(tmp_path):

@@ -18,5 +18,5 @@ def test_the_page_opens_on_the_result_and_its_figures(tmp_path):
     assert b64decode(data) == picture.read_bytes()
     # The report of the workflow shows this part, and refuses longer lines.
     assert max(map(len, result.splitlines())) < 10_000
-    assert rest.index("<h2>The fit</h2>") < rest.index("<td>steady</td><td>3</td>")
+    assert rest.index("<h2>The fit</h2>") < rest.index("<td>steady (complete)</td><td>3</td>")
     assert "<pre>seed: 1</pre>" in rest

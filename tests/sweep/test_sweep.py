@@ -67,7 +67,7 @@ def test_a_block_that_is_no_number_of_realisations_is_refused(block):
 
 
 def test_realisations_that_the_sweep_does_not_have_are_refused():
-    with pytest.raises(ValueError, match="realisations 1 to 2 are not among those"):
+    with pytest.raises(ValueError, match="realisations 1 to 2 are not all in"):
         SWEEP.named_shard(SWEEP.spectra[0], range(1, 3))
 
 

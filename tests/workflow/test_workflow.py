@@ -29,11 +29,12 @@ RULES = {"request", "simulate", "aggregate", "fit", "summary", "sweep_figures", 
 
 
 def command(folder, *settings, sweep=ROOT / "config/test.yaml", ranks=2):
-    """Command that runs the workflow in a folder of its own."""
+    """Command that runs the workflow in a folder of its own; None leaves the ranks to it."""
+    chosen = [] if ranks is None else [f"ranks={ranks}"]
     return [
         *(sys.executable, "-m", "snakemake", "--snakefile", str(ROOT / "Snakefile")),
         *("--profile", str(ROOT / "workflow/profiles/default"), "--directory", str(folder)),
-        *("--cores", "2", "--config", f"sweep={sweep}", f"ranks={ranks}", *settings),
+        *("--cores", "2", "--config", f"sweep={sweep}", *chosen, *settings),
     ]
 
 
@@ -213,7 +214,7 @@ def test_the_report_is_one_page_that_a_browser_shows_without_a_network(tmp_path,
     for page in (seen, summary):
         assert first[0] in page
         assert 'alt="loop"' in page
-    assert "<td>lost_contact</td><td>8</td>" in summary
+    assert "<td>lost_contact (complete)</td><td>8</td>" in summary
     assert "<th>midpoint slope m</th>" in summary
     for item in ("git_commit", "command", "platform", "seed of the sweep"):
         assert f"<td>{item}</td>" in summary
@@ -398,6 +399,16 @@ def test_forcing_rewrites_from_stored_rows_and_without_curves_simulates(tmp_path
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize(("realisations", "launches"), [(2, 0), (50_000, 1)])
+def test_short_shards_take_one_core_each_and_long_ones_all_cores(tmp_path, realisations, launches):
+    sweep = flat_sweep(tmp_path)
+    content = sweep.read_text().replace("realisations: 2", f"realisations: {realisations}")
+    sweep.write_text(content)
+    shown = "--dry-run", "--printshellcmds", "--quiet", "host"
+    printed = finished(tmp_path, *shown, sweep=sweep, ranks=None, errors=subprocess.STDOUT)
+    assert printed.count("mpiexec -n") == launches
+
+
 def test_two_configurations_of_one_name_are_refused(tmp_path, sweep):
     (tmp_path / "other").mkdir()
     other = tmp_path / "other/test.yaml"

@@ -12,6 +12,7 @@ sys.path.insert(0, str(BASE))  # where the studies stand
 from crackfront.core.versions import PHYSICS_VERSION, ROWS_VERSION
 from crackfront.core.resources import memory_at_hand
 from crackfront.simulate.costs import expected_cost
+from crackfront.sweep.changed_keys import change_sentence
 from crackfront.sweep.feasibility import check_feasible
 from crackfront.sweep.parameters import load_sweep
 from crackfront.sweep.results_folder import check_configuration, results_folder
@@ -87,6 +88,11 @@ try:
     check_configuration(Path(VALIDATION), Path(VALIDATED))
 except (OSError, ValueError) as error:
     raise WorkflowError(str(error)) from None
+
+# The reasons of Snakemake name requests by digests; these are the keys that changed them.
+CHANGED = change_sentence(Path(RESULTS, "configuration.yaml"), Path(CONFIGURATION))
+if CHANGED and workflow.is_main_process:
+    print(CHANGED, file=sys.stderr)
 
 SHARD_REQUESTS = {
     name: requested(RESULTS, shard_request(SWEEP, shard))

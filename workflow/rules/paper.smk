@@ -77,7 +77,7 @@ rule figure_data:
         f"{PAPER}/benchmarks/{{figure}}-data.tsv"
     resources:
         cpus_per_task=1,
-        mem_mb=4000,
+        mem_mb=5000,
         runtime=lambda wildcards: minutes(expected_seconds(wildcards.figure)),
     params:
         file=figure_file,

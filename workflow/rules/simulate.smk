@@ -30,10 +30,18 @@ SECONDS = {
 }
 
 
+SHORT_SECONDS = 30  # of processor time: starting ranks on all cores costs more than they save
+
+
 def shard_cores(cores):
-    """One core where twice as many shards are left and they fit into memory, else all in turn."""
+    """One core where twice as many shards are left, or they are short; else all cores in turn.
+
+    Shards side by side must also fit into memory.
+    """
     n_left = sum(not Path(RESULTS, f"shards/{name}.nc").exists() for name in SHARDS)
-    return 1 if n_left >= 2 * cores and cores * RANK_BYTES < memory_at_hand() else cores
+    is_short = max(SECONDS.values()) < SHORT_SECONDS
+    side_by_side = (n_left >= 2 * cores or is_short) and cores * RANK_BYTES < memory_at_hand()
+    return 1 if side_by_side else cores
 
 
 RANKS = config.get("ranks", shard_cores(workflow.resource_settings.cores or 1))

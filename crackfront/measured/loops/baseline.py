@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from crackfront.core.arrays import Array
 from crackfront.measured.loops.contact_rows import (
@@ -26,6 +27,8 @@ class Baseline:
 
     recording: Recording
     """The columns, with the zero and the drift of the force subtracted."""
+    zero: Array
+    """The force that was subtracted from each row. (Units: N)"""
     errors: tuple[Array, ...] = ()
     """Independent errors of the force of all rows, each of one standard error. (Units: N)"""
     remark: str = ""
@@ -39,14 +42,14 @@ def baseline(recording: Recording) -> Baseline:
     """
     force, touches = recording.force, rows_in_contact(recording)
     if force is None:
-        return Baseline(recording)
+        return Baseline(recording, np.zeros(touches.size))
     rows, touching = rows_without_spikes(force), np.flatnonzero(touches)
     rows = rows[~touches[rows]]
     sides = rows[rows < touching[0]], rows[rows > touching[-1]]
     sides_used = [side for side in sides if side.size >= FEWEST_FREE_ROWS]
     if not sides_used:
         sentence = "The zero of the force is that of the file, as no rows are out of contact."
-        return Baseline(recording, remark=sentence)
+        return Baseline(recording, np.zeros(touches.size), remark=sentence)
     has_drift = len(sides_used) == 2
     free = np.concatenate(sides_used)
     time, powers = free / force.size, np.vander(np.arange(force.size) / force.size, has_drift + 1)
@@ -62,7 +65,34 @@ def baseline(recording: Recording) -> Baseline:
     sentence = f"{free.size} rows out of contact give {kind} of the force, up to {largest}."
     if not has_drift:
         sentence += " Its drift is unknown, as no rows are out of contact on the other side."
-    return Baseline(replace(recording, force=force - zero), tuple(errors), sentence)
+    if recording.radius is not None:
+        sentence += _radius_sentence(recording.radius > 0, touches)
+    return Baseline(replace(recording, force=force - zero), zero, tuple(errors), sentence)
+
+
+def _radius_sentence(has_radius: NDArray[np.bool_], touches: NDArray[np.bool_]) -> str:
+    """Sentence on radii that begin or end in other rows than the force, with a blank before it."""
+    (first, last), (begin, end) = (np.flatnonzero(rows)[[0, -1]] for rows in (has_radius, touches))
+    if last > end:
+        sentence = f" The contact radius is positive in {last - end} rows after the pull-off"
+        if first > begin:
+            sentence += f" and begins {first - begin} rows after the jump into contact"
+        return (
+            f"{sentence}: it was recorded late. Each row needs force and radius of one moment; "
+            f"move the radii up by {last - end} rows."
+        )
+    if first < begin:
+        return (
+            f" The contact radius is positive from {begin - first} rows before the jump into "
+            "contact: it was recorded early, or is not a contact there."
+        )
+    n_missing = first - begin + end - last
+    if n_missing == 0:
+        return ""
+    return (
+        f" {n_missing} rows next to the contact have a force and lack a contact radius: they count "
+        "as contact, not as the zero."
+    )
 
 
 def _bend(time: Array, force: Array, all_times: Array) -> list[Array]:

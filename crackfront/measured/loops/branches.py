@@ -14,6 +14,7 @@ from crackfront.analysis.steady_adhesion import Branches, shared_window, within
 from crackfront.core.arrays import Array
 from crackfront.measured.loops.calibration import CalibratedLoop, Contact
 from crackfront.measured.loops.recording import Recording
+from crackfront.measured.loops.rig import Segment
 from crackfront.surfaces.written_units import prefixed
 
 _AFTER_JUMP = 0.02
@@ -35,8 +36,14 @@ _RETURN = 0.2
 Noise and instabilities move the edge by less, a second turn by more.
 """
 
+_LEAST_TRAVEL = 0.1
+"""Travel of a branch over that of the other, below which few rows of it are not a branch."""
+
 _FEWEST_ROWS = 2 * FEWEST_STATES
 """Averaged rows of each branch, so that both halves of the window have enough."""
+
+
+_BRANCH_NAMES = ("approach", "retraction")
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,15 +64,19 @@ def driving(recording: Recording) -> Array:
 
 
 def check_sign(recording: Recording) -> None:
-    """Raise ValueError if the force pulls where the sphere is pushed furthest into the surface."""
-    force, displacement = recording.force, recording.displacement
-    if force is None or displacement is None or not np.any(np.isfinite(force + displacement)):
+    """Raise ValueError if the force pulls where the contact is largest or the sphere deepest."""
+    force = recording.force
+    path, place = recording.displacement, "displacement"
+    if path is None:
+        path, place = recording.radius, "contact radius"
+    if force is None or path is None or not np.any(np.isfinite(force + path)):
         return
-    turn = int(np.nanargmax(np.where(np.isfinite(force), displacement, np.nan)))
+    turn = int(np.nanargmax(np.where(np.isfinite(force), path, np.nan)))
     if force[turn] < min(0.5 * np.nanmin(force), 0.0):
         raise ValueError(
-            f"the force is {prefixed('N', float(force[turn]))} at the largest displacement, and "
-            "has the wrong sign there; displacement and force are positive where they press"
+            f"the force is {prefixed('N', float(force[turn]))} at the largest {place}, and "
+            "has the wrong sign; displacement and force are positive where they press. Give "
+            "--invert force (invert='force'), or displacement if its sign is wrong"
         )
 
 
@@ -81,16 +92,42 @@ def branches(recording: Recording, touches: NDArray[np.bool_]) -> Branches:
     approach, retraction = rows[: turn + 1], rows[turn:]
     # The force may fall within a branch, as at a jump; the radius may not.
     path = driven if recording.displacement is not None else np.asarray(recording.radius)
-    span = float(np.ptp(path[rows]))
+    span = float(np.nanmax(path[rows]) - np.nanmin(path[rows]))
     for direction, branch in ((1, approach), (-1, retraction)):
+        recorded = path[branch][np.isfinite(path[branch])]
         # The median of five rows is free of their noise.
-        way = direction * scipy.ndimage.median_filter(path[branch], 5, mode="nearest")
+        way = direction * scipy.ndimage.median_filter(recorded, 5, mode="nearest")
         if way.size and float(np.max(np.maximum.accumulate(way) - way)) > _RETURN * span:
             raise ValueError(
                 "the loop turns more than once, or a column has the wrong sign; displacement and "
                 "force are positive where they press. Cut the table to one approach and one "
-                "retraction"
+                "retraction, or give --invert displacement (invert='displacement')"
             )
+    return approach, retraction
+
+
+def present_branches(recording: Recording, touching: Branches, segment: Segment) -> Branches:
+    """Rows of the branches that are evaluated: of a segment, or of what was recorded.
+
+    A branch with a small part of the travel of the other, as at the turn of a recorded retraction,
+    has no rows. Raises ValueError if the segment was not recorded.
+    """
+    path = recording.displacement if recording.radius is None else recording.radius
+    recorded = [np.asarray(path)[rows][np.isfinite(np.asarray(path)[rows])] for rows in touching]
+    spans = [float(np.ptp(values)) if values.size else 0.0 for values in recorded]
+    approach, retraction = (
+        rows if span >= _LEAST_TRAVEL * max(spans) or values.size >= _FEWEST_ROWS else rows[:0]
+        for rows, values, span in zip(touching, recorded, spans, strict=True)
+    )
+    if segment == "approach":
+        retraction = retraction[:0]
+    elif segment == "retract":
+        approach = approach[:0]
+    if approach.size + retraction.size == 0:
+        raise ValueError(
+            f"the loop lacks rows in contact of the segment {segment}; record them, or choose the "
+            "other one"
+        )
     return approach, retraction
 
 
@@ -108,22 +145,29 @@ def steady_part(loop: CalibratedLoop, contact: Contact, touching: Branches) -> S
             f"the contact radius reaches {largest} on a sphere of "
             f"{prefixed('m', sphere_radius)}; check the units of both"
         )
+    present = [name for name, rows in zip(_BRANCH_NAMES, touching, strict=True) if rows.size]
     # The row of the turn belongs to both branches.
-    if min(approach.size, retraction.size) <= 1:
+    if min(approach.size, retraction.size) <= 1 and len(present) == 2:
         raise ValueError("the loop lacks an approach or a retraction in contact; record both")
     if window is None:
         averaged, window = _steady_rows(radius, approach, retraction)
         where = "that both pass after the edge has travelled"
+        if len(present) == 1:
+            where = "after the edge has travelled"
         advice = "retract further, record more rows, check the modulus, or name a --window"
     else:
         averaged = within(radius, (approach, retraction), window)
         where = "within the window"
         low, high = (prefixed("m", float(end(radius[in_contact]))) for end in (np.min, np.max))
         advice = f"choose another one; the radii are {low} to {high}"
-    if min(rows.size for rows in averaged) < _FEWEST_ROWS:
-        counts = " and ".join(str(rows.size) for rows in averaged)
+    counts = [rows.size for rows, touched in zip(averaged, touching, strict=True) if touched.size]
+    if min(counts) < _FEWEST_ROWS:
+        numbers = " and ".join(map(str, counts))
+        verb = "have" if len(present) == 2 else "has"
+        if max(counts) >= _FEWEST_ROWS:
+            advice += ", or evaluate the other branch alone by --segment"
         raise ValueError(
-            f"approach and retraction have {counts} rows at contact radii {where}; "
+            f"{' and '.join(present)} {verb} {numbers} rows at contact radii {where}; "
             f"{_FEWEST_ROWS} each are needed, so {advice}"
         )
     return SteadyPart((approach, retraction), averaged, window)
@@ -132,13 +176,20 @@ def steady_part(loop: CalibratedLoop, contact: Contact, touching: Branches) -> S
 def _steady_rows(
     radius: Array, approach: NDArray[np.int64], retraction: NDArray[np.int64]
 ) -> tuple[Branches, tuple[float, float]]:
-    """Rows at the contact radii that both branches pass after the edge has travelled, and these."""
-    largest = max(float(radius[rows].max()) for rows in (approach, retraction))
-    began, turned = radius[approach].min(), radius[retraction].max()
+    """Rows at the contact radii that both branches pass after the edge has travelled, and these.
+
+    If one branch has no rows, the radii of the other count.
+    """
+    largest = float(radius[np.concatenate([approach, retraction])].max(initial=0.0))
+    began = radius[approach].min(initial=math.inf)
+    turned = radius[retraction].max(initial=0.0)
     steady = (
         approach[radius[approach] >= began + _AFTER_JUMP * largest],
         retraction[radius[retraction] <= turned - _AFTER_TURN * largest],
     )
+    if min(approach.size, retraction.size) == 0 < steady[0].size + steady[1].size:
+        ends = radius[np.concatenate(steady)]
+        return steady, (float(ends.min()), float(ends.max()))
     if min(rows.size for rows in steady) == 0:
         return steady, (math.nan, math.nan)
     return shared_window(radius, steady)

@@ -39,6 +39,8 @@ class CalibratedLoop:
     """Contact modulus, of the rig or fitted. (Units: Pa)"""
     zero: float = 0.0
     """Displacement without penetration; 0 where force and radius are recorded. (Units: m)"""
+    by_approach: bool = False
+    """Whether a modulus is fitted to the approach alone, as the retraction contradicts it."""
 
     @property
     def scales(self) -> Scales:

@@ -23,9 +23,6 @@ _NOT_PREDICTED = (
     "(measure it on a smooth surface)."
 )
 
-_FAR = 2.0
-"""Ratio of measured to predicted hysteresis from which a page on the reasons is named."""
-
 
 def hysteresis_ratio(loop: MeasuredLoop, prediction: Prediction) -> Estimate[float]:
     """Measured over predicted hysteresis, whose interval combines both intervals.
@@ -49,27 +46,88 @@ def _reach(measured: float, predicted: float) -> float:
     return math.hypot(math.log(measured), math.log(predicted))
 
 
+def mean_work(loop: MeasuredLoop) -> Estimate[float]:
+    """Mean of w_appr and w_retr (Units: as of the works), which does not depend on the hysteresis.
+
+    Its squared error is half of the sum of theirs less a quarter of the one of the hysteresis, with
+    all errors that they share.
+    """
+    w_appr, w_retr, hysteresis = loop.w_appr, loop.w_retr, loop.hysteresis
+    value = (w_appr.value + w_retr.value) / 2
+
+    def reach(*reaches: float) -> float:
+        squares = (reaches[0] ** 2 + reaches[1] ** 2) / 2 - reaches[2] ** 2 / 4
+        return math.sqrt(max(squares, 0.0))
+
+    parts = (w_appr, w_retr, hysteresis)
+    return Estimate(
+        value,
+        reach(*(part.standard_error for part in parts)),
+        value - reach(*(part.value - part.low for part in parts)),
+        value + reach(*(part.high - part.value for part in parts)),
+    )
+
+
+def _predicted_mean(prediction: Prediction) -> Estimate[float]:
+    """Mean of both works of adhesion by the theory, w_int - e_el (Units: J/m^2)."""
+    w_int, e_el = prediction.work_of_adhesion, prediction.e_el
+    return Estimate(w_int - e_el.value, e_el.standard_error, w_int - e_el.high, w_int - e_el.low)
+
+
 def comparison_lines(loop: MeasuredLoop, prediction: Prediction) -> Iterator[str]:
     """Lines on measured and predicted works of adhesion, and on what may explain a difference."""
     yield "Measured and predicted"
-    for name in ("hysteresis", "w_appr", "w_retr"):
-        measured, predicted = (
-            prefixed("J/m2", work.value, work.low, work.high)
-            for work in (getattr(loop, name), getattr(prediction, name))
-        )
-        yield f"  {name:16}{measured}; predicted {predicted}"
-    ratio = hysteresis_ratio(loop, prediction)
-    if math.isfinite(ratio.value):
-        yield f"  {'ratio':16}{ratio.value:.3g} ({ratio.low:.2g} to {ratio.high:.2g})"
-    if ratio.value > _FAR:
-        yield (
-            f"The measured hysteresis is {ratio.value:.2g} times the predicted one; "
-            "the page Questions of an experiment of the documentation (docs/questions.md) says "
-            "which measurements distinguish the causes."
-        )
+    rows = {
+        name: (getattr(loop, name), getattr(prediction, name), "predicted")
+        for name in ("hysteresis", "w_appr", "w_retr")
+    }
+    rows["mean of both"] = mean_work(loop), _predicted_mean(prediction), "w_int - e_el"
+    for name, (measured, predicted, origin) in rows.items():
+        if math.isfinite(measured.value):
+            texts = (
+                prefixed("J/m2", work.value, work.low, work.high) for work in (measured, predicted)
+            )
+            yield f"  {name:16}{f'; {origin} '.join(texts)}"
+    yield from _ratio_lines(hysteresis_ratio(loop, prediction))
+    yield from _mean_lines(mean_work(loop), _predicted_mean(prediction), prediction)
     yield f"{prediction.verdict.heading}."
     yield from _remarks(prediction)
     yield _NOT_PREDICTED
+
+
+def _ratio_lines(ratio: Estimate[float]) -> Iterator[str]:
+    """The ratio of measured to predicted hysteresis, and what its interval says."""
+    if not math.isfinite(ratio.value):
+        return
+    interval = f"{ratio.low:.2g} to {ratio.high:.2g}"
+    yield f"  {'ratio':16}{ratio.value:.3g} ({interval})"
+    if ratio.low <= 1 <= ratio.high:
+        yield "Measured and predicted hysteresis agree within their intervals."
+    else:
+        comparison = "larger" if ratio.low > 1 else "smaller"
+        yield (
+            f"The measured hysteresis is {comparison} than the predicted one, {interval} times as "
+            "large; the page Questions of an experiment of the documentation (docs/questions.md) "
+            "says which measurements distinguish the causes."
+        )
+
+
+def _mean_lines(
+    measured: Estimate[float], predicted: Estimate[float], prediction: Prediction
+) -> Iterator[str]:
+    """Which w_int the mean of both works implies, if it contradicts the w_int of the prediction."""
+    if not (measured.low > predicted.high or measured.high < predicted.low):
+        return
+    e_el = prediction.e_el
+    value = measured.value + e_el.value
+    below = math.hypot(measured.value - measured.low, e_el.value - e_el.low)
+    above = math.hypot(measured.high - measured.value, e_el.high - e_el.value)
+    yield (
+        f"The mean of both works and e_el give a w_int of "
+        f"{prefixed('J/m2', value, value - below, value + above)}, not "
+        f"{prefixed('J/m2', prediction.work_of_adhesion)}: measure w_int on a smooth surface, and "
+        "check the modulus and the radius of the sphere. Roughness outside of the scans lowers it."
+    )
 
 
 def machine_readable(loop: MeasuredLoop, prediction: Prediction | None) -> dict[str, Any]:
@@ -79,9 +137,11 @@ def machine_readable(loop: MeasuredLoop, prediction: Prediction | None) -> dict[
         return numbers
     names = ("e_el", "w_appr", "w_retr", "hysteresis")
     predicted = {name: to_jsonable(getattr(prediction, name)) for name in names}
+    predicted["mean"] = to_jsonable(_predicted_mean(prediction))
     verdict = {"outcome": prediction.verdict.outcome, "remarks": _remarks(prediction)}
     ratio = to_jsonable(hysteresis_ratio(loop, prediction))
-    return numbers | {"predicted": predicted | verdict, "ratio": ratio}
+    mean = to_jsonable(mean_work(loop))
+    return numbers | {"mean": mean, "predicted": predicted | verdict, "ratio": ratio}
 
 
 def _remarks(prediction: Prediction) -> list[str]:

@@ -37,6 +37,9 @@ It replaces the limit by chance where few rows precede, whose scatter is badly k
 _LEAST_PULL = 0.15
 """Departure over the largest pull below which rows are out of contact, as waves of a drift are."""
 
+_FEWEST_LATE = 2
+"""Rows with a radius and without a force next to the contact, from which the radius is late."""
+
 _STEEP = 0.1
 """Slope of force over displacement in contact, relative to the slope of the whole loop.
 
@@ -54,15 +57,19 @@ _TINY = np.finfo(float).tiny
 
 
 def rows_in_contact(recording: Recording) -> NDArray[np.bool_]:
-    """Whether each row is in contact: its radius is positive, or, without radii, a force acts.
+    """Whether each row is in contact: from the first to the last with a radius or a force.
 
-    A force acts from the first to the last row that departs from the line through the rows before
-    or after it. Raises ValueError if no row is in contact, or a column has no value in contact.
+    A force acts in rows that depart from the line through the rows before or after them. Next to a
+    jump of the force it decides, not the radius, which may be missing or late there. Raises
+    ValueError if no row is in contact, or a column has no value in contact.
     """
-    if recording.radius is not None:
-        touches = recording.radius > 0
+    force, radius = recording.force, recording.radius
+    if radius is not None:
+        touches = _filled(radius > 0)
+        if force is not None and np.any(touches):
+            touches = _cut_by_force(force, touches)
     else:
-        touches = _rows_with_force(np.array(recording.force), np.asarray(recording.displacement))
+        touches = _rows_with_force(np.array(force), np.asarray(recording.displacement))
     if not np.any(touches):
         raise ValueError(
             "no row is in contact: no contact radius is above zero, or no force beyond its noise; "
@@ -84,6 +91,45 @@ def rows_without_spikes(force: Array) -> Rows:
     # Rows of a smooth rise are medians themselves, and say nothing about the noise.
     noisy = distance[distance > 0]
     return rows[distance <= _SPIKE * np.median(noisy)] if noisy.size else rows
+
+
+def _filled(condition: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """True from the first to the last row with a condition."""
+    after = np.logical_or.accumulate(condition)
+    before = np.logical_or.accumulate(condition[::-1])[::-1]
+    return np.asarray(after & before)
+
+
+def _cut_by_force(force: Array, by_radius: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Rows in contact, from the jump into contact to the pull-off where the force shows them.
+
+    Radii may be missing there, or recorded late. Rows of contact are `by_radius`.
+    """
+    touches = by_radius.copy()
+    touching = np.flatnonzero(by_radius)
+    finite = np.flatnonzero(np.isfinite(force))
+    middle = touching[touching.size // 2]
+    smooth = force[rows_without_spikes(force)]
+    for rows, outside in (
+        (finite[finite <= middle], finite[finite < touching[0]]),
+        (finite[finite >= middle][::-1], finite[finite > touching[-1]]),
+    ):
+        if outside.size <= FEWEST_FREE_ROWS:
+            continue
+        least, noise = _LEAST_PULL * _largest_pull(smooth), _noise(smooth)
+        values = force[rows] - force[rows[0]]
+        departs = np.abs(_departures(values, least, noise)) > 1
+        departs[:-1] &= departs[1:]
+        first = int(np.argmax(departs))
+        # Contact begins and ends with a jump, a wave of a drift does not.
+        if departs[first] and abs(values[first] - values[first - 1]) > max(
+            least, _NOISE_LIMIT * noise
+        ):
+            n_late = first - outside.size
+            if n_late < 0 or n_late >= _FEWEST_LATE:
+                touches[rows[:first]] = False
+                touches[rows[first:]] = True
+    return touches
 
 
 def _rows_with_force(force: Array, displacement: Array) -> NDArray[np.bool_]:

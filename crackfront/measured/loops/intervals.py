@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -11,7 +12,7 @@ from scipy.special import stdtrit
 
 from crackfront.analysis.estimate import REACH, UNKNOWN, Estimate
 from crackfront.analysis.standard_error import FEWEST_STATES
-from crackfront.analysis.steady_adhesion import Branches, Rows, branch_means, within
+from crackfront.analysis.steady_adhesion import Branches, Rows, within
 from crackfront.core.arrays import Array
 from crackfront.measured.loops.calibration import CalibratedLoop, Contact
 from crackfront.measured.loops.loop_fit import fitted_modulus, fitted_zero
@@ -55,10 +56,11 @@ def works_of_adhesion(loop: CalibratedLoop, averaged: Branches, errors: Sequence
     -------
     Works
         The intervals include noise, a trend along the window, and the errors of modulus, radius,
-        and both zeros. They are NaN where an error of the zero leaves a row without adhesion.
+        and both zeros. They are NaN where an error of the zero leaves a row without adhesion, and
+        for a branch without rows.
     """
     value = _numbers(loop, averaged)
-    n_blocks = min(_BLOCKS, min(rows.size for rows in averaged) // 2)
+    n_blocks = min(_BLOCKS, min(rows.size for rows in averaged if rows.size) // 2)
     parts = zip(*(_without_blocks(rows, n_blocks) for rows in averaged), strict=True)
     left_out = np.array([_numbers(loop, part) for part in parts])
     squares = np.sum((left_out - left_out.mean(axis=0)) ** 2, axis=0)
@@ -82,7 +84,8 @@ def _without_blocks(rows: Rows, n_blocks: int) -> list[Rows]:
 def _numbers(loop: CalibratedLoop, rows: Branches) -> Array:
     """w_appr, w_retr, hysteresis and modulus, with the loop calibrated by the same rows."""
     recording, rig = loop.recording, loop.rig
-    modulus = rig.contact_modulus or fitted_modulus(recording, rig, rows)
+    fitted_rows = (rows[0], rows[1][:0]) if loop.by_approach else rows
+    modulus = rig.contact_modulus or fitted_modulus(recording, rig, fitted_rows)
     loop = replace(loop, modulus=modulus)
     return _at_zero(loop, fitted_zero(loop, rows, near=loop.zero), rows)
 
@@ -93,13 +96,11 @@ def _at_zero(loop: CalibratedLoop, zero: float, rows: Branches) -> Array:
     return np.array([appr, retr, retr - appr, loop.modulus])
 
 
-def _means(contact: Contact, rows: Branches) -> tuple[float, float]:
+def _means(contact: Contact, rows: Branches) -> list[float]:
     """Works of adhesion of both branches, from the rows that have one; NaN if a branch has none."""
     work = contact.work_of_adhesion
-    approach, retraction = (branch[np.isfinite(work[branch])] for branch in rows)
-    if min(approach.size, retraction.size) == 0:
-        return math.nan, math.nan
-    return branch_means(work, (approach, retraction))
+    branches = (branch[np.isfinite(work[branch])] for branch in rows)
+    return [float(np.mean(work[branch])) if branch.size else math.nan for branch in branches]
 
 
 def _changes(
@@ -114,7 +115,7 @@ def _changes(
         yield _numbers(replace(loop, recording=recording), averaged) - value
     if not loop.has_force_and_radius:
         # A true trend of either branch moves the zero; a zero by one branch alone says how far.
-        for branch in averaged:
+        for branch in filter(len, averaged):
             yield _by_zero_of_branch(loop, averaged, branch) - value
     rig, more = loop.rig, 1 + _RIG_STEP
     if rig.contact_modulus is not None and rig.modulus_error > 0:
@@ -133,7 +134,7 @@ def _by_zero_of_branch(loop: CalibratedLoop, averaged: Branches, branch: Rows) -
     It is sought anywhere, or, if the other branch lacks works there, near the zero of both.
     """
     numbers = _at_zero(loop, fitted_zero(loop, [branch]), averaged)
-    if np.all(np.isfinite(numbers)):
+    if all(math.isfinite(numbers[place]) for place, rows in enumerate(averaged) if rows.size):
         return numbers
     return _at_zero(loop, fitted_zero(loop, [branch], near=loop.zero), averaged)
 
@@ -144,7 +145,9 @@ def _trend(loop: CalibratedLoop, averaged: Branches, noise: Array) -> Array:
     middle = float(np.median(radius[np.concatenate(averaged)]))
     lower = within(radius, averaged, (0.0, middle))
     upper = within(radius, averaged, (middle, math.inf))
-    if min(rows.size for rows in (*lower, *upper)) < FEWEST_STATES:
+    is_present = [rows.size > 0 for rows in averaged]
+    halves = (rows for half in (lower, upper) for rows in itertools.compress(half, is_present))
+    if min(rows.size for rows in halves) < FEWEST_STATES:
         return np.zeros_like(noise)
     half = (_numbers(loop, upper) - _numbers(loop, lower)) / 2
     return np.asarray(np.maximum(half**2 - noise**2, 0.0))
@@ -178,4 +181,5 @@ def machine_stiffness(
 def _compliance(loop: CalibratedLoop, rows: Rows) -> float:
     """Bending of the machine per force in some rows (Units: m/N)."""
     bending = np.asarray(loop.recording.displacement) - loop.contact().penetration
+    rows = rows[np.isfinite(bending[rows])]
     return float(np.polyfit(np.asarray(loop.recording.force)[rows], bending[rows], 1)[0])

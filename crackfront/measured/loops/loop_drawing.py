@@ -2,20 +2,36 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from contextlib import nullcontext
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from crackfront.core import jkr
+from crackfront.core.arguments import check_type
 from crackfront.core.units import WORK_OF_ADHESION, Scales
 from crackfront.core.variables import FORCE, LATERAL
 from crackfront.measured.loops.loop_result import MeasuredLoop
 from crackfront.measured.prediction.prediction import Prediction
 from crackfront.plots.axis_units import AxisUnits
-from crackfront.plots.style import BLUE, COLUMN, VERMILION, blank_figure, house_style
+from crackfront.plots.style import (
+    BLUE,
+    COLUMN,
+    VERMILION,
+    blank_figure,
+    house_style,
+    shown_axes,
+)
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+
+def plot_measured_loop(loop: MeasuredLoop, axes: Axes | None = None) -> Axes:
+    """Draw a loop on the user's axes, or on new ones."""
+    check_type("axes", axes, (Axes, type(None)), "one Axes of matplotlib, as axes[0] of several")
+    with shown_axes() if axes is None else nullcontext(axes) as drawn:
+        _draw_measured(drawn, loop, None)
+        drawn.legend()
+    return drawn
 
 
 def loop_figure(loop: MeasuredLoop, prediction: Prediction | None = None) -> Figure:
@@ -23,52 +39,58 @@ def loop_figure(loop: MeasuredLoop, prediction: Prediction | None = None) -> Fig
 
     It is in the units of the loop, SI or reduced.
     """
+    with house_style():
+        figure = blank_figure(COLUMN, 0.9 * COLUMN)
+        _draw_measured(figure.add_subplot(), loop, prediction)
+        figure.legend(loc="outside upper center", ncols=2)
+        return figure
+
+
+def _draw_measured(axes: Axes, loop: MeasuredLoop, prediction: Prediction | None) -> None:
+    """Draw rows, JKR curves and the averaged contact radii, without a legend."""
     # Works of adhesion are in J/m^2 or w_int.
     unit = WORK_OF_ADHESION if loop.reduced else 1.0
     scales = Scales(loop.sphere_radius, unit, loop.contact_modulus.value)
     units = AxisUnits() if loop.reduced else AxisUnits(scales)
     radius = np.linspace(0.0, 1.05 * float(np.nanmax(loop.contact_radius)), 300) / scales.lateral
-    with house_style():
-        figure = blank_figure(COLUMN, 0.9 * COLUMN)
-        axes = figure.add_subplot()
-        for direction, work, name, colour, marker in (
-            (1, "w_appr", "approach", BLUE, "o"),
-            (-1, "w_retr", "retraction", VERMILION, "s"),
-        ):
-            rows = loop.direction == direction
-            axes.plot(
-                loop.contact_radius[rows],
-                loop.force[rows],
-                linestyle="none",
-                marker=marker,
-                markersize=2,
-                markerfacecolor="none",
-                markeredgewidth=0.4,
-                color=colour,
-                label=name,
-            )
-            measured = getattr(loop, work).value
-            axes.plot(
+    for direction, work, name, colour, marker in (
+        (1, "w_appr", "approach", BLUE, "o"),
+        (-1, "w_retr", "retraction", VERMILION, "s"),
+    ):
+        rows = loop.direction == direction
+        if not np.any(rows):
+            continue
+        axes.plot(
+            loop.contact_radius[rows],
+            loop.force[rows],
+            linestyle="none",
+            marker=marker,
+            markersize=2,
+            markerfacecolor="none",
+            markeredgewidth=0.4,
+            color=colour,
+            label=name,
+        )
+        measured = getattr(loop, work).value
+        axes.plot(
+            radius * scales.lateral,
+            scales.force * jkr.equilibrium_force(radius, measured),
+            color=colour,
+            label=f"JKR, ${units.adhesion_text(measured)}$",
+        )
+        if prediction is not None:
+            predicted = getattr(prediction, work)
+            axes.fill_between(
                 radius * scales.lateral,
-                scales.force * jkr.equilibrium_force(radius, measured),
+                scales.force * jkr.equilibrium_force(radius, max(predicted.low, 0.0)),
+                scales.force * jkr.equilibrium_force(radius, max(predicted.high, 0.0)),
                 color=colour,
-                label=f"JKR, ${units.adhesion_text(measured)}$",
+                alpha=0.15,
+                linewidth=0,
+                label=f"predicted, {name}",
             )
-            if prediction is not None:
-                predicted = getattr(prediction, work)
-                axes.fill_between(
-                    radius * scales.lateral,
-                    scales.force * jkr.equilibrium_force(radius, max(predicted.low, 0.0)),
-                    scales.force * jkr.equilibrium_force(radius, max(predicted.high, 0.0)),
-                    color=colour,
-                    alpha=0.15,
-                    linewidth=0,
-                    label=f"predicted, {name}",
-                )
-        low, high = float(np.nanmin(loop.force)), float(np.nanmax(loop.force))
-        axes.set_ylim(low - 0.1 * (high - low), high + 0.1 * (high - low))
-        axes.axvspan(*loop.window, color="0.93", linewidth=0, zorder=0, label="averaged")
-        units.name(axes.xaxis, "contact radius", LATERAL)
-        units.name(axes.yaxis, "normal force", FORCE)
-        figure.legend(loc="outside upper center", ncols=2)
-        return figure
+    low, high = float(np.nanmin(loop.force)), float(np.nanmax(loop.force))
+    axes.set_ylim(low - 0.1 * (high - low), high + 0.1 * (high - low))
+    axes.axvspan(*loop.window, color="0.93", linewidth=0, zorder=0, label="averaged")
+    units.name(axes.xaxis, "contact radius", LATERAL)
+    units.name(axes.yaxis, "normal force", FORCE)

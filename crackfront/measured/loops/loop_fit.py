@@ -31,21 +31,27 @@ def fitted_modulus(recording: Recording, rig: Rig, rows: Branches) -> float:
     The force is linear in E' and in the roots of E' w: F = 4/3 E' a^3 / R - sqrt(8 pi E' w a^3).
     Force and radius must be recorded. Raises ValueError if the modulus is not positive.
     """
-    chosen = np.concatenate(rows)
-    a, force = np.asarray(recording.radius)[chosen], np.asarray(recording.force)[chosen]
-    in_contact = np.isfinite(force) & (a > 0)
-    is_approach = np.arange(chosen.size) < rows[0].size
-    adhesion = -(a**1.5)
-    columns = np.stack([a**3, adhesion * is_approach, adhesion * ~is_approach], axis=1)[in_contact]
-    scale = np.max(np.abs(columns), axis=0)
-    coefficients, *_ = np.linalg.lstsq(columns / scale, force[in_contact], rcond=None)
-    modulus = 0.75 * rig.radius * float(coefficients[0] / scale[0])
+    modulus = best_modulus(recording, rig, rows)
     if not modulus > 0:
         raise ValueError(
             "no positive modulus fits force and contact radius; the force must be positive where "
             "it pushes, so check its sign"
         )
     return modulus
+
+
+def best_modulus(recording: Recording, rig: Rig, rows: Branches) -> float:
+    """Contact modulus as :func:`fitted_modulus` has it, of any sign."""
+    chosen = np.concatenate(rows)
+    a, force = np.asarray(recording.radius)[chosen], np.asarray(recording.force)[chosen]
+    in_contact = np.isfinite(force) & (a > 0)
+    is_approach = np.arange(chosen.size) < rows[0].size
+    adhesion = -(a**1.5)
+    branches = (adhesion * is_branch for is_branch in (is_approach, ~is_approach) if any(is_branch))
+    columns = np.stack([a**3, *branches], axis=1)[in_contact]
+    scale = np.max(np.abs(columns), axis=0)
+    coefficients, *_ = np.linalg.lstsq(columns / scale, force[in_contact], rcond=None)
+    return 0.75 * rig.radius * float(coefficients[0] / scale[0])
 
 
 def fitted_zero(loop: CalibratedLoop, rows: Sequence[Rows], near: float | None = None) -> float:
@@ -65,7 +71,7 @@ def _zero_by_force(loop: CalibratedLoop, rows: Sequence[Rows], near: float | Non
     """Zero with the smallest misfit of the forces."""
     displacement = np.asarray(loop.recording.displacement)
     # Rows out of contact may be many more, and do not depend on the zero.
-    parts = [_part(loop, branch) for branch in rows]
+    parts = [_part(loop, branch) for branch in rows if branch.size]
     moved = displacement[np.concatenate(rows)]
     low, high = float(np.nanmin(moved)), float(np.nanmax(moved))
     if near is None:

@@ -13,37 +13,54 @@ from crackfront.measured.loops.loop_result import MeasuredLoop
 from crackfront.simulate.jsonable import to_jsonable
 from crackfront.surfaces.written_units import prefixed
 
+INTERVALS = "Intervals are 95% intervals."
+
 _REDUCED_UNITS = {"J/m2": " w_int", "N": " pi w_int R", "Pa": "", "m": ""}
 """Text after a number in reduced units, by the unit of SI."""
 
 
 def loop_lines(loop: MeasuredLoop) -> Iterator[str]:
     """Lines of a page: what a reader wants first, then the remarks."""
+    for name, text in loop_numbers(loop):
+        yield f"{name:18}{text}"
+    yield from loop.remarks
+    yield INTERVALS
+
+
+def loop_numbers(loop: MeasuredLoop) -> Iterator[tuple[str, str]]:
+    """Names and texts of the numbers of a loop that are known, the works of adhesion first."""
     for name in ("hysteresis", "w_appr", "w_retr"):
         work = getattr(loop, name)
-        yield f"{name:18}{_text(loop, 'J/m2', work.value, work.low, work.high)}"
-    pull = loop.pull_off_force
-    yield f"{'pull-off force':18}{_text(loop, 'N', pull.value, pull.low, pull.high)}"
+        if math.isfinite(work.value):
+            yield name, _text(loop, "J/m2", work.value, work.low, work.high)
+        else:
+            yield name, "unknown"
+    if math.isfinite(loop.pull_off_force.value):
+        yield "pull-off force", _pull_text(loop)
     if math.isfinite(loop.lost_energy):
         energy = _text(loop, "J/m2", loop.lost_energy)
-        yield f"{'energy lost':18}{energy} of the largest contact area"
-    yield f"{'contact modulus':18}{_text(loop, 'Pa', loop.contact_modulus.value)}"
+        yield "energy lost", f"{energy} of the largest contact area"
+    yield "contact modulus", _text(loop, "Pa", loop.contact_modulus.value)
     for name, fitted, unit in (
         ("modulus by fit", loop.fitted_modulus, "Pa"),
         ("machine", loop.stiffness, "N/m"),
     ):
         if math.isfinite(fitted.value):
-            yield f"{name:18}{_text(loop, unit, fitted.value, fitted.low, fitted.high)}"
+            yield name, _text(loop, unit, fitted.value, fitted.low, fitted.high)
     low, high = (_text(loop, "m", end) for end in loop.window)
     approach, retraction = (
         int(np.sum(loop.in_window & (loop.direction == direction))) for direction in (1, -1)
     )
-    yield (
-        f"{'averaged over':18}contact radii of {low} to {high}: "
-        f"{approach} rows of approach, {retraction} of retraction"
-    )
-    yield from loop.remarks
-    yield "Intervals are 95% intervals."
+    counts = f"{approach} rows of approach, {retraction} of retraction"
+    yield "averaged over", f"contact radii of {low} to {high}: {counts}"
+
+
+def _pull_text(loop: MeasuredLoop) -> str:
+    """The pull-off force, or its lower bound if a saturated detector hides it."""
+    pull = loop.pull_off_force
+    if math.isinf(pull.high):
+        return f"at least {_text(loop, 'N', pull.value)}"
+    return _text(loop, "N", pull.value, pull.low, pull.high)
 
 
 def _text(loop: MeasuredLoop, unit: str, *values: float) -> str:

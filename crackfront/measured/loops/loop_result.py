@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +12,9 @@ from numpy.typing import NDArray
 from crackfront.analysis.estimate import Estimate
 from crackfront.core.arrays import Array
 from crackfront.core.variables import variable
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,6 +45,29 @@ class MeasuredLoop:
     """Sentences on what was corrected, assumed or not found."""
     reduced: bool = False
     """Whether the numbers are in reduced units instead of SI."""
+
+    def plot(self, axes: Axes | None = None) -> Axes:
+        """Force against contact radius, with the JKR curves of both works of adhesion.
+
+        Parameters
+        ----------
+        axes : matplotlib.axes.Axes, optional
+            Axes to draw on; by default axes of a new figure.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+            The axes with the drawing.
+        """
+        from crackfront.measured.loops.loop_drawing import plot_measured_loop
+
+        return plot_measured_loop(self, axes)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Numbers and remarks for JSON, by the names of `crackfront loop --json`."""
+        from crackfront.measured.loops.loop_page import loop_json
+
+        return loop_json(self)
 
     def __repr__(self) -> str:
         """The page that the command `crackfront loop` prints."""

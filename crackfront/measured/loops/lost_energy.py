@@ -20,8 +20,10 @@ def lost_energy(displacement: Array | None, contact: Contact, branches: Branches
     """
     rows = np.concatenate([branches[0], branches[1][1:]])
     moved = contact.penetration if displacement is None else displacement
+    radius = contact.radius[rows]
     # The largest of noisy radii would be too large.
-    radius = scipy.ndimage.median_filter(contact.radius[rows], 5, mode="nearest")
+    radius = scipy.ndimage.median_filter(radius[np.isfinite(radius)], 5, mode="nearest")
+    rows = rows[np.isfinite(moved[rows] + contact.force[rows])]
     return work_per_area(moved[rows], contact.force[rows], radius)
 
 

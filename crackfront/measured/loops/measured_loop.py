@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from os import PathLike
 from pathlib import Path
+from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,8 +14,10 @@ from xarray import DataArray, Dataset
 from crackfront.core.arguments import check_numbers, check_type
 from crackfront.core.arrays import Array
 from crackfront.measured.loops.analysis import analyse_loop
+from crackfront.measured.loops.loop_choice import chosen_loop
 from crackfront.measured.loops.loop_result import MeasuredLoop
-from crackfront.measured.loops.recording import UNITS, Recording, read_recording
+from crackfront.measured.loops.loop_table import read_recording
+from crackfront.measured.loops.recording import UNITS, Recording
 from crackfront.measured.loops.rig import Rig
 from crackfront.measured.loops.simulated_loop import simulated_loop
 from crackfront.measured.scan.netcdf import is_netcdf
@@ -22,7 +25,7 @@ from crackfront.simulate.storage import read_dataset
 from crackfront.surfaces.scales import in_si
 from crackfront.surfaces.written_units import unit_value
 
-_SIMULATED = {"penetration", "pinning_force"}
+_SIMULATED = {"mean_radius", "pinning_force"}
 """Variables one of which every simulated cycle has, and no measured loop."""
 
 
@@ -35,6 +38,9 @@ def measured_loop(
     radius_error: float = 0.0,
     stiffness: float | str | None = None,
     window: tuple[float, float] | None = None,
+    loop_number: int | None = None,
+    segment: Literal["approach", "retract"] | None = None,
+    invert: Literal["force", "displacement"] | None = None,
 ) -> MeasuredLoop:
     """Works of adhesion of a loop that a rig measured, or of a simulated one, with intervals.
 
@@ -59,6 +65,13 @@ def measured_loop(
     window : (float, float), optional
         Contact radii that both branches are averaged over; numbers, or texts with a unit.
         (Units: m)
+    loop_number : int, optional
+        Which loop to evaluate if there are several, from 1.
+    segment : "approach" or "retract", optional
+        Branch to evaluate alone.
+    invert : "force" or "displacement", optional
+        Column with the opposite sign: a force that is positive where it pulls, a displacement that
+        decreases towards the surface.
 
     Returns
     -------
@@ -94,6 +107,9 @@ def measured_loop(
             radius_error=radius_error or None,
             stiffness=stiffness,
             window=window,
+            loop_number=loop_number,
+            segment=segment,
+            invert=invert,
         )
         return simulated_loop(loop)
     check_type(
@@ -109,10 +125,15 @@ def measured_loop(
         radius_error=radius_error,
         stiffness=_optional("stiffness", stiffness, "N/m"),
         window=None if window is None else _window(window),
+        segment=segment,
     )
     if isinstance(loop, (str, PathLike)):
-        return analyse_loop(read_recording(Path(loop), {}, {}), rig)
-    return analyse_loop(_recording(loop), rig)
+        recording = read_recording(Path(loop), {}, {})
+    else:
+        recording = _recording(loop)
+    if invert is not None:
+        recording = recording.inverted([invert])
+    return analyse_loop(chosen_loop(recording, loop_number), rig)
 
 
 def _check_no_rig(**arguments: object) -> None:

@@ -9,9 +9,10 @@ from dataclasses import dataclass
 import numpy as np
 import scipy
 
-from crackfront.analysis.estimate import Estimate, normal_estimate
+from crackfront.analysis.estimate import REACH, Estimate, normal_estimate
 from crackfront.analysis.steady_adhesion import Rows
 from crackfront.core.arrays import Array
+from crackfront.surfaces.written_units import prefixed
 
 _NARROWEST = 5
 """Rows of the shortest parabola; it has two more than coefficients."""
@@ -74,6 +75,30 @@ def pull_off(force: Array, retraction: Rows, errors: Sequence[Array]) -> PullOff
     variance += sum(float(error[rows[smoothed.place]]) ** 2 for error in errors)
     force_estimate = normal_estimate(-smoothed.lowest, math.sqrt(variance))
     return PullOff(force_estimate, math.sqrt(smoothed.noise))
+
+
+def least_pull_off(force: Array, rows: Rows, errors: Sequence[Array]) -> Estimate[float]:
+    """Lower bound of the pulling force from rows whose force is at the end of its range.
+
+    The interval is open above. Parameters are as for :func:`pull_off`.
+    """
+    pull = float(np.max(-force[rows]))
+    variance = sum(float(np.max(np.abs(error[rows]))) ** 2 for error in errors)
+    return Estimate(pull, math.nan, pull - REACH * math.sqrt(variance), math.inf)
+
+
+def pull_off_sentence(force: Estimate[float], radius: float) -> str:
+    """Sentence on the work of adhesion that a pull-off force (Units: N) alone determines.
+
+    `radius` is the radius of the sphere (Units: m). Empty without a pull-off force.
+    """
+    if not math.isfinite(force.value):
+        return ""
+    work = force.each(lambda pull: pull / (1.5 * math.pi * radius))
+    return (
+        "The pull-off force alone, without a modulus, gives a work of adhesion 2 F / (3 pi R) of "
+        f"{prefixed('J/m2', work.value, work.low, work.high)} for the retraction."
+    )
 
 
 def _smoothed(values: Array, width: int) -> _Smoothed:

@@ -4,8 +4,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Literal
 
 from crackfront.surfaces.written_units import prefixed
+
+Segment = Literal["approach", "retract"] | None
+"""Branch that is evaluated alone; None for both."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,12 +28,16 @@ class Rig:
     """Stiffness of the machine; None if it is infinite or not needed. (Units: N/m)"""
     window: tuple[float, float] | None = None
     """Contact radii over which both works are averaged; None to choose them. (Units: m)"""
+    segment: Segment = None
+    """Branch that is evaluated alone; None for both."""
 
     def __post_init__(self) -> None:
         for name in ("radius", "contact_modulus", "stiffness"):
             value = getattr(self, name)
             if value is not None and not (math.isfinite(value) and value > 0):
                 raise ValueError(f"{name} is {value}; it must be positive and finite")
+        if self.segment not in (None, "approach", "retract"):
+            raise ValueError(f"segment is {self.segment!r}; choose approach or retract")
         for name in ("modulus_error", "radius_error"):
             if not 0 <= getattr(self, name) < 1:
                 raise ValueError(f"{name} is {getattr(self, name)}; it is relative, 0 to 1")

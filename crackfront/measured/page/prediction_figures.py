@@ -9,9 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure, FigureBase
 
-from crackfront.core import jkr
 from crackfront.core.arrays import Array
-from crackfront.core.units import Scales
 from crackfront.measured.density.densities import Density
 from crackfront.measured.prediction.prediction import Prediction
 from crackfront.measured.scan.reading import Measurement
@@ -26,8 +24,9 @@ from crackfront.plots.density_axes import (
     draw_dominant_scales,
     set_density_scales,
 )
+from crackfront.plots.force_axes import draw_forces
 from crackfront.plots.parts import ON_WHITE, label_panel, spectrum_colour, spectrum_marker
-from crackfront.plots.style import BLACK, BLUE, PAGE, VERMILION, blank_figure, house_style
+from crackfront.plots.style import BLACK, BLUE, PAGE, blank_figure, house_style
 
 _MOST_MAPS = 4
 """Largest number of scans that are drawn as maps."""
@@ -228,31 +227,7 @@ def _draw_density(axes: Axes, index: int, density: Density, name: str) -> None:
 
 def _draw_forces(axes: Axes, _: Surface, prediction: Prediction) -> None:
     """Force against contact radius of both branches with intervals, and of a smooth sphere."""
-    w_int = prediction.work_of_adhesion
-    scales = Scales(prediction.radius, w_int, prediction.contact_modulus)
-    strongest = max(prediction.w_retr.high, w_int)
-    radius = np.linspace(1e-3, 1.15 * jkr.radius_at_force(0.0, strongest / w_int), 400)
-    unit, newtons = scaled_unit("N", scales.force)
-    micrometres = 1e6 * radius * scales.lateral
-
-    def force(adhesion: float) -> Array:
-        return jkr.equilibrium_force(radius, max(adhesion, 0.0) / w_int) * scales.force / newtons
-
-    for name, colour, adhesion in (
-        ("approach", BLUE, prediction.w_appr),
-        ("retraction", VERMILION, prediction.w_retr),
-    ):
-        label = rf"{name}, $w = {1e3 * adhesion.value:.3g}$ mJ m$^{{-2}}$"
-        axes.plot(micrometres, force(adhesion.value), color=colour, label=label, zorder=3)
-        ends = force(adhesion.low), force(adhesion.high)
-        axes.fill_between(micrometres, *ends, color=colour, alpha=0.2, linewidth=0)
-    smooth = rf"smooth, $w_\mathrm{{int}} = {1e3 * w_int:.3g}$ mJ m$^{{-2}}$"
-    axes.plot(micrometres, force(w_int), color="0.35", dashes=(4, 2), label=smooth)
-    axes.axhline(0.0, color="0.6", linewidth=0.5, zorder=1)
-    axes.set_xlim(0, micrometres[-1])
-    axes.set_xlabel("contact radius (µm)")
-    axes.set_ylabel(f"normal force ({unit})")
-    axes.legend(loc="upper left", title="95% intervals shaded", title_fontsize=6)
+    draw_forces(axes, prediction.scales, prediction.w_appr, prediction.w_retr)
 
 
 _DRAWINGS = {"a": _draw_isotropic, "b": _draw_profiles, "c": _draw_forces}

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import fields, replace
 from typing import TYPE_CHECKING, Any
 
@@ -15,12 +15,16 @@ from crackfront.measured.density.bands import BandLimit, Scan
 from crackfront.measured.prediction.prediction import Prediction
 from crackfront.measured.prediction.prediction_texts import ENERGY, estimate_text, wavelengths_text
 from crackfront.measured.prediction.remarks import (
-    Remark,
     Verdict,
+    remark_entries,
     remark_lines,
     remark_text,
 )
 from crackfront.measured.prediction.surface_remarks import is_lower_bound, surface_remarks
+from crackfront.measured.prediction.works_by_source import (
+    reason_for_differences,
+    works_by_source,
+)
 from crackfront.measured.spectrum.joining import part_of_energy
 from crackfront.measured.spectrum.joint_fit import Fit
 from crackfront.measured.spectrum.measured_surface import MeasuredSurface
@@ -37,7 +41,8 @@ Number = Estimate[float]
 _MEASURES = {0.0: ("heights", "m"), 0.5: ("half-derivative", "m^1/2"), 1.0: ("slopes", "1")}
 """Names and units of rms measures, by the order of the derivative."""
 
-_ADHESIONS = ("w_appr", "w_retr", "hysteresis")
+ADHESIONS = ("w_appr", "w_retr", "hysteresis")
+"""Names of works of adhesion."""
 
 
 def report_text(
@@ -51,14 +56,14 @@ def report_text(
     The verdict comes first if the theory does not apply. Without a prediction, scales in SI units
     add the energy of full conformity.
     """
-    parts = [_surface_lines(surface)]
+    parts = [surface_lines(surface)]
     if verdict is None:
         parts.append(remark_lines(surface_remarks(surface)))
     else:
         verdict_lines = iter([verdict.heading, *remark_lines(verdict.remarks)])
         parts.insert(0 if verdict.outcome == "does not apply" else 1, verdict_lines)
     if prediction is not None:
-        parts.append(_prediction_lines(prediction))
+        parts += [_prediction_lines(prediction), _source_lines(prediction)]
     elif scales is not None:
         energy = surface.conformity_energy(scales.contact_modulus)
         parts.append(_conformity_lines(energy, scales.work_of_adhesion))
@@ -71,11 +76,11 @@ def simulation_text(simulated: Simulated, prediction: Prediction) -> str:
     lines = [f"Simulated on {surfaces}, with the prediction"]
     corrected = simulated.corrected(prediction)
     rows = {"front, not corrected": (simulated.hysteresis, prediction.front_hysteresis)}
-    rows |= {name: (getattr(corrected, name), getattr(prediction, name)) for name in _ADHESIONS}
+    rows |= {name: (getattr(corrected, name), getattr(prediction, name)) for name in ADHESIONS}
     for name, (result, predicted) in rows.items():
         expected = estimate_text(ENERGY, predicted)
         lines.append(f"  {name:22}{estimate_text(ENERGY, result)}; predicted {expected}")
-    law = estimate_text("1", prediction.factors.both)
+    law = estimate_text("1", prediction.k)
     lines.append(
         f"  {'k of the front':22}{estimate_text('1', simulated.k)}, numerical error "
         f"{simulated.numerical_error:.2g}; predicted {law}"
@@ -114,14 +119,14 @@ def machine_readable(
         "prediction": None,
         "factors": None,
         "excess": None,
+        "works_by_source": None,
         "outcome": None if verdict is None else verdict.outcome,
-        "remarks": _remark_entries(remarks),
+        "at_least": is_lower_bound(surface),
+        "remarks": remark_entries(remarks),
         "simulation": None,
     }
     if prediction is not None:
-        entries["prediction"] = _prediction_entries(prediction)
-        entries["factors"] = to_jsonable(prediction.factors)
-        entries["excess"] = to_jsonable(prediction.excess)
+        entries |= prediction.to_dict()
         if simulated is not None:
             corrected = to_jsonable(simulated.corrected(prediction))
             entries["simulation"] = to_jsonable(simulated) | {"corrected": corrected}
@@ -173,7 +178,7 @@ def sample_row(
         numbers[f"rms_{name.replace('-', '_')}"] = to_jsonable(measure.rms)
     numbers["e_el"] = to_jsonable(surface.conformity_energy(scales.contact_modulus))
     if prediction is not None:
-        numbers |= _prediction_entries(prediction)
+        numbers |= prediction.number_entries()
     row = dict(sentences)
     for name, entry in numbers.items():
         for end, suffix in (("value", ""), ("low", "_low"), ("high", "_high")):
@@ -191,7 +196,7 @@ def _continuation(fit: Fit) -> tuple[tuple[str, Number, str], ...]:
     )
 
 
-def _surface_lines(surface: Surface) -> Iterator[str]:
+def surface_lines(surface: Surface) -> Iterator[str]:
     """Lines on a surface and its rms measures."""
     if isinstance(surface, StatedSurface):
         yield surface.origin
@@ -228,9 +233,12 @@ def _measured_lines(surface: MeasuredSurface) -> Iterator[str]:
             text += ", not resolved"
         yield f"    {name:20}{text}"
     yield (
-        f"  {'missing':22}two more decades of short waves would add "
-        f"{part_of_energy(shares.missing_short)}; waves above {prefixed('m', joint.longest)} have "
-        f"{shares.continued_long:.0%}"
+        f"  {'missing':22}waves down to {prefixed('m', joint.extended.short_cutoff)} would add "
+        f"{part_of_energy(shares.missing_short)}"
+    )
+    yield (
+        f"  {'longer':22}waves above {prefixed('m', joint.longest)} have "
+        f"{part_of_energy(shares.continued_long)}"
     )
 
 
@@ -254,12 +262,32 @@ def _scan_lines(scan: Scan) -> Iterator[str]:
 def _prediction_lines(prediction: Prediction) -> Iterator[str]:
     """Lines with all predicted numbers, as files and JSON name them."""
     yield "Prediction (95% intervals)"
+    for name, text in number_rows(prediction):
+        yield f"  {name:58}{text}"
+
+
+def number_rows(prediction: Prediction) -> Iterator[tuple[str, str]]:
+    """Long names and texts of all predicted numbers that are not NaN."""
     for variable in variables(Prediction):
         value = getattr(prediction, variable.name)
         number = value if isinstance(value, Estimate) else replace(UNKNOWN, value=value)
         if math.isfinite(number.value):
-            text = estimate_text(variable.units, number)
-            yield f"  {variable.attributes['long_name']:58}{text}"
+            yield variable.attributes["long_name"], estimate_text(variable.units, number)
+
+
+def _source_lines(prediction: Prediction) -> Iterator[str]:
+    """Lines with the works of adhesion by the paper, by the law and as predicted, and why."""
+    for row in (("Works of adhesion by", *ADHESIONS), *source_rows(prediction)):
+        source, *works = row
+        yield f"  {source:25}{''.join(f'  {work:>26}' for work in works)}"
+    yield f"  {reason_for_differences(prediction)}"
+
+
+def source_rows(prediction: Prediction) -> Iterator[tuple[str, ...]]:
+    """Works of adhesion by their source, as texts."""
+    for row in works_by_source(prediction):
+        works = (row.w_appr, row.w_retr, row.hysteresis)
+        yield row.source, *(estimate_text(ENERGY, work) for work in works)
 
 
 def _conformity_lines(energy: Number, work_of_adhesion: float) -> Iterator[str]:
@@ -268,17 +296,6 @@ def _conformity_lines(energy: Number, work_of_adhesion: float) -> Iterator[str]:
     shown, part = estimate_text(ENERGY, energy), energy.value / work_of_adhesion
     yield f"  {'e_el':25}{shown} = {part:.3g} w_int"
     yield f"  {'w_rms':25}{prefixed(ENERGY, rms)} = {rms / work_of_adhesion:.3g} w_int"
-
-
-def _remark_entries(remarks: Iterable[Remark]) -> list[dict[str, Any]]:
-    """Remarks for JSON, with the margins of conditions."""
-    entries = []
-    for remark in remarks:
-        entry = to_jsonable(remark)
-        if remark.comparison is not None:
-            entry["comparison"]["margin"] = to_jsonable(remark.comparison.margin)
-        entries.append(entry)
-    return entries
 
 
 def _limit_text(limit: BandLimit) -> str:
@@ -310,13 +327,3 @@ def _energy_entry(surface: Surface, contact_modulus: float) -> dict[str, Any]:
     return to_jsonable(surface.conformity_energy(contact_modulus)) | {
         "recorded": to_jsonable(surface.conformity_energy(contact_modulus, surface.recorded))
     }
-
-
-def _prediction_entries(prediction: Prediction) -> dict[str, dict[str, Any]]:
-    """Numbers of a prediction by name, with standard errors, intervals and attributes."""
-    entries = {}
-    for variable in variables(Prediction):
-        value = to_jsonable(getattr(prediction, variable.name))
-        entry = value if isinstance(value, dict) else {"value": value}
-        entries[variable.name] = entry | variable.attributes
-    return entries

@@ -4,23 +4,29 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator
-from typing import Literal
+from dataclasses import replace
 
 from scipy.special import ndtr, ndtri
 
 from crackfront.analysis.validity import shipped_validity
 from crackfront.core import jkr
+from crackfront.core.adhesion import overlap_share
 from crackfront.core.units import Scales
 from crackfront.measured.density.bands import MOST_PERIODIC
+from crackfront.measured.prediction.next_scan import measure_next
 from crackfront.measured.prediction.remarks import LimitCheck, Remark, Verdict
+from crackfront.measured.prediction.remedies import (
+    lower_energy,
+    modulus_beyond,
+    radius_above,
+)
 from crackfront.measured.prediction.surface_remarks import (
     channel_remarks,
-    measure_next,
     scan_remarks,
     spectrum_remarks,
 )
 from crackfront.measured.spectrum.measured_surface import RmsMeasure
-from crackfront.measured.spectrum.stated import Surface
+from crackfront.measured.spectrum.stated import StatedSurface, Surface
 from crackfront.surfaces.written_units import prefixed
 
 ASSUMED_RANGE = 0.5e-9
@@ -49,11 +55,27 @@ _DEVIATE = float(ndtri(_MOST_NEGATIVE))
 LARGEST_ENERGY = (_DEVIATE + math.sqrt(_DEVIATE**2 + 1)) ** 2
 """The e_el at which w_loc is negative on this part of the surface. (Units: w_int)"""
 
+_THICK = 10.0
+"""Thickness over contact radius at which a bonded layer is 13% stiffer than a half-space.
+
+Dimitriadis et al., Biophys. J. 82, 2798 (2002), for an incompressible layer."""
+
 _FAR_INSIDE = 1000.0
 """Margin of a condition above which the text has "far inside" instead of a number."""
 
+_JUST_INSIDE = 1.05
+"""Margin of a condition below which the text has "just inside" instead of a number."""
+
 _MOST_UNCERTAIN = 2.0
 """Ratio of the ends of the interval of e_el above which a reservation states it."""
+
+_HALF_SPACE = Remark(
+    "thickness",
+    "note",
+    "The soft body is taken as a half-space: a thin layer on a stiff support is stiffer; "
+    "--thickness compares its thickness with the contact.",
+)
+"""Note if the user did not name the thickness of the soft body."""
 
 _ASSUMPTION = Remark(
     "range of attraction",
@@ -74,18 +96,23 @@ def theory_verdict(
     scales: Scales,
     attraction_range: float | None = None,
     further: Iterable[Remark] = (),
+    *,
+    thickness: float | None = None,
 ) -> Verdict:
     """Whether the theory applies to a surface under a sphere, with scales in SI units.
 
-    The range of attraction (Units: m) is by default :data:`ASSUMED_RANGE`. `further` has more
-    remarks for the verdict, for example on the law of k.
+    The range of attraction (Units: m) is by default :data:`ASSUMED_RANGE`, the soft body a
+    half-space unless its thickness (Units: m) is named. `further` has more remarks for the verdict,
+    for example on the law of k.
     """
     assumption = [_ASSUMPTION] if attraction_range is None else []
     assumed_range = ASSUMED_RANGE if attraction_range is None else attraction_range
+    half_space = _HALF_SPACE if thickness is None else _layer_remark(surface, scales, thickness)
     return Verdict(
         (
             *channel_remarks(surface),
             *condition_remarks(surface, scales, assumed_range),
+            half_space,
             *_energy_remarks(surface, scales),
             *spectrum_remarks(surface),
             *further,
@@ -124,15 +151,23 @@ def _condition(
     if severity == "holds":
         margin = comparison.margin
         factor = f"inside by a factor of {float(f'{margin:.2g}'):g}"
-        sentence = f"{name}: {finding}, {factor if margin < _FAR_INSIDE else 'far inside'}."
+        if margin > _FAR_INSIDE:
+            factor = "far inside"
+        elif margin < _JUST_INSIDE:
+            factor = "just inside"
+        sentence = f"{name}: {finding}, {factor}."
         return Remark(name, severity, sentence, comparison=comparison)
+    value, doubtful, limit = (
+        _shown(number, comparison.units, is_share=is_share)
+        for number in (comparison.value, comparison.doubtful, comparison.limit)
+    )
     beyond = "below" if comparison.rising else "above"
     if severity == "reservation":
-        doubtful = _shown(comparison.doubtful, comparison.units, is_share=is_share)
-        sentence = f"{name}: {finding}, in doubt {beyond} {doubtful}; {reason}."
+        just = "just " if value == doubtful else ""
+        sentence = f"{name}: {finding}, in doubt {just}{beyond} {doubtful}; {reason}."
         return Remark(name, severity, sentence, comparison=comparison)
-    limit = _shown(comparison.limit, comparison.units, is_share=is_share)
-    sentence = f"{name} fails: {finding}, {beyond} the limit of {limit}; {reason}."
+    just = "just " if value == limit else ""
+    sentence = f"{name} fails: {finding}, {just}{beyond} the limit of {limit}; {reason}."
     if severity == "undecided":
         sentence = (
             f"{name} cannot be decided: {finding}, and the limit of {limit} lies within the "
@@ -153,17 +188,23 @@ def _energy_conditions(surface: Surface, scales: Scales) -> Iterator[Remark]:
     w_int = scales.work_of_adhesion
     energy = surface.conformity_energy(scales.contact_modulus)
     e_el = energy.value
-    yield _condition(
+    conformity = _condition(
         "full conformity",
         f"e_el of {prefixed('J/m2', e_el)} against w_int of {prefixed('J/m2', w_int)}",
         "the contact does not conform to the roughness",
         LimitCheck(e_el, w_int, w_int, "J/m2", best_case=e_el / energy.low),
-        _lower_energy(scales, e_el / w_int),
+        lower_energy(scales, e_el / w_int),
+    )
+    yield (
+        conformity
+        if conformity.severity != "holds"
+        else _with_missing_waves(conformity, surface, scales)
     )
     share, least = _negative_share(e_el / w_int), _negative_share(energy.low / w_int)
     yield _condition(
         "attraction nearly everywhere",
-        f"w_loc negative on {share:.2%} of the surface",
+        f"w_loc negative on {share:.2%} of the surface (and the solids overlap on "
+        f"{overlap_share(e_el / w_int):.2%} of the front)",
         "the linearisation of the roughness cannot be trusted where w_loc is negative, and "
         "the comparison with boundary elements ends there",
         LimitCheck(
@@ -173,9 +214,25 @@ def _energy_conditions(surface: Surface, scales: Scales) -> Iterator[Remark]:
             "1",
             best_case=share / least if least > 0 else math.inf,
         ),
-        _lower_energy(scales, e_el / w_int / LARGEST_ENERGY),
+        lower_energy(scales, e_el / w_int / LARGEST_ENERGY),
         is_share=True,
     )
+
+
+def _with_missing_waves(conformity: Remark, surface: Surface, scales: Scales) -> Remark:
+    """The condition of full conformity, undecided if waves that are left out may break it."""
+    e_el, w_int = surface.conformity_energy(scales.contact_modulus).value, scales.work_of_adhesion
+    total = surface.shares.missing_short.each(lambda part: e_el * (1 + part))
+    if total.value < w_int:
+        return conformity
+    sentence = (
+        f"full conformity cannot be decided: e_el of {prefixed('J/m2', e_el)} would be "
+        f"{prefixed('J/m2', total.value, total.low, total.high)} with the waves that are left out, "
+        f"against w_int of {prefixed('J/m2', w_int)}; beyond it the contact does not conform to "
+        "the roughness."
+    )
+    comparison = LimitCheck(total.value, w_int, w_int, "J/m2", best_case=total.value / total.low)
+    return replace(conformity, severity="undecided", sentence=sentence, comparison=comparison)
 
 
 def _contact_conditions(surface: Surface, scales: Scales) -> Iterator[Remark]:
@@ -188,7 +245,7 @@ def _contact_conditions(surface: Surface, scales: Scales) -> Iterator[Remark]:
         "the paraboloid that approximates the sphere deviates from it",
         LimitCheck(contact, _CONTACT_LIMITS[0] * radius, _CONTACT_LIMITS[1] * radius, "m"),
         # a / R goes as the cube root of w_int / (E' R).
-        (_modulus("above", modulus, excess**3), _radius_above(radius * excess**3)),
+        (*modulus_beyond("above", modulus, excess**3), *radius_above(radius * excess**3)),
     )
     half, waves = _dominant_waves(surface)
     excess = half.shortest / contact
@@ -198,8 +255,8 @@ def _contact_conditions(surface: Surface, scales: Scales) -> Iterator[Remark]:
         "too few of them are in the contact for an average",
         LimitCheck(half.longest, contact, contact * half.longest / half.shortest, "m"),
         (
-            _radius_above(radius * excess**1.5),
-            _modulus("below", modulus, excess**-3.0),
+            *radius_above(radius * excess**1.5),
+            *modulus_beyond("below", modulus, excess**-3.0),
             "a finer roughness",
         ),
     )
@@ -218,7 +275,7 @@ def _range_conditions(
         f"Tabor parameter of {tabor:.3g}",
         "the edge of the contact is not a crack",
         LimitCheck(tabor, *_TABOR_LIMITS, "1", rising=True),
-        (_modulus("below", modulus, excess**-1.5), _radius_above(radius * excess**3)),
+        (*modulus_beyond("below", modulus, excess**-1.5), *radius_above(radius * excess**3)),
     )
     # Dugdale's zone for a stress w/z over a range z: (pi/8) (K z/w)^2 with K^2 = 2 E' w.
     zone = math.pi / 4 * modulus * attraction_range**2 / w_int
@@ -227,7 +284,7 @@ def _range_conditions(
         f"cohesive zone of {prefixed('m', zone)} under waves of {waves}",
         "the edge does not see waves that are shorter than its cohesive zone",
         LimitCheck(zone, half.shortest, half.longest, "m"),
-        (_modulus("below", modulus, half.longest / zone), "a coarser roughness"),
+        (*modulus_beyond("below", modulus, half.longest / zone), "a coarser roughness"),
     )
 
 
@@ -239,15 +296,7 @@ def _dominant_waves(surface: Surface) -> tuple[RmsMeasure, str]:
 
 def _roughness_conditions(surface: Surface) -> Iterator[Remark]:
     """Conditions on the rms slope, and on single strong waves such as grooves."""
-    rms = surface.measures[2].rms
-    slope = rms.value
-    yield _condition(
-        "small slopes",
-        f"rms slope of {slope:.3g}",
-        "linear elasticity neglects the square of slopes",
-        LimitCheck(slope, *_SLOPE_LIMITS, "1", best_case=slope / rms.low),
-        (f"slopes lower by a factor of {slope / _SLOPE_LIMITS[1]:.3g}",),
-    )
+    yield _slope_condition(surface)
     if not surface.scans:
         return
     part, wavelength = max(scan.band.periodic for scan in surface.scans)
@@ -264,26 +313,41 @@ def _roughness_conditions(surface: Surface) -> Iterator[Remark]:
     )
 
 
-def _lower_energy(scales: Scales, excess: float) -> tuple[str, ...]:
-    """Changes, each of which lowers e_el over w_int by a factor."""
-    return (
-        _modulus("below", scales.contact_modulus, 1 / excess),
-        f"a roughness lower by a factor of {math.sqrt(excess):.3g}",
-        f"w_int above {prefixed('J/m2', scales.work_of_adhesion * excess)}",
+def _slope_condition(surface: Surface) -> Remark:
+    """Condition on the rms slope, which may depend on a short cutoff that is only assumed."""
+    rms = surface.measures[2].rms
+    slope, least = rms.value, rms.low
+    reason, remedies = "linear elasticity neglects the square of slopes", []
+    if isinstance(surface, StatedSurface) and surface.longest_cutoff is not None:
+        least = math.sqrt(surface.spectrum.longer_than(surface.longest_cutoff).mean_square(1.0))
+        reason += (
+            f"; the slope depends on the short cutoff, which is assumed to be "
+            f"{prefixed('m', surface.shortest)}: without waves below "
+            f"{prefixed('m', surface.longest_cutoff)} it would be {least:.3g}"
+        )
+        remedies = ["the measured cutoff of the roughness as --short-cutoff, if it is longer"]
+    return _condition(
+        "small slopes",
+        f"rms slope of {slope:.3g}",
+        reason,
+        LimitCheck(slope, *_SLOPE_LIMITS, "1", best_case=slope / least),
+        (f"slopes lower by a factor of {slope / _SLOPE_LIMITS[1]:.3g}", *remedies),
     )
 
 
-def _modulus(side: Literal["above", "below"], modulus: float, factor: float) -> str:
-    """A contact modulus above or below the present one times a factor (Units: Pa)."""
-    return (
-        f"a contact modulus E / (1 - nu^2) {side} {prefixed('Pa', modulus * factor)}, not "
-        f"{prefixed('Pa', modulus)}"
+def _layer_remark(surface: Surface, scales: Scales, thickness: float) -> Remark:
+    """Whether the soft body is thick enough for a half-space (Units: m)."""
+    contact, longest = zero_load_radius(scales), surface.measures[1].longest
+    needed = max(_THICK * contact, longest)
+    is_thick = thickness >= needed
+    verb = "is thick enough" if is_thick else "may be too thin"
+    radii, waves = (f"{float(f'{thickness / x:.2g}'):g}" for x in (contact, longest))
+    sentence = (
+        f"thickness: a layer of {prefixed('m', thickness)} {verb} for a half-space, with {radii} "
+        f"radii of the contact ({prefixed('m', contact)}) and {waves} times the longest waves that "
+        f"matter to e_el; at {_THICK:g} radii a layer on a stiff support is about 13% stiffer."
     )
-
-
-def _radius_above(radius: float) -> str:
-    """A radius of the sphere above some value (Units: m)."""
-    return f"a radius above {prefixed('m', radius)}"
+    return Remark("thickness", "holds" if is_thick else "reservation", sentence)
 
 
 def _negative_share(energy: float) -> float:
@@ -292,14 +356,21 @@ def _negative_share(energy: float) -> float:
 
 
 def _energy_remarks(surface: Surface, scales: Scales) -> Iterator[Remark]:
-    """Reservation if the interval of e_el is wide or reaches w_int."""
+    """Reservations on an e_el that is uncertain, incomplete or beyond the law of k."""
+    w_int = scales.work_of_adhesion
     energy = surface.conformity_energy(scales.contact_modulus)
     shown = prefixed("J/m2", energy.value, energy.low, energy.high)
-    if energy.value < scales.work_of_adhesion <= energy.high:
+    if energy.value < w_int <= energy.high:
         sentence = (
             f"The interval of e_el reaches w_int, where the contact does not conform: {shown}."
         )
         yield Remark("e_el", "reservation", sentence)
     elif energy.high > _MOST_UNCERTAIN * energy.low:
-        sentence = f"e_el is not known to a factor of {_MOST_UNCERTAIN:g}: {shown}."
+        sentence = f"The interval of e_el spans more than a factor of {_MOST_UNCERTAIN:g}: {shown}."
+        yield Remark("e_el", "reservation", sentence)
+    if LARGEST_ENERGY * w_int < energy.value and energy.low < w_int:
+        sentence = (
+            f"The numbers are for an e_el of {LARGEST_ENERGY:.2g} w_int, the largest at which the "
+            f"law of k applies; the spectrum gives {shown}, {energy.value / w_int:.2g} w_int."
+        )
         yield Remark("e_el", "reservation", sentence)

@@ -20,8 +20,10 @@ def estimate_text(unit: str, estimate: Estimate[float]) -> str:
     if unit in _WITH_PREFIXES:
         ends = (estimate.low, estimate.high) if has_interval else ()
         return prefixed(unit, estimate.value, *ends)
-    interval = f" ({estimate.low:.3g} to {estimate.high:.3g})" if has_interval else ""
-    return f"{estimate.value:.3g}{interval} {unit}".removesuffix(" 1")
+    value, low, high = (f"{x:.3g}" for x in (estimate.value, estimate.low, estimate.high))
+    is_shown = has_interval and {low, high} != {value}
+    interval = f" ({low} to {high})" if is_shown else ""
+    return f"{value}{interval} {unit}".removesuffix(" 1")
 
 
 def wavelengths_text(shortest: float, longest: float) -> str:

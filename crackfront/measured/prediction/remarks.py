@@ -9,9 +9,10 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from typing import Literal
+from typing import Any, Literal
 
 from crackfront.core.words import counted
+from crackfront.simulate.jsonable import to_jsonable
 
 Severity = Literal["fails", "undecided", "reservation", "note", "holds"]
 """Severity: the theory ends, may end or is in doubt; a note on the input; or a condition met."""
@@ -130,7 +131,7 @@ def remark_text(remark: Remark) -> str:
     """Sentence of a remark, with its remedies."""
     if not remark.remedies:
         return remark.sentence
-    return f"{remark.sentence} It would hold with {', or '.join(remark.remedies)}."
+    return f"{remark.sentence} It would be met with {', or '.join(remark.remedies)}."
 
 
 def remark_lines(remarks: Iterable[Remark]) -> Iterator[str]:
@@ -141,3 +142,14 @@ def remark_lines(remarks: Iterable[Remark]) -> Iterator[str]:
         if group:
             yield heading
             yield from (f"  {remark_text(remark)}" for remark in group)
+
+
+def remark_entries(remarks: Iterable[Remark]) -> list[dict[str, Any]]:
+    """Remarks for JSON, with the margins of conditions."""
+    entries = []
+    for remark in remarks:
+        entry = to_jsonable(remark)
+        if remark.comparison is not None:
+            entry["comparison"]["margin"] = to_jsonable(remark.comparison.margin)
+        entries.append(entry)
+    return entries

@@ -1,17 +1,16 @@
-"""Remarks on a measured surface: its scans, its spectrum, and the effect of another scan."""
+"""Remarks on a measured surface: its scans and its spectrum."""
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Iterator
 
 import numpy as np
 
 from crackfront.measured.density.bands import Scan
+from crackfront.measured.prediction.next_scan import LEAST_MEASURED, NOTABLE_SHARE, measure_next
 from crackfront.measured.prediction.remarks import Remark
 from crackfront.measured.scan.channels import is_doubtful
 from crackfront.measured.spectrum.joining import JointSpectrum, part_of_energy
-from crackfront.measured.spectrum.measured_surface import MeasuredSurface
 from crackfront.measured.spectrum.stated import StatedSurface, Surface
 from crackfront.surfaces.written_units import prefixed
 
@@ -24,40 +23,16 @@ _MOST_STRIPES = 0.5
 _MOST_UNMEASURED = 0.1
 """Additional e_el of shorter waves, relative to e_el, above which there is a reservation."""
 
-_LEAST_MEASURED = 0.5
-"""Measured part of e_el below which there is a reservation."""
-
 _MOST_UNSETTLED = 0.009
 """Standard error of the ends of intervals over their width, above which there is a reservation.
 
 Intervals with other seeds then differ by 2 to 3% of the width."""
-
-_UNCERTAIN = 1.5
-"""Uncertainty factor of e_el above which another scan is recommended."""
-
-_NARROWER = 1.1
-"""Least improvement of this factor by a scan that is recommended."""
-
-_WAVES_OF_SIDE = 2.0
-"""Side of a scan over its longest trusted wavelength."""
-
-_PIXELS_OF_WAVE = 4.0
-"""Shortest trusted wavelength of a scan over its pixel."""
-
-_OVERLAP = 2.0
-"""Ratio of wavelengths over which another scan should overlap."""
-
-_LEFT_OUT = 0.1
-"""Part of the missing e_el that a recommended scan may leave out."""
 
 _LEAST_UNEVEN = 0.02
 """Relative standard error of e_el by unevenness above which there is a note."""
 
 _HURST_EDGE = 0.05
 """Distance of a Hurst exponent from 0 or 1 below which there is a reservation."""
-
-_NOTABLE_SHARE = 0.1
-"""Part of e_el above which continued or missing waves matter."""
 
 _NOT_CHECKED = (
     "Without heights it cannot be checked whether the roughness is random (no wave that stands "
@@ -140,66 +115,6 @@ def _treatments(scan: Scan) -> Iterator[str]:
         )
 
 
-def measure_next(surface: Surface) -> Remark:
-    """Note on the scan that would narrow the interval of e_el most."""
-    if isinstance(surface, StatedSurface):
-        sentence = "Measure next: a scan, which gives e_el an interval and shows missing waves."
-        return Remark("next scan", "note", sentence)
-    joint = surface.joint
-    factor, missing = joint.draws.factor, joint.shares.missing_short
-    with_longer, with_shorter = joint.draws.factors_with
-    advice = []
-    if factor > _NARROWER * with_longer:
-        effect = f"would narrow it to {with_longer:.2g}"
-        advice.append((factor / with_longer, f"{_larger_scan(joint)} {effect}"))
-    narrows = factor > _NARROWER * with_shorter
-    if narrows or missing > _NOTABLE_SHARE:
-        effect = f"would narrow it to {with_shorter:.2g}" if narrows else "would hardly narrow it"
-        if missing > _NOTABLE_SHARE:
-            effect += f"{', and' if narrows else ', but'} may add {part_of_energy(missing)}"
-        gain = max(factor / with_shorter, 1 + missing)
-        advice.append((gain, f"{_finer_scan(surface)} {effect}"))
-    text = f"e_el is known within a factor of {factor:.3g}"
-    if advice:
-        scans = "; ".join(scan for _, scan in sorted(advice, reverse=True))
-        sentence = f"Measure next: {text}. {scans[0].upper()}{scans[1:]}."
-    elif factor < _UNCERTAIN:
-        sentence = f"{text}; a finer or larger scan would hardly narrow it."
-    else:
-        sentence = f"Measure next: {text}. More scans of the same waves would narrow it."
-    return Remark("next scan", "note", sentence)
-
-
-def _larger_scan(joint: JointSpectrum) -> str:
-    """A scan with nine tenths of e_el in the waves longer than the measured ones."""
-    beyond = joint.spectrum.longer_than(joint.longest)
-    side = _WAVES_OF_SIDE * beyond.dominant_wavelengths(0.5)[1]
-    pixel = joint.longest / _OVERLAP / _PIXELS_OF_WAVE
-    return f"a scan with a side of {_rounded(side)} and pixels of at most {_rounded(pixel)}"
-
-
-def _finer_scan(surface: MeasuredSurface) -> str:
-    """A scan with nine tenths of e_el in the waves shorter than the measured ones."""
-    joint = surface.joint
-    total = joint.extended.mean_square(0.5)
-    below = joint.extended.mean_square_between(0.5, joint.extended.short_cutoff, joint.shortest)
-    # dominant_wavelengths leaves out equal parts at both ends.
-    shortest = joint.extended.dominant_wavelengths(0.5, 1 - 2 * _LEFT_OUT * below / total)[0]
-    side = _WAVES_OF_SIDE * _OVERLAP * joint.shortest
-    text = f"a scan with pixels of at most {_rounded(shortest / _PIXELS_OF_WAVE)}"
-    if any(scan.measurement.tip_radius for scan in surface.scans):
-        # The tip should be sharper than the surface. The mean square curvature of profiles of an
-        # isotropic surface is 3/8 of the mean square of its Laplacian.
-        curvature = math.sqrt(3 / 8 * joint.extended.longer_than(shortest).mean_square(2.0))
-        text += f", a tip radius of at most {_rounded(1 / curvature)}"
-    return f"{text} and a side of at least {_rounded(side)}"
-
-
-def _rounded(length: float) -> str:
-    """A length with two digits and its unit (Units: m)."""
-    return prefixed("m", float(f"{length:.2g}"))
-
-
 def channel_remarks(surface: Surface) -> Iterator[Remark]:
     """Reservations on scans whose channel may not contain heights."""
     for measurement in (scan.measurement for scan in surface.scans):
@@ -247,7 +162,7 @@ def spectrum_remarks(surface: Surface) -> Iterator[Remark]:
 
 def is_lower_bound(surface: Surface) -> bool:
     """Whether e_el is a lower bound, because shorter waves would add to it."""
-    return surface.shares.missing_short > _MOST_UNMEASURED
+    return surface.shares.missing_short.value > _MOST_UNMEASURED
 
 
 def disagreements(surface: Surface) -> Iterator[Remark]:
@@ -269,10 +184,9 @@ def disagreements(surface: Surface) -> Iterator[Remark]:
 
 def _spectrum_doubts(joint: JointSpectrum) -> Iterator[str]:
     """Sentences on unmeasured parts of the spectrum, and on imprecise intervals."""
-    if joint.shares.measured < _LEAST_MEASURED:
+    if joint.shares.measured < LEAST_MEASURED:
         yield (
-            f"Only {joint.shares.measured:.0%} of e_el is measured, the rest comes from a model; "
-            "add a scan of the missing waves."
+            f"Only {joint.shares.measured:.0%} of e_el is measured, the rest comes from a model."
         )
     if joint.draws.unsettled > _MOST_UNSETTLED:
         yield (
@@ -281,20 +195,24 @@ def _spectrum_doubts(joint: JointSpectrum) -> Iterator[str]:
             f"spectra that were drawn count as {joint.draws.effective:.0f} of equal weight."
         )
     hurst = joint.fit.hurst.value
-    if min(hurst, 1 - hurst) < _HURST_EDGE and joint.shares.continued > _NOTABLE_SHARE:
+    longer = joint.shares.continued_long
+    continued = joint.shares.continued - longer.value
+    if min(hurst, 1 - hurst) < _HURST_EDGE and continued > NOTABLE_SHARE:
         yield (
             f"The Hurst exponent of the shortest waves, {hurst:.2g}, is at the edge of the fitted "
-            f"range, 0 to 1: {joint.shares.continued:.0%} of e_el comes from a model that may not "
-            "describe the surface."
+            f"range, 0 to 1: waves shorter than the measured ones have {continued:.0%} of e_el, by "
+            "a model that may not describe the surface."
         )
-    if not joint.fit.has_roll_off:
+    if not joint.fit.has_roll_off and longer.high > NOTABLE_SHARE:
         yield (
-            "The density shows no plateau within the trusted wavelengths: longer waves have about "
-            f"{joint.shares.continued_long:.0%} of e_el, and its interval includes roll-offs of up "
-            "to four sides of the scan; add a larger scan."
+            "The density shows no plateau within the trusted wavelengths: longer waves have "
+            f"{part_of_energy(longer)}, with roll-offs of up to four sides of the scan; the "
+            "interval of e_el includes this range."
         )
-    if joint.shares.missing_short > _MOST_UNMEASURED:
+    if joint.shares.missing_short.value > _MOST_UNMEASURED:
         yield (
-            "Waves shorter than the points resolve are left out: two more decades of the power law "
-            f"would add {part_of_energy(joint.shares.missing_short)}; add a finer scan."
+            f"Waves shorter than {prefixed('m', joint.spectrum.short_cutoff)}, where points, "
+            "instrument or noise end the spectrum, are left out of all numbers and intervals: down "
+            f"to {prefixed('m', joint.extended.short_cutoff)} the power law would add "
+            f"{part_of_energy(joint.shares.missing_short)}."
         )

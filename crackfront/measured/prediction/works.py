@@ -10,13 +10,14 @@ from typing import NamedTuple
 import numpy as np
 import scipy
 
-from crackfront.analysis.estimate import UNKNOWN, Estimate, product
+from crackfront.analysis.estimate import REACH, UNKNOWN, Estimate, product
 from crackfront.analysis.law_spheres import SphereFactors, sphere_factors
 from crackfront.analysis.validity import Excess, front_excess
 from crackfront.core.spectrum import TabulatedSpectrum
 from crackfront.core.units import Scales
 from crackfront.measured.prediction.conditions import LARGEST_ENERGY, zero_load_radius
 from crackfront.measured.spectrum.stated import Surface
+from crackfront.surfaces.written_units import prefixed
 
 _ENERGIES = 5
 """Values of e_el within its interval at which the law is evaluated; w_retr has a maximum there."""
@@ -40,10 +41,11 @@ class AdhesionByLaw(NamedTuple):
 
 
 class _FactorsAtEnergy(NamedTuple):
-    """Factors k at some e_el, and the excess of the crack front's hysteresis."""
+    """Factors k at some e_el and w_int, and the excess of the crack front's hysteresis."""
 
+    work_of_adhesion: float
     energy: float
-    """Units: J / m^2."""
+    """w_int and e_el. (Units: J / m^2)"""
     factors: SphereFactors
     excess: Excess
 
@@ -81,62 +83,105 @@ def reduced_spectrum(spectrum: TabulatedSpectrum, scales: Scales) -> TabulatedSp
     return spectrum.in_units(scales.lateral).amplified(1 / unit)
 
 
-def adhesion_by_law(surface: Surface, scales: Scales) -> AdhesionByLaw:
+def adhesion_by_law(surface: Surface, scales: Scales, adhesion_error: float = 0.0) -> AdhesionByLaw:
     """Works of adhesion by the law of k, with k divided by the excess of the front.
 
-    The intervals include the uncertainties of k and of the excess, and the change of both with
-    e_el within its interval. ValueError as in :func:`energy_of_theory`.
+    The intervals include the uncertainties of k and of the excess, the change of both with e_el
+    within its interval, and the standard error of w_int (Units: J / m^2). ValueError as in
+    :func:`energy_of_theory`, or if the interval of w_int reaches zero.
     """
-    w_int, energy = scales.work_of_adhesion, energy_of_theory(surface, scales)
-    radius = zero_load_radius(scales) / scales.lateral
-    shape = reduced_spectrum(surface.spectrum, scales)
-
-    def factors_at(value: float) -> _FactorsAtEnergy:
-        relative = min(value / w_int, LARGEST_ENERGY)
-        spectrum = shape.amplified(relative / shape.elastic_energy)
-        factors = sphere_factors("roughness", spectrum, relative, radius)
-        return _FactorsAtEnergy(value, factors, front_excess(relative, factors.size))
-
-    central, least = factors_at(energy.value), max(energy.low, _LEAST_ENERGY * energy.value)
-    varied = []
-    if energy.high > least:
-        values = np.geomspace(least, energy.high, _ENERGIES)
-        varied = [factors_at(float(value)) for value in values]
-
-    def branch(name: str, sign: float) -> Estimate[float]:
-        """Work of adhesion w_int - e_el + sign k e_el of a branch."""
-
-        def work(factor: float, energy: float) -> float:
-            return w_int + (sign * factor - 1) * energy
-
-        def factor_of(at_energy: _FactorsAtEnergy) -> Estimate[float]:
-            return at_energy.corrected(getattr(at_energy.factors, name).factor)
-
-        factor = factor_of(central)
-        return _in_quadrature(
-            work(factor.value, energy.value),
-            [work(end, energy.value) for end in (factor.low, factor.high)],
-            [work(factor_of(at_energy).value, at_energy.energy) for at_energy in varied],
-        )
-
-    def hysteresis(factor_of: Callable[[_FactorsAtEnergy], Estimate[float]]) -> Estimate[float]:
-        """Hysteresis 2 k e_el, with relative errors in quadrature."""
-        factor = factor_of(central)
-        return _in_quadrature(
-            math.log(2 * factor.value * energy.value),
-            [_log(2 * end * energy.value) for end in (factor.low, factor.high)],
-            [_log(2 * factor_of(at_energy).value * at_energy.energy) for at_energy in varied],
-        ).each(math.exp)
-
+    energy = energy_of_theory(surface, scales)
+    central = _factors_at(surface, scales, energy.value)
+    by_energy = _varied_by_energy(surface, scales, energy)
+    by_adhesion = _varied_by_adhesion(surface, scales, energy.value, adhesion_error)
     return AdhesionByLaw(
         energy=energy,
         factors=central.factors,
         excess=central.excess,
-        w_appr=branch("approach", -1.0),
-        w_retr=branch("retraction", 1.0),
-        hysteresis=hysteresis(lambda at_energy: at_energy.corrected(at_energy.factors.both)),
-        front_hysteresis=hysteresis(lambda at_energy: at_energy.factors.both),
+        w_appr=_branch("approach", -1.0, central, by_energy, by_adhesion),
+        w_retr=_branch("retraction", 1.0, central, by_energy, by_adhesion),
+        hysteresis=_hysteresis(
+            lambda at_energy: at_energy.corrected(at_energy.factors.both),
+            central,
+            by_energy,
+            by_adhesion,
+        ),
+        front_hysteresis=_hysteresis(
+            lambda at_energy: at_energy.factors.both, central, by_energy, by_adhesion
+        ),
     )
+
+
+def _factors_at(surface: Surface, scales: Scales, energy: float) -> _FactorsAtEnergy:
+    """Factors of a surface that is scaled to an e_el (Units: J / m^2)."""
+    relative = min(energy / scales.work_of_adhesion, LARGEST_ENERGY)
+    shape = reduced_spectrum(surface.spectrum, scales)
+    spectrum = shape.amplified(relative / shape.elastic_energy)
+    radius = zero_load_radius(scales) / scales.lateral
+    factors = sphere_factors("roughness", spectrum, relative, radius)
+    excess = front_excess(relative, factors.size)
+    return _FactorsAtEnergy(scales.work_of_adhesion, energy, factors, excess)
+
+
+def _varied_by_energy(
+    surface: Surface, scales: Scales, energy: Estimate[float]
+) -> list[_FactorsAtEnergy]:
+    """Factors at values of e_el within its interval; none if e_el is exact."""
+    least = max(energy.low, _LEAST_ENERGY * energy.value)
+    if not energy.high > least:
+        return []
+    values = np.geomspace(least, energy.high, _ENERGIES)
+    return [_factors_at(surface, scales, float(value)) for value in values]
+
+
+def _varied_by_adhesion(
+    surface: Surface, scales: Scales, energy: float, error: float
+) -> list[_FactorsAtEnergy]:
+    """Factors at both ends of the interval of w_int; none if it is exact."""
+    if error == 0:
+        return []
+    w_int, reach = scales.work_of_adhesion, REACH * error
+    if reach >= w_int:
+        raise ValueError(
+            f"the work of adhesion is {prefixed('J/m2', w_int)} with a standard error of "
+            f"{prefixed('J/m2', error)}, so that its interval reaches zero; give an error below "
+            f"{prefixed('J/m2', w_int / REACH)}"
+        )
+    ends = (replace(scales, work_of_adhesion=end) for end in (w_int - reach, w_int + reach))
+    return [_factors_at(surface, end, energy) for end in ends]
+
+
+def _branch(
+    name: str, sign: float, central: _FactorsAtEnergy, *varied: Sequence[_FactorsAtEnergy]
+) -> Estimate[float]:
+    """Work of adhesion w_int - e_el + sign k e_el of a branch, with its independent causes."""
+
+    def work(factor: float, at_energy: _FactorsAtEnergy) -> float:
+        return at_energy.work_of_adhesion + (sign * factor - 1) * at_energy.energy
+
+    def factor_of(at_energy: _FactorsAtEnergy) -> Estimate[float]:
+        return at_energy.corrected(getattr(at_energy.factors, name).factor)
+
+    factor = factor_of(central)
+    return _in_quadrature(
+        work(factor.value, central),
+        [work(end, central) for end in (factor.low, factor.high)],
+        *([work(factor_of(other).value, other) for other in cause] for cause in varied if cause),
+    )
+
+
+def _hysteresis(
+    factor_of: Callable[[_FactorsAtEnergy], Estimate[float]],
+    central: _FactorsAtEnergy,
+    *varied: Sequence[_FactorsAtEnergy],
+) -> Estimate[float]:
+    """Hysteresis 2 k e_el, with relative errors of independent causes in quadrature."""
+    factor = factor_of(central)
+    return _in_quadrature(
+        math.log(2 * factor.value * central.energy),
+        [_log(2 * end * central.energy) for end in (factor.low, factor.high)],
+        *([_log(2 * factor_of(x).value * x.energy) for x in cause] for cause in varied if cause),
+    ).each(math.exp)
 
 
 def least_work_of_adhesion(surface: Surface, scales: Scales) -> float:

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
+import difflib
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from numbers import Real
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, cast
 
-from pydantic import BeforeValidator
+from pydantic import BeforeValidator, ValidationInfo
 
 from crackfront.analysis.estimate import UNKNOWN, Estimate
-from crackfront.core.arguments import nearest_name
 from crackfront.core.units import Scales
 from crackfront.measured.options import (
     Energy,
@@ -25,14 +26,24 @@ from crackfront.measured.options import (
     Text,
     checked_options,
     named_options,
+    quantity,
     reading_options,
     sphere_scales,
 )
 from crackfront.measured.page.series import PREDICTED
-from crackfront.measured.samples.sample_rows import sample_rows
+from crackfront.measured.samples.sample_rows import SampleRow, sample_rows
 from crackfront.measured.spectrum.stated import self_affine_surface_of
+from crackfront.surfaces.written_units import is_unit
 
-_BETWEEN_FILES = re.compile(r"\s*[|;\n]\s*")
+_BETWEEN_FILES = re.compile(r"[|;\n]")
+
+_ZERO = re.compile(r"\+?0*\.?0+\.?(?:[eE][-+]?\d+)?\s*([^\s\d.].*)?")
+"""Zero with an optional unit."""
+
+_Validator = Callable[[Any, ValidationInfo], float]
+
+_LIKE_AN_OPTION = 0.8
+"""Similarity of a heading with the name of an option from which it is taken for a misprint."""
 
 _MOST_SAMPLES = 10_000
 """Rows of a table; each takes seconds."""
@@ -40,8 +51,32 @@ _MOST_SAMPLES = 10_000
 
 def _listed(value: Any) -> tuple[str, ...]:
     """Files from a list, or from a text with | or ; between them."""
-    names = value if isinstance(value, (list, tuple)) else _BETWEEN_FILES.split(str(value).strip())
-    return tuple(str(name) for name in names if str(name))
+    names = value if isinstance(value, (list, tuple)) else _BETWEEN_FILES.split(str(value))
+    return tuple(name for name in map(str.strip, map(str, names)) if name)
+
+
+def _measured_quantity(unit: str, name: str, example: str) -> BeforeValidator:
+    """Validator of measured quantities, which scatter around zero where the true one is small."""
+    positive = cast(_Validator, quantity(unit, name, example).func)
+
+    def checked(value: Any, info: ValidationInfo) -> float:
+        if isinstance(value, str):
+            text = value.strip()
+            sign = -1 if text.startswith(("-", "\u2212")) else 1
+            text = text[1:].lstrip() if sign < 0 else text
+            zero = _ZERO.fullmatch(text)
+            if zero and (not zero[1] or is_unit(zero[1], unit)):
+                return 0.0
+            return sign * positive(text, info)
+        if isinstance(value, Real) and not value > 0:
+            return -positive(-value, info) if value else 0.0
+        return positive(value, info)
+
+    return BeforeValidator(checked)
+
+
+MeasuredEnergy = Annotated[float, _measured_quantity("J/m^2", "energy per area", "-3mJ/m2")]
+MeasuredForce = Annotated[float, _measured_quantity("N", "force", "0.4mN")]
 
 
 class SampleOptions(Options):
@@ -59,16 +94,16 @@ class SampleOptions(Options):
     psd: Text | None = None
     """Its spectral density, in place of scans."""
 
-    measured_hysteresis: Energy | None = None
+    measured_hysteresis: MeasuredEnergy | None = None
     """Measured hysteresis, as in 25mJ/m2."""
 
-    measured_w_appr: Energy | None = None
+    measured_w_appr: MeasuredEnergy | None = None
     """Measured work of adhesion of the approach."""
 
-    measured_w_retr: Energy | None = None
+    measured_w_retr: MeasuredEnergy | None = None
     """Measured work of adhesion of the retraction."""
 
-    measured_pull_off_force: Force | None = None
+    measured_pull_off_force: MeasuredForce | None = None
     """Measured pull-off force, as in 0.4mN."""
 
     measured_hysteresis_error: Energy | None = None
@@ -94,6 +129,9 @@ _RECORDS: tuple[type[Options], ...] = (
 )
 """Records whose fields are columns of a table."""
 
+_COLUMNS = tuple(name for record in _RECORDS for name in record.model_fields)
+"""Columns that are read; others are copied to the results."""
+
 
 @dataclass(frozen=True, slots=True)
 class Sample:
@@ -110,6 +148,8 @@ class Sample:
     theory: PredictionOptions
     measured: Mapping[str, Estimate[float]]
     """Measured numbers by the names of predicted ones, in SI units."""
+    further: Mapping[str, str]
+    """Cells of columns that are not read, by their headings."""
 
 
 def read_samples(path: Path, common: Mapping[str, Any]) -> tuple[Sample, ...]:
@@ -118,14 +158,15 @@ def read_samples(path: Path, common: Mapping[str, Any]) -> tuple[Sample, ...]:
     ValueError, of one sentence with the line, where a row cannot be used or a file of it is absent,
     before any file is read; OSError if the table cannot be opened.
     """
-    rows = sample_rows(path)
+    rows = sample_rows(path, _COLUMNS)
     if not 0 < len(rows) <= _MOST_SAMPLES:
         raise ValueError(
             f"{path} has {len(rows)} samples; write a row for each, {_MOST_SAMPLES} at most"
         )
     samples: dict[str, Sample] = {}
     lines: dict[str, int] = {}
-    for line, row in rows:
+    for row in rows:
+        line = row.line
         try:
             sample = _sample(path.parent, row, common)
             if sample.name in samples:
@@ -159,14 +200,16 @@ def scans_as_samples(
             scales=scales,
             theory=theory,
             measured={},
+            further={},
         )
         for scan, options in zip(scans, reading, strict=True)
     )
 
 
-def _sample(folder: Path, row: Mapping[str, Any], common: Mapping[str, Any]) -> Sample:
+def _sample(folder: Path, sample_row: SampleRow, common: Mapping[str, Any]) -> Sample:
     """Sample of a row; relative paths begin in the folder of the table."""
-    _check_columns(row)
+    _check_columns(sample_row)
+    row = sample_row.options
     if "mask" in row:
         row = {**row, "mask": _masks(folder, row["mask"])}
     options = {**common, **row}
@@ -193,16 +236,20 @@ def _sample(folder: Path, row: Mapping[str, Any], common: Mapping[str, Any]) -> 
         scales=sphere_scales(checked_options(SphereOptions, options)),
         theory=checked_options(PredictionOptions, options),
         measured=_measured(values),
+        further=sample_row.further,
     )
 
 
-def _check_columns(row: Mapping[str, Any]) -> None:
-    """Raise at a column that is not an option."""
-    names = [name for record in _RECORDS for name in record.model_fields]
-    for name in row:
-        if name not in names:
-            hint = nearest_name(name, names, "the columns are")
-            raise ValueError(f"the column {name!r} is unknown; {hint}")
+def _check_columns(row: SampleRow) -> None:
+    """Raise at a column that seems to be a misprint of an option."""
+    for heading in row.further:
+        name = re.sub(r"\W+", "_", heading.lower())
+        near = difflib.get_close_matches(name, _COLUMNS, n=1, cutoff=_LIKE_AN_OPTION)
+        if near:
+            raise ValueError(
+                f"the column {heading!r} is unknown; did you mean {near[0]}? If it is to be copied "
+                "to the results, choose a name that is less like it"
+            )
 
 
 def _check_single_surface(values: SampleOptions, row: Mapping[str, Any]) -> None:

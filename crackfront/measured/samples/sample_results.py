@@ -24,6 +24,9 @@ _FIRST = (
 )
 """First columns of a table of results."""
 
+_RESULTS = (*_FIRST, "remarks", "e_el")
+"""Columns of results, which columns of the user cannot have the names of."""
+
 
 @dataclass(frozen=True, slots=True)
 class SampleResult:
@@ -58,6 +61,10 @@ def predicted_samples(samples: Sequence[Sample]) -> Iterator[SampleResult]:
         except (ValueError, OSError) as error:
             row = {"outcome": "refused", "remarks": str(error)}
         row = {"sample": sample.name, "group": sample.group} | row | _measured_cells(sample)
+        row |= {
+            f"{name} (table)" if name in row or name in _RESULTS else name: cell
+            for name, cell in sample.further.items()
+        }
         first = {name: row[name] for name in _FIRST if name in row}
         yield SampleResult(to_jsonable(first | row), str(row["outcome"]), prediction, sample)
 

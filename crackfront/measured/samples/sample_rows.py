@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections import Counter
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -21,6 +23,9 @@ _YAML = {".yaml", ".yml"}
 _NAMES = ("sample", "group")
 """Columns whose cells are names, also where they look like numbers."""
 
+_MOST_VALUES = 1000
+"""Values in a list of a sample, as of its scans."""
+
 _TWO_SIDES = re.compile(r"\d+,\d+")
 """Two sides of a scan, or one with a decimal comma."""
 
@@ -28,19 +33,32 @@ _THOUSANDS = re.compile(r"[-+]?[1-9]\d{0,2},\d{3}")
 """A number whose comma may separate thousands as well as decimals."""
 
 
-def sample_rows(path: Path) -> list[tuple[int, dict[str, Any]]]:
+@dataclass(frozen=True, slots=True)
+class SampleRow:
+    """What a table says of a sample."""
+
+    line: int
+    """Number of its line in the file, from 1."""
+    options: Mapping[str, Any]
+    """Cells by the names of options; numbers have the units of their headings and points."""
+    further: Mapping[str, str]
+    """Cells of other columns as they are, by their headings."""
+
+
+def sample_rows(path: Path, names: Collection[str]) -> list[SampleRow]:
     """Rows of a table of samples.
 
     Parameters
     ----------
     path : Path
         YAML by its suffix, else a text with headings.
+    names : collection of str
+        Options, which are the columns that are read.
 
     Returns
     -------
-    list of (int, dict)
-        Line of every row, and its cells by the names of their columns; numbers have the units of
-        their headings and decimal points.
+    list of SampleRow
+        In the order of the table, without empty cells.
 
     Raises
     ------
@@ -50,31 +68,44 @@ def sample_rows(path: Path) -> list[tuple[int, dict[str, Any]]]:
         If the file cannot be opened.
     """
     check_readable(path)
-    return list(_yaml_rows(path) if path.suffix.lower() in _YAML else _table_rows(path))
+    rows = _yaml_rows if path.suffix.lower() in _YAML else _table_rows
+    return list(rows(path, names))
 
 
-def _table_rows(path: Path) -> Iterator[tuple[int, dict[str, Any]]]:
+def _table_rows(path: Path, names: Collection[str]) -> Iterator[SampleRow]:
     """Line and content of every row of a text with headings."""
     table = table_of_texts(path)
     where = f"{path}, line {len(table.above) + 1}"
-    columns = [_name_and_unit(each, where) for each in table.headings]
-    names = [name for name, _ in columns if name]
-    if twice := next((name for name in names if names.count(name) > 1), None):
-        raise ValueError(f"{where}: two columns are called {twice!r}")
-    rows = [
+    columns = [_name_and_unit(each, names, where) for each in table.headings]
+    counts = Counter(name for name, _ in columns if name)
+    for name, count in counts.items():
+        if count > 1:
+            raise ValueError(f"{where}: two columns are called {name!r}; rename one of them")
+    cells_of_rows = [
         {name: cell for (name, _), cell in zip(columns, cells, strict=True) if name and cell}
         for cells in table.cells.to_numpy()
+    ]
+    rows = [
+        {name: _with_hyphen(cell) for name, cell in cells.items() if name in names}
+        for cells in cells_of_rows
     ]
     has_decimal_commas = table.separator != ","
     if has_decimal_commas:
         _check_decimal_signs(table, rows)
     units = dict(columns)
-    for line, row in zip(table.lines, rows, strict=True):
+    for line, row, cells in zip(table.lines, rows, cells_of_rows, strict=True):
         for name, cell in row.items():
             if name not in _NAMES and is_number(cell):
                 number = cell.replace(",", ".") if has_decimal_commas else cell
                 row[name] = number + units[name]
-        yield line, row
+        further = {name: cell for name, cell in cells.items() if name not in names}
+        yield SampleRow(line, row, further)
+
+
+def _with_hyphen(cell: str) -> str:
+    """A number with a hyphen for the minus sign of word processors; other cells as they are."""
+    number = cell.replace("\u2212", "-")
+    return number if is_number(number) else cell
 
 
 def _check_decimal_signs(table: Table, rows: Sequence[dict[str, str]]) -> None:
@@ -104,20 +135,31 @@ def _numbers(table: Table, rows: Sequence[dict[str, str]]) -> Iterator[tuple[int
                 yield line, name, cell
 
 
-def _name_and_unit(each: Heading, where: str) -> tuple[str, str]:
-    """Name of an option and unit in a heading; the unit must not begin with a number."""
+def _name_and_unit(each: Heading, names: Collection[str], where: str) -> tuple[str, str]:
+    """Name of an option and unit in a heading, or any other heading as it is.
+
+    The unit must not begin with a number.
+    """
+    name = re.sub(r"[\s-]+", "_", each.name.lower())
+    if name not in names:
+        return each.text, ""
     if re.match(r"[-+.,]?\d", each.unit):
         raise ValueError(
             f"{where}: the unit of the column {each.name!r} is {each.unit!r}, which begins with a "
             "number; write a unit alone, as in mJ/m2, and the cells in it"
         )
-    return re.sub(r"[\s-]+", "_", each.name.lower()), each.unit
+    return name, each.unit
 
 
-def _yaml_rows(path: Path) -> Iterator[tuple[int, dict[str, Any]]]:
+def _yaml_rows(path: Path, names: Collection[str]) -> Iterator[SampleRow]:
     """Line and content of every sample of a YAML file."""
     try:
         content = YAML(typ="rt").load(path.read_text(encoding="utf-8"))
+    except RecursionError as error:
+        raise ValueError(
+            f"{path} is nested too deeply; write a list of samples with one value or one list for "
+            "each name"
+        ) from error
     except UnicodeDecodeError as error:
         raise ValueError(f"{path} is not a text in UTF-8; store it as UTF-8") from error
     except MarkedYAMLError as error:
@@ -127,21 +169,39 @@ def _yaml_rows(path: Path) -> Iterator[tuple[int, dict[str, Any]]]:
         # A sign that YAML does not allow, or a date or a number that cannot be read.
         raise ValueError(f"{path} is not YAML: {str(error).splitlines()[0]}; correct it") from error
     rows = content.get("samples") if isinstance(content, dict) else content
-    further = [name for name in content if name != "samples"] if isinstance(content, dict) else []
-    if rows is not None and further:
-        raise ValueError(f"{path} has {str(further[0])!r} next to samples; remove it")
+    others = [name for name in content if name != "samples"] if isinstance(content, dict) else []
+    if rows is not None and others:
+        raise ValueError(f"{path} has {str(others[0])!r} next to samples; remove it")
     if not isinstance(rows, list) or not all(isinstance(row, dict) for row in rows):
         raise ValueError(
             f"{path} lacks a list of samples; write 'samples:' with '- sample: A' below"
         )
     for row in rows:
         line = row.lc.line + 1
-        cells: dict[str, Any] = {}
+        where = f"{path}, line {line}"
+        options: dict[str, Any] = {}
+        further: dict[str, str] = {}
         for key, value in row.items():
-            if value is not None:
-                name, unit = _name_and_unit(heading(str(key)), f"{path}, line {line}")
-                if isinstance(value, list):
-                    cells[name] = list(value)
-                else:
-                    cells[name] = f"{value}{unit}" if is_number(str(value)) else str(value)
-        yield line, cells
+            if value is None:
+                continue
+            name, unit = _name_and_unit(heading(str(key)), names, where)
+            if not _is_flat(value):
+                raise ValueError(
+                    f"{where}: {name} is a value of many parts; write one value, or a list"
+                )
+            if name not in names:
+                further[name] = str(value)
+            elif isinstance(value, list):
+                options[name] = list(value)
+            else:
+                options[name] = f"{value}{unit}" if is_number(str(value)) else str(value)
+        yield SampleRow(line, options, further)
+
+
+def _is_flat(value: Any, depth: int = 3) -> bool:
+    """Whether a value is single, or lists of lists, which anchors could repeat without end."""
+    if isinstance(value, dict):
+        return False
+    if not isinstance(value, list):
+        return True
+    return depth > 0 and len(value) <= _MOST_VALUES and all(_is_flat(v, depth - 1) for v in value)

@@ -10,7 +10,9 @@ from typing import Any
 
 from crackfront.measured.scan.library import errors_as_sentences
 
-_NO_HEIGHTS = re.compile("ampl|phase|error|deflection|friction|potential|adhesion", re.IGNORECASE)
+_NO_HEIGHTS = re.compile(
+    "ampl|phase|error|deflection|friction|potential|adhesion|intensity", re.IGNORECASE
+)
 """Names of channels that are not of heights, also where the file gives them a unit of length."""
 
 _HEIGHTS = re.compile(
@@ -20,6 +22,16 @@ _HEIGHTS = re.compile(
 
 _BARE_ARRAYS = {"h5", "mat", "npz", "nc"}
 """Formats whose arrays state their quantity by their names alone."""
+
+_OTHER_OBJECTS = {
+    3: "a picture of two levels",
+    10: "intensities",
+    12: "a picture in colour",
+    14: "a force curve",
+    15: "force curves",
+    20: "a spectrum",
+}
+"""What SUR files contain in place of heights, by the number of the type in their head."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,7 +88,8 @@ def chosen_channel(path: Path, reader: Any, requested: str | None) -> tuple[Any,
         )
     if not channels:
         raise ValueError(
-            f"{path} lacks an array of numbers in two dimensions; export the heights as one"
+            f"{path}, read as {reader.format()}, lacks an array of numbers in two dimensions that "
+            "may have heights; export the heights as one, not intensities or a picture alone"
         )
     chosen = _requested(path, channels, requested)
     if chosen.quantity != "height":
@@ -87,6 +100,9 @@ def chosen_channel(path: Path, reader: Any, requested: str | None) -> tuple[Any,
         )
     several = f", {chosen.number} of {len(channels)}" if len(channels) > 1 else ""
     [channel] = [each for each in reader.channels if each.index == chosen.number]
+    n_object = _stated_by_sur(channel, "nb_objects")
+    if n_object > 1:
+        several += f", the first of {n_object} objects in the file"
     return channel, f"{chosen.name!r}{several}"
 
 
@@ -118,8 +134,18 @@ def _is_tiff(path: Path) -> bool:
 
 def _kind(channel: Any) -> str:
     """Quantity of a channel: height, phase and others."""
+    other = _OTHER_OBJECTS.get(_stated_by_sur(channel, "type"))
+    if other is not None:
+        return other
     # A reader takes any quantity over lengths for heights, and has two units for it.
     return "another quantity" if isinstance(channel.unit, tuple) else str(channel.data_kind.value)
+
+
+def _stated_by_sur(channel: Any, name: str) -> int:
+    """Number in the head of a SUR file, 0 in other formats."""
+    head = channel.info.get("raw_metadata")
+    is_sur = isinstance(head, dict) and head.get("magic") == "DIGITAL SURF"
+    return int(head[name]) if is_sur else 0
 
 
 def is_doubtful(channel: str) -> bool:

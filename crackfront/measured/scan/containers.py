@@ -34,6 +34,12 @@ _METADATA = ("index.json", "meta.yml")
 _DATA = ("original", "squeezed-netcdf")
 """Data files of a measurement: as it was measured, and as contact.engineering has treated it."""
 
+_LARGEST_METADATA = 16e6
+"""Size of the metadata of some thousand measurements (Units: bytes)."""
+
+_MOST_ENTRIES = 1000
+"""Surfaces of a container, and measurements of a surface; anchors in YAML may repeat them."""
+
 _ENCRYPTED = 0x1
 """Bit of an entry in a ZIP file whose content is encrypted."""
 
@@ -86,13 +92,13 @@ class ContainedSurface(_Entry):
     """A surface in a container, with its measurements."""
 
     name: str = ""
-    topographies: tuple[ContainedMeasurement, ...] = Field(min_length=1)
+    topographies: tuple[ContainedMeasurement, ...] = Field(min_length=1, max_length=_MOST_ENTRIES)
 
 
 class _Metadata(_Entry):
     """Content of a container, as it states it."""
 
-    surfaces: tuple[ContainedSurface, ...] = Field(min_length=1)
+    surfaces: tuple[ContainedSurface, ...] = Field(min_length=1, max_length=_MOST_ENTRIES)
 
 
 class _Constructor(SafeConstructor):
@@ -116,6 +122,7 @@ def contained_surfaces(path: Path) -> tuple[ContainedSurface, ...]:
         metadata = next((name for name in _METADATA if name in names), None)
         if metadata is None:
             return ()
+        _check_size(path, archive, [metadata], _LARGEST_METADATA)
         text = _content(path, archive, metadata).decode("utf-8", "replace")
     try:
         if metadata.endswith(".json"):
@@ -131,6 +138,11 @@ def contained_surfaces(path: Path) -> tuple[ContainedSurface, ...]:
         raise ValueError(
             f"{path}: {metadata} does not state the content of the container: {place}: "
             f"{first['msg'].lower()}; download it again"
+        ) from error
+    except RecursionError as error:
+        raise ValueError(
+            f"{path}: {metadata} is nested too deeply to be the content of a container; download "
+            "it again"
         ) from error
     except (YAMLError, ValueError) as error:
         raise ValueError(
@@ -190,6 +202,8 @@ def stated_length(path: Path, member: ContainedMeasurement, name: InstrumentLeng
 def unpacked(path: Path, members: Sequence[ContainedMeasurement]) -> Iterator[list[Path]]:
     """Data files of measurements, in a folder that is removed afterwards."""
     with tempfile.TemporaryDirectory() as folder, _open(path) as archive:
+        names = [member.file for member in members]
+        _check_size(path, archive, names, LARGEST_FILE * memory_at_hand())
         files = []
         for number, member in enumerate(members):
             # A new name, as a name in the container may point anywhere.
@@ -213,16 +227,26 @@ def _open(path: Path) -> Iterator[zipfile.ZipFile]:
         raise ValueError(f"{path} is a damaged ZIP file ({error}); download it again") from error
 
 
-def _content(path: Path, archive: zipfile.ZipFile, name: str) -> bytes:
-    """Content of a file in a container; ValueError if it is missing, damaged or too large."""
-    try:
-        size = archive.getinfo(name).file_size
-    except KeyError as error:
-        raise ValueError(f"{path} lacks {name!r}, which it lists; download it again") from error
-    if size > (most := LARGEST_FILE * memory_at_hand()):
+def _check_size(
+    path: Path, archive: zipfile.ZipFile, names: Sequence[str], most_bytes: float
+) -> None:
+    """Raise if files that a container lists are missing, or larger than so many bytes together."""
+    size = 0
+    for name in names:
+        try:
+            size += archive.getinfo(name).file_size
+        except KeyError as error:
+            raise ValueError(f"{path} lacks {name!r}, which it lists; download it again") from error
+    if size > most_bytes:
+        shown = names[0] if len(names) == 1 else f"the {len(names)} files of its measurements"
         raise ValueError(
-            f"{path}: {name} has {in_bytes(size)}; more than {in_bytes(most)} are not read"
+            f"{path}: {shown} would unpack to {in_bytes(size)}; more than {in_bytes(most_bytes)} "
+            "are not read, so unpack it and name some of its files"
         )
+
+
+def _content(path: Path, archive: zipfile.ZipFile, name: str) -> bytes:
+    """Content of a file in a container; ValueError if it is damaged."""
     try:
         return archive.read(name)
     except (zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError) as error:

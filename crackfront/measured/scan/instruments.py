@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import zipfile
 from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
@@ -126,6 +127,11 @@ def _library_reader(path: Path) -> Any:
         try:
             return library_part("IO").open_topography(str(path))
         except library_part("Exceptions").CannotDetectFileFormat as error:
+            if reader is None and zipfile.is_zipfile(path):
+                raise ValueError(
+                    f"{path} is a ZIP file in no format that SurfaceTopography reads; unpack it, "
+                    "and name the files in it"
+                ) from error
             if reader is None:
                 raise ValueError(
                     f"{path} is in no format that SurfaceTopography reads, or damaged; export it "

@@ -24,8 +24,12 @@ _REASONS = (
     ),
     (r"Units for x-coordinate and heights.*", "its sides and heights have different units"),
     (r"Units for x- and y-coordinate.*", "its sides have different units"),
+    (
+        r"Unknown unit '(.*)'",
+        r"its values are in '\1', which is not a length, as of intensities; export the heights",
+    ),
     (r"Could not find any topography data.*", "all of its channels lack a unit of length"),
-    (r".*'NoneType' object .*", "a part of it is missing or damaged"),
+    (r"'NoneType' object .*", "a part of it is missing or damaged"),
 )
 """Reasons of the library, and what they say to one who has only the file."""
 
@@ -89,7 +93,8 @@ def _plain_reason(reason: str) -> str:
     for pattern, words in _REASONS:
         if (match := re.search(pattern, reason)) is not None:
             reason = match.expand(words)
-    return f"{reason.strip().rstrip('.')}; export it from the instrument again"
+    advice = "" if "; export" in reason else "; export it from the instrument again"
+    return f"{reason.strip().rstrip('.')}{advice}"
 
 
 def library_scan(

@@ -10,6 +10,7 @@ import numpy as np
 from crackfront.core.arguments import regular_file
 from crackfront.measured.scan.grids_reader import Grid
 from crackfront.measured.scan.points import Points, even_line
+from crackfront.measured.scan.scan_files import check_points
 from crackfront.surfaces.written_units import unit_value
 
 _BEGINS = (b"CDF\x01", b"CDF\x02", b"CDF\x05", b"\x89HDF")
@@ -28,7 +29,8 @@ def is_netcdf(path: Path) -> bool:
 def netcdf_grids(path: Path) -> list[Grid]:
     """Grids of a netCDF file with units; none where it follows the library's convention.
 
-    ValueError, of one sentence, where coordinates are not evenly spaced or have no unit of length.
+    ValueError, of one sentence, where coordinates are not evenly spaced or have no unit of length,
+    or where the file claims more points than fit in memory.
     """
     if path.suffix.lower() not in _SUFFIXES or not is_netcdf(path):
         return []
@@ -41,17 +43,26 @@ def netcdf_grids(path: Path) -> list[Grid]:
     with dataset:
         if _is_conventional(dataset):
             return []
-        variables = dataset.variables
-        return [
-            _grid(path, dataset, name)
-            for name, variable in variables.items()
-            if name not in dataset.dimensions
-            and variable.dimensions
-            and len(variable.dimensions) < 3
-            and np.issubdtype(variable.dtype, np.number)
-            and all(dimension in variables for dimension in variable.dimensions)
-            and _unit(variable) is not None
-        ]
+        names = [name for name in dataset.variables if _is_grid(dataset, name)]
+        # A compressed file of some kilobytes may claim more than fits in memory.
+        if names:
+            check_points(path, [sum(int(dataset[name].size) for name in names)])
+        return [_grid(path, dataset, name) for name in names]
+
+
+def _is_grid(dataset: Any, name: str) -> bool:
+    """Whether a variable has a unit and one or two dimensions, each with its coordinates."""
+    variable = dataset[name]
+    return (
+        name not in dataset.dimensions
+        and 0 < len(variable.dimensions) < 3
+        and np.issubdtype(variable.dtype, np.number)
+        and all(
+            dimension in dataset.variables and dataset[dimension].dimensions == (dimension,)
+            for dimension in variable.dimensions
+        )
+        and _unit(variable) is not None
+    )
 
 
 def _is_conventional(dataset: Any) -> bool:

@@ -199,7 +199,7 @@ def _on_grid(
             "on no regular grid; interpolate them on one"
         )
     flat = np.ravel_multi_index([index for index, _ in axes], counts)
-    if len(np.unique(flat)) < len(flat):
+    if np.bincount(flat).max() > 1:
         order = np.argsort(flat, kind="stable")
         twice = order[1:][np.diff(flat[order]) == 0][0]
         where = ", ".join(cells[twice] for cells in places)
@@ -250,9 +250,10 @@ def _axis(path: Path, name: str, cells: Cells) -> tuple[NDArray[np.int64], float
         ):
             worst = int(np.argmax(off - allowed))
             raise ValueError(
-                f"{path}: the points are not equally spaced: {texts[order][worst]} along {name} is "
-                f"{off[worst] / slope:.2g} spacings from its place; resample them on a uniform "
-                "grid, or export more digits"
+                f"{path}: the points are not equally spaced: neighbours along {name} are "
+                f"{np.diff(centres).min():.3g} to {np.diff(centres).max():.3g} apart, and "
+                f"{texts[order][worst]} is {off[worst] / slope:.2g} spacings from its place; "
+                "interpolate the heights at equal steps, or export more digits if these are rounded"
             )
         slope = step
     places = np.empty(len(texts), dtype=np.int64)
@@ -280,10 +281,10 @@ def _places_with_gaps(centres: Array) -> NDArray[np.int64]:
 
 def _last_digits(cells: Sequence[str]) -> Array:
     """Unit of the last digit of numbers as printed with so many decimals, or digits in all."""
-    mantissas = [cell.lower().partition("e")[0].lstrip("+-") for cell in cells]
-    is_fixed = not any("e" in cell.lower() for cell in cells)
+    is_fixed = "e" not in " ".join(cells).lower()
+    mantissas = cells if is_fixed else [cell.lower().partition("e")[0] for cell in cells]
     decimals = max(len(text.partition(".")[2]) for text in mantissas)
-    digits = max(len(text.replace(".", "").lstrip("0")) for text in mantissas)
+    digits = max(len(text.lstrip("+-0.").replace(".", "")) for text in mantissas)
     values = np.abs(np.array(cells, dtype=float))
     scale = np.floor(np.log10(np.where(values > 0, values, np.inf)))
     by_digits = np.where(values > 0, 10.0 ** np.where(values > 0, scale + 1 - digits, 0), 0.0)

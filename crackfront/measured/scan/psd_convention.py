@@ -203,7 +203,7 @@ def _kind(path: Path, words: str, unit: str, options: PsdOptions) -> tuple[PsdKi
     """What the density is of, and its unit in SI."""
     power = dimension(unit, (3, 4))
     named: PsdKind | None = None
-    if re.search(r"q\s*/\s*(π|pi)\s*[×x*]?\s*2d", words):
+    if re.search(r"q\s*/\s*(π|pi)\s*+[×x*]?\s*2d", words):
         named = "q2d"
     elif re.search(r"radial|\bw[_ ]?r\b", words) and power == 3:
         named = "radial"

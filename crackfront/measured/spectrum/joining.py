@@ -10,7 +10,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from crackfront.analysis.estimate import Estimate, normal_estimate, quantiles
+from crackfront.analysis.estimate import Estimate, exact_estimate, normal_estimate, quantiles
 from crackfront.core.arrays import Array
 from crackfront.core.spectrum import TabulatedSpectrum
 from crackfront.measured.density.bands import NYQUIST, Scan
@@ -22,7 +22,7 @@ from crackfront.measured.spectrum.draws import (
     batches,
     drawn,
 )
-from crackfront.measured.spectrum.joint_fit import Fit, quadrature_of
+from crackfront.measured.spectrum.joint_fit import INTERVAL, Fit, quadrature_of
 
 _CONTINUED_BINS = 6
 """Points of a continuation in a decade."""
@@ -30,8 +30,14 @@ _CONTINUED_BINS = 6
 _LONGEST_CONTINUED = 32.0
 """Longest wave of a continuation over the longest fitted wave: beyond all possible roll-offs."""
 
-_DECADES = 2
-"""Decades of shorter waves by which the model is continued, to estimate what is missing."""
+ATOMS = 1e-9
+"""Shortest wavelength of a continuation: the size of atoms. (Units: m)"""
+
+_SHORTER_WAVES = 100.0
+"""Ratio by which the model is continued to shorter waves, to estimate what is missing."""
+
+_LEAST_SHOWN = 1e-4
+"""Smallest part of e_el that texts state as a number."""
 
 _DISAGREEMENT_SIGMA = 3.0
 """Significance of the level of a scan that disagrees. (Units: standard errors)"""
@@ -70,21 +76,42 @@ class Shares:
     measured: float
     continued: float
     """Contributions of the measured bands and of the continuation; their sum is 1."""
-    missing_short: float
-    """Additional e_el of two more decades of shorter waves, by the model."""
-    continued_long: float
-    """Contribution of waves longer than the longest measured one, by the model."""
+    missing_short: Estimate[float]
+    """Additional e_el of two more decades of shorter waves, but not below atoms: median of the
+    models that agree with the data, and the range of 95% of them."""
+    continued_long: Estimate[float]
+    """Contribution of waves longer than the longest measured one, by the median spectrum, and its
+    range in 95% of the spectra that agree with the data."""
 
 
-def part_of_energy(part: float) -> str:
-    """A part of e_el in per cent, or as a multiple if it is larger than e_el.
+def part_of_energy(part: Estimate[float]) -> str:
+    """A part of e_el with its range, in per cent, or as a multiple if it is larger than e_el.
 
     Examples
     --------
-    >>> part_of_energy(0.7), part_of_energy(122.68)
-    ('70% of e_el', '123 times e_el')
+    >>> from crackfront.analysis.estimate import exact_estimate
+    >>> part_of_energy(exact_estimate(0.7))
+    '70% of e_el'
+    >>> part_of_energy(Estimate(7.268, math.nan, 0.392, 116.0))
+    '7.3 times e_el (0.39 to 120)'
     """
-    return f"{part:.0%} of e_el" if part < 1 else f"{part:.3g} times e_el"
+    if part.value < 1:
+        text, low, high = (_per_cent(number) for number in (part.value, part.low, part.high))
+        text += " of e_el"
+    else:
+        text, low, high = (f"{_two_digits(x):g}" for x in (part.value, part.low, part.high))
+        text += " times e_el"
+    return text if low == high else f"{text} ({low} to {high})"
+
+
+def _per_cent(part: float) -> str:
+    """A part in per cent."""
+    return f"{_two_digits(100 * part):g}%" if part >= _LEAST_SHOWN else f"under {_LEAST_SHOWN:.2%}"
+
+
+def _two_digits(number: float) -> float:
+    """A number rounded to two significant digits."""
+    return float(f"{number:.2g}")
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,7 +125,8 @@ class JointSpectrum:
     """Measured over the bands; below, the density of the finest scan down to its pixels, with its
     noise subtracted but not corrected for its instrument. (Units: m)"""
     extended: TabulatedSpectrum
-    """The spectrum with two more decades of shorter waves, by the model. (Units: m)"""
+    """The spectrum with two more decades of shorter waves by the model, but not below atoms.
+    (Units: m)"""
     draws: Draws
     """Random spectra that agree with the measurements."""
     density: JointDensity
@@ -152,14 +180,21 @@ def joint_spectrum(
         grid=np.sort(np.append(joint.wavevector, continuation)),
     )
     extended = _extended(spectrum, fit)
+    draws = drawn(sampler, itertools.chain([first], states), numbers or sampling.BATCHES)
+    measured = _measured_share(spectrum, joint.wavevector)
     return JointSpectrum(
         spectrum=spectrum,
         extended=extended,
         recorded=_recorded(joint, below_bands),
-        draws=drawn(sampler, itertools.chain([first], states), numbers or sampling.BATCHES),
+        draws=draws,
         density=joint,
         fit=fit,
-        shares=_shares(spectrum, extended, joint.wavevector),
+        shares=Shares(
+            measured=measured,
+            continued=1 - measured,
+            missing_short=_missing_short(spectrum, extended, fit),
+            continued_long=_continued_long(spectrum, joint.wavevector, draws),
+        ),
     )
 
 
@@ -266,25 +301,64 @@ def _gaps(wavevector: Array, lowest: float, end: float) -> Array:
     return np.concatenate([*parts, [last]])
 
 
+def continued_end(end: float) -> float:
+    """Shortest wave that may be missing below the end of a spectrum (Units: m)."""
+    return min(end, max(end / _SHORTER_WAVES, ATOMS))
+
+
+def _finer(spectrum: TabulatedSpectrum) -> Array:
+    """Wavevectors from the end of a spectrum over the shorter waves that may be missing."""
+    end = spectrum.short_cutoff
+    return np.geomspace(1, end / continued_end(end), 20) * 2 * np.pi / end
+
+
 def _extended(spectrum: TabulatedSpectrum, fit: Fit) -> TabulatedSpectrum:
-    """A spectrum with two more decades of shorter waves."""
-    finer = np.geomspace(1, 10**_DECADES, 20)[1:] * 2 * np.pi / spectrum.short_cutoff
+    """A spectrum with the shorter waves that may be missing."""
+    if continued_end(spectrum.short_cutoff) == spectrum.short_cutoff:
+        return spectrum
+    finer = _finer(spectrum)[1:]
     return TabulatedSpectrum(
         (*spectrum.wavelengths, *(2 * np.pi / finer).tolist()),
         (*spectrum.densities, *fit.median(finer).tolist()),
     )
 
 
-def _shares(spectrum: TabulatedSpectrum, extended: TabulatedSpectrum, wavevector: Array) -> Shares:
-    """Contributions to e_el, for measured wavevectors."""
-    total = spectrum.mean_square(0.5)
+def _measured_share(spectrum: TabulatedSpectrum, wavevector: Array) -> float:
+    """Contribution of the measured bands to e_el, for measured wavevectors."""
     # The continuation fills wider gaps than this.
     gaps = np.diff(np.log10(wavevector)) > 1 / _CONTINUED_BINS
     groups = np.split(2 * np.pi / wavevector, np.flatnonzero(gaps) + 1)
     parts = [spectrum.mean_square_between(0.5, group[-1], group[0]) for group in groups]
     # Because of round-off the sum may be above the total.
-    measured = min(sum(parts) / total, 1.0)
+    return min(sum(parts) / spectrum.mean_square(0.5), 1.0)
+
+
+def _missing_short(
+    spectrum: TabulatedSpectrum, extended: TabulatedSpectrum, fit: Fit
+) -> Estimate[float]:
+    """Additional e_el of the shorter waves that may be missing, over e_el."""
+    if extended is spectrum:
+        return exact_estimate(0.0)
+    total = spectrum.mean_square(0.5)
     beyond = extended.mean_square_between(0.5, extended.short_cutoff, spectrum.short_cutoff)
+    finer = _finer(spectrum)
+    ends = (np.full(len(fit.weight), wavevector) for wavevector in finer[[0, -1]])
+    first, last = sampling.mean_squares(finer, fit.logarithms(finer), *ends)
+    order = sampling.ORDERS.index(0.5)
+    return _with_range(beyond / total, (last - first)[order] / total, fit.weight)
+
+
+def _continued_long(
+    spectrum: TabulatedSpectrum, wavevector: Array, draws: Draws
+) -> Estimate[float]:
+    """Contribution to e_el of waves longer than the measured wavevectors."""
     longest = max(2 * np.pi / float(wavevector[0]), spectrum.short_cutoff)
-    longer = spectrum.longer_than(longest).mean_square(0.5)
-    return Shares(measured, 1 - measured, beyond / total, longer / total)
+    longer = spectrum.longer_than(longest).mean_square(0.5) / spectrum.mean_square(0.5)
+    total = draws.estimated[sampling.ORDERS.index(0.5)]
+    return _with_range(longer, draws.outside[0] / total, draws.weight)
+
+
+def _with_range(value: float, values: Array, weight: Array) -> Estimate[float]:
+    """A number with the 95% range of its values in weighted draws, widened to contain it."""
+    low, high = quantiles(values, weight, INTERVAL[::2]).tolist()
+    return Estimate(value, math.nan, min(low, value), max(high, value))

@@ -17,7 +17,7 @@ from crackfront.core.spectrum import SelfAffineSpectrum, TabulatedSpectrum
 from crackfront.measured.options import SelfAffineOptions
 from crackfront.measured.scan.psd import Psd
 from crackfront.measured.spectrum.draws import ORDERS
-from crackfront.measured.spectrum.joining import Shares, part_of_energy
+from crackfront.measured.spectrum.joining import ATOMS, Shares, continued_end, part_of_energy
 from crackfront.measured.spectrum.measured_surface import (
     DOMINANT_SHARE,
     MeasuredSurface,
@@ -29,6 +29,9 @@ from crackfront.surfaces.written_units import prefixed
 _NOTABLE_SHARE = 0.1
 """Smallest part of e_el in missing waves that a reservation states."""
 
+_LEAST_SHARE = 0.01
+"""Smallest part of e_el that a reservation states as a number."""
+
 _UNPROJECTION_STEPS = 3
 """Steps to the isotropic density; more would amplify noise."""
 
@@ -38,9 +41,6 @@ _PROJECTION_NODES = 200
 _PROJECTION_END = 8.0
 """End of this quadrature in arccosh(k / q)."""
 
-_SHORTER_WAVES = 100.0
-"""Ratio by which a table is continued to shorter waves, to estimate what is missing."""
-
 _LONGER_WAVES = 4.0
 """Ratio by which a table is continued to longer waves, to estimate what is missing."""
 
@@ -49,9 +49,6 @@ _SLOPE_RANGE = 4.0
 
 _STEEPEST_PLATEAU = -1.0
 """Power of the wavevector below which a density still rises at its longest waves."""
-
-ATOMS = 1e-9
-"""Shortest wavelength by default: the size of atoms. (Units: m)"""
 
 _SHOWN_WAVES = 100.0
 """Wavelength over the default short cutoff up to which a reservation states the part of e_el."""
@@ -78,6 +75,9 @@ class StatedSurface(RoughSurface):
     """Contributions to e_el."""
     doubts: tuple[str, ...]
     """Sentences on assumptions and missing waves."""
+    longest_cutoff: float | None
+    """Longest wave that may be the shortest one, if the short cutoff is only assumed; else None.
+    (Units: m)"""
 
     @property
     def scans(self) -> tuple[()]:
@@ -117,9 +117,8 @@ def density_surface(psd: Psd) -> StatedSurface:
     long = spectrum.longer_than(spectrum.wavelengths[0] * (1 - 1e-12)).mean_square(0.5) / total
     missing = _shorter(spectrum) / total
     doubts = [*psd.assumptions, *_missing_waves(spectrum, total, missing, long)]
-    return _stated(
-        f"{psd.path}: {psd.convention}", spectrum, Shares(1 - long, long, missing, long), doubts
-    )
+    shares = Shares(1 - long, long, exact_estimate(missing), exact_estimate(long))
+    return _stated(f"{psd.path}: {psd.convention}", spectrum, shares, doubts)
 
 
 def self_affine_surface_of(options: SelfAffineOptions) -> StatedSurface:
@@ -142,11 +141,16 @@ def self_affine_surface_of(options: SelfAffineOptions) -> StatedSurface:
     lengths = f"roll-off {prefixed('m', roll_off)}"
     if length is not None:
         lengths += f", of a correlation length of {prefixed('m', length)}"
+    doubts, longest_cutoff = [], None
+    if options.short_cutoff is None:
+        longest_cutoff = min(_SHOWN_WAVES * cutoff, roll_off)
+        doubts = [_default_cutoff_doubt(shape, longest_cutoff)]
     return _stated(
         f"rms height {prefixed('m', rms)}, {lengths}, H {hurst:g}",
         TabulatedSpectrum(waves, tuple(densities)),
-        Shares(1.0, 0.0, 0.0, 0.0),
-        [_default_cutoff_doubt(shape)] if options.short_cutoff is None else [],
+        Shares(1.0, 0.0, exact_estimate(0.0), exact_estimate(0.0)),
+        doubts,
+        longest_cutoff,
     )
 
 
@@ -171,14 +175,14 @@ def _self_affine_shape(options: SelfAffineOptions, rms: float, hurst: float) -> 
     return shape.amplified(rms**2 / shape.mean_square(0.0))
 
 
-def _default_cutoff_doubt(shape: SelfAffineSpectrum) -> str:
-    """Sentence on the part of e_el in the shortest waves, whose cutoff is the default."""
+def _default_cutoff_doubt(shape: SelfAffineSpectrum, end: float) -> str:
+    """Sentence on e_el in waves up to an end, which the default of the cutoff decides."""
     cutoff = shape.short_cutoff
-    end = min(_SHOWN_WAVES * cutoff, shape.roll_off)
     part = shape.mean_square_between(0.5, cutoff, end) / shape.mean_square(0.5)
+    share = f"{part:.0%}" if part >= _LEAST_SHARE else f"under {_LEAST_SHARE:.0%}"
     return (
         f"No short cutoff is named: the power law is continued to {prefixed('m', cutoff)}, "
-        f"and waves shorter than {prefixed('m', end)} have {part:.0%} of e_el."
+        f"and waves shorter than {prefixed('m', end)} have {share} of e_el."
     )
 
 
@@ -229,10 +233,13 @@ def _logarithms(spectrum: TabulatedSpectrum) -> tuple[Array, Array]:
 def _shorter(spectrum: TabulatedSpectrum) -> float:
     """Mean square of the half-derivative in missing shorter waves, by a power law."""
     last = spectrum.short_cutoff
+    shortest = continued_end(last)
+    if shortest == last:
+        return 0.0
     slope = _end_slope(*_logarithms(spectrum), last=True)
     end = spectrum.densities[-1]
-    tail = TabulatedSpectrum((last, last / _SHORTER_WAVES), (end, end * _SHORTER_WAVES**slope))
-    return tail.mean_square_between(0.5, last / _SHORTER_WAVES, last * (1 - 1e-12))
+    tail = TabulatedSpectrum((last, shortest), (end, end * (last / shortest) ** slope))
+    return tail.mean_square_between(0.5, shortest, last * (1 - 1e-12))
 
 
 def _missing_waves(
@@ -240,7 +247,8 @@ def _missing_waves(
 ) -> Iterator[str]:
     """Sentences on missing waves that contribute to e_el."""
     first = spectrum.wavelengths[0]
-    short, longest = (prefixed("m", end) for end in (spectrum.short_cutoff, first))
+    short, longest = (prefixed("m", wave) for wave in (spectrum.short_cutoff, first))
+    end = prefixed("m", continued_end(spectrum.short_cutoff))
     slope = _end_slope(*_logarithms(spectrum), last=False)
     if slope < _STEEPEST_PLATEAU:
         longer = TabulatedSpectrum(
@@ -252,12 +260,12 @@ def _missing_waves(
             yield (
                 f"The density rises up to its longest wave, {longest}, and is taken as flat above; "
                 f"with a roll-off at {_LONGER_WAVES:g} times this wavelength there would be "
-                f"{part_of_energy(more)} more; add longer waves."
+                f"{part_of_energy(exact_estimate(more))} more; add longer waves."
             )
     if missing > _NOTABLE_SHARE:
         yield (
-            f"Waves shorter than {short} are left out: two more decades of the power law would "
-            f"add {part_of_energy(missing)}; add shorter waves."
+            f"Waves shorter than {short} are left out of all numbers and intervals: down to {end} "
+            f"the power law would add {part_of_energy(exact_estimate(missing))}; add shorter waves."
         )
 
 
@@ -297,7 +305,11 @@ def _autocorrelation(distance: float, roll_off: float, hurst: float, cutoff: flo
 
 
 def _stated(
-    origin: str, spectrum: TabulatedSpectrum, shares: Shares, doubts: list[str]
+    origin: str,
+    spectrum: TabulatedSpectrum,
+    shares: Shares,
+    doubts: list[str],
+    longest_cutoff: float | None = None,
 ) -> StatedSurface:
     """Surface with an exact spectrum, whose measures have intervals of zero width."""
     half = exact_estimate(spectrum.mean_square(0.5))
@@ -316,4 +328,5 @@ def _stated(
         spectrum=spectrum,
         shares=shares,
         doubts=tuple(doubts),
+        longest_cutoff=longest_cutoff,
     )

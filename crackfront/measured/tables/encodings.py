@@ -14,6 +14,14 @@ _MARKS = (
 )
 """Byte order marks, the longer ones first."""
 
+_COMPRESSED = (
+    (b"\x1f\x8b", "gzip", "gunzip"),
+    (b"BZh", "bzip2", "bunzip2"),
+    (b"\xfd7zXZ\0", "xz", "unxz"),
+    (b"\x28\xb5\x2f\xfd", "zstd", "unzstd"),
+)
+"""Signatures of compressed files, with the names of the format and of the command that unpacks."""
+
 _BINARY = bytes({*range(32)} - {*b"\t\n\v\f\r\x1a"})
 """Bytes that do not occur in a text; 0x1a ends one in DOS."""
 
@@ -39,12 +47,18 @@ def decoded(path: Path) -> str | None:
     Raises
     ------
     ValueError
-        If the file contradicts its own byte order mark.
+        If the file contradicts its own byte order mark, or is compressed.
     OSError
         If it cannot be opened.
     """
     with path.open("rb") as file:
         start = file.read(4096)
+        for signature, name, command in _COMPRESSED:
+            if start.startswith(signature):
+                raise ValueError(
+                    f"{path} is compressed with {name}; unpack it, as with {command}, and name the "
+                    "file that comes out"
+                )
         marked = next((name for mark, name in _MARKS if start.startswith(mark)), None)
         wide = None if marked else _encoding_of_nulls(start)
         if b"\0" in start and not (marked or wide):

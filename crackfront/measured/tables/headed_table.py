@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import itertools
+import re
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -26,6 +27,9 @@ _BLANKS = (r"\s{2,}", r"\s+")
 """Blanks between headings, which may have single blanks in them."""
 
 _COMMENT = "#"
+
+_SEPARATOR_LINE = re.compile(r'"?sep=([\t;,])"?\s*', re.IGNORECASE)
+"""First line by which a file tells Excel its separator."""
 
 _MOST_LINES_ABOVE = 1000
 """Lines among which the first row of numbers is looked for."""
@@ -71,6 +75,8 @@ def table_of_numbers(path: Path) -> Table:
 def table_of_texts(path: Path) -> Table:
     """The table of a text whose first line that is not a comment has the headings.
 
+    A first line `sep=;`, as for Excel, states the separator.
+
     Parameters
     ----------
     path : Path
@@ -90,11 +96,16 @@ def table_of_texts(path: Path) -> Table:
         If the file cannot be opened.
     """
     lines = _text_lines(path)
-    above = tuple(itertools.takewhile(lambda line: not line.strip() or line[0] == _COMMENT, lines))
+    stated = _SEPARATOR_LINE.fullmatch(lines[0])
+    start = 1 if stated else 0
+    comments = itertools.takewhile(
+        lambda line: not line.strip() or line[0] == _COMMENT, lines[start:]
+    )
+    above = (*lines[:start], *comments)
     first = len(above)
     if first == len(lines):
         return _table(path, iter(()), ",", ())
-    separator = max("\t;,", key=lines[first].count)
+    separator = stated[1] if stated else max("\t;,", key=lines[first].count)
     rows = _rows(path, lines, first, separator)
     _, names = next(rows)
     return replace(_table(path, rows, separator, tuple(map(heading, names))), above=above)

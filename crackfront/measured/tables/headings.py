@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
+import itertools
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 from crackfront.surfaces.written_units import is_unit
 
-_BRACKETS = re.compile(r"[\[(]\s*([^\[\]()]*(?:\([^()]*\)[^\[\]()]*)?)\s*[\])]")
+_BRACKETS = re.compile(r"[\[(]([^\[\]()]*+(?:\([^()]*+\)[^\[\]()]*+)?+)[\])]")
 """A unit in brackets, which may have brackets in it: (um^2/(cycles/um))."""
 
-_BEHIND_STROKE = re.compile(r"(?P<name>.*?)\s*/\s*(?P<unit>\S.*)")
 _BEHIND_SIGN = re.compile(r"(?P<name>.*\w)(?:_|\s*,\s*)(?P<unit>[^\W\d]\S*)")
 """A unit behind a comma or an underscore: `Load, uN` and `force_uN`."""
+
+_LONGEST = 300
+"""Letters of the longest heading whose unit is looked for."""
 
 _WITHOUT_UNIT = ("", "1", "-")
 """Units of pure numbers."""
@@ -24,7 +27,7 @@ _DIMENSIONS = ("m", "N", "s", "1/m", "m^2", "m^3", "m^4", "Pa", "J/m^2", "N/m")
 _LINE_OF_NAMES = re.compile(r"^columns?\s*:\s*", re.IGNORECASE)
 _MARKUP = re.compile(r"</?su[bp]>")
 _COMMENT_SIGNS = "#%! "
-_NAME_AND_BRACKETS = re.compile(r"[^\[\]()]*[\[(][^\[\]()]+[\])]")
+_IN_BRACKETS = re.compile(r"[\[(][^\[\]()]++[\])]")
 _SEPARATORS = (r";", r"\t", r",", r"\s{2,}", r"\s+")
 
 
@@ -54,7 +57,7 @@ def heading(text: str) -> Heading:
     Heading(text='Contact radius [um]', name='Contact radius', unit='um')
     """
     text = text.strip()
-    name, unit = _name_and_unit(text)
+    name, unit = _name_and_unit(text) if len(text) <= _LONGEST else (text, "")
     return Heading(text, name.strip(), "" if unit.strip() in _WITHOUT_UNIT else unit.strip())
 
 
@@ -62,12 +65,14 @@ def _name_and_unit(text: str) -> tuple[str, str]:
     brackets = list(_BRACKETS.finditer(text))
     if brackets:
         # Of several brackets, as in `PSD (um^3) (one-sided)`, one has the unit.
-        units = [bracket for bracket in brackets if len(brackets) > 1 and is_measured(bracket[1])]
-        unit = (units or brackets[-1:])[0]
-        return text[: unit.start()] + text[unit.end() :], unit[1]
-    behind = _BEHIND_STROKE.fullmatch(text)
-    if behind and (re.search(r"\s/\s", text) or is_measured(behind["unit"])):
-        return behind["name"], behind["unit"]
+        units = [
+            bracket for bracket in brackets if len(brackets) > 1 and is_measured(bracket[1].strip())
+        ]
+        bracket = (units or brackets[-1:])[0]
+        return text[: bracket.start()] + text[bracket.end() :], bracket[1]
+    name, _, unit = map(str.strip, text.partition("/"))
+    if unit and (re.search(r"\s/\s", text) or is_measured(unit)):
+        return name, unit
     behind = _BEHIND_SIGN.fullmatch(text)
     if behind and is_measured(behind["unit"]):
         return behind["name"], behind["unit"]
@@ -121,8 +126,11 @@ def heading_cells(
         if len(cells) == n_column and all(cells):
             return cells
     # Names and units between single blanks, as in x [um] z [nm].
-    bracketed = tuple(_NAME_AND_BRACKETS.findall(line))
-    return bracketed if len(bracketed) == n_column else ()
+    brackets = list(_IN_BRACKETS.finditer(line))
+    if len(brackets) != n_column:
+        return ()
+    ends = [0, *(bracket.end() for bracket in brackets)]
+    return tuple(line[start:end] for start, end in itertools.pairwise(ends))
 
 
 def are_units(cells: Sequence[str]) -> bool:

@@ -11,13 +11,15 @@ from pathlib import Path
 Splitter = Callable[[str], list[str]]
 """Splits a line into its cells."""
 
-_NUMBER = re.compile(r"[-+]?(?:\d+[.,]?\d*|[.,]\d+)(?:[eE][-+]?\d+)?")
-"""A number with a decimal point or comma."""
+_NUMBER = re.compile(r"[-+]?(?:\d++[.,]?\d*+|[.,]\d++)(?:[eE][-+]?\d+)?")
+"""A number with a decimal point or comma; possessive, so of linear cost."""
 
 _WITHOUT_VALUE = re.compile(r"(?:nan|n/?a|null|bad|infinite|[-+]?inf(?:inity)?|-+)?", re.IGNORECASE)
 """A cell that says that the value is missing."""
 
-_ROW = re.compile(r'(?:[\s\d.,;+\-eE"]++|\b(?:nan|bad|inf(?:inite|inity)?)\b)*+', re.IGNORECASE)
+_ROW = re.compile(
+    r'(?:[\s\d.,;+\-eE"]++|\b(?:nan|n/?a|null|bad|inf(?:inite|inity)?)\b)*+', re.IGNORECASE
+)
 """A line of nothing but numbers, separators and missing values; possessive, so of linear cost."""
 
 _SAMPLE = 1000
@@ -128,7 +130,7 @@ def _split_at(separator: str, rows: Sequence[str]) -> Splitter:
         n_empty += 1
 
     def cells(line: str) -> list[str]:
-        parts = [cell.strip() for cell in line.split(separator)]
+        parts = list(map(str.strip, line.split(separator)))
         while parts and not parts[-1] and len(parts) > width - n_empty:
             parts.pop()
         return parts if any(parts) else []

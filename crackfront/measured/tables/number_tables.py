@@ -4,26 +4,25 @@ from __future__ import annotations
 
 import collections
 import csv
-import itertools
 import re
 import statistics
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 from crackfront.measured.tables.encodings import decoded
 from crackfront.measured.tables.headings import headings_above
-from crackfront.measured.tables.number_cells import decimal_sign, is_number, splitter
+from crackfront.measured.tables.number_cells import (
+    decimal_sign,
+    is_number,
+    is_without_value,
+    splitter,
+)
 from crackfront.measured.tables.parsed_table import Table
 
 if TYPE_CHECKING:
     from pandas import DataFrame
-
-_WITHOUT_VALUE = {"bad", "infinite"}
-"""Words for a missing value that Python does not read as a number."""
-
-_WORD = re.compile("|".join(_WITHOUT_VALUE), re.IGNORECASE)
 
 _NUMBER_OF_NAME = re.compile(
     r"(?:^|[^\d\s])\s*[:=：]\s*([-+]?\d+(?:[.,]\d+)+(?:[eE][-+]?\d+)?)(?![.,:/\-]?\d)"
@@ -44,8 +43,11 @@ _MOST_COLUMNS = 8
 
 _ADVICE = "export the scan again, or write nan where a value is missing"
 
-_Rows = list[tuple[int, list[str]]]
-"""Rows of numbers: their lines, from 0, and their cells."""
+_RULE = re.compile(r"-*|n/?a|null", re.IGNORECASE)
+"""Missing values that alone may be a rule below headings, or a word."""
+
+_Kind = Literal["text", "numbers", "written numbers"]
+"""A line is a text, or a row as Python reads numbers, or a row with other signs for them."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -133,77 +135,101 @@ def number_tables(path: Path) -> NumberTables | None:
         table = [split(line) for line in lines]
     except csv.Error as error:
         raise ValueError(f"{path}: {error}; close all quotes, or leave them out") from error
-    is_row = [_is_row_of_numbers(cells) for cells in table]
-    if not any(is_row):
+    kinds = _kinds(table)
+    if set(kinds) == {"text"}:
         return None
-    numbers = ((place + 1, cells) for place, cells in enumerate(table) if is_row[place])
-    sign = decimal_sign(path, numbers)
-    _check_rows(path, lines, table, is_row)
+    sign = _decimal_sign(path, table, kinds)
+    _check_rows(path, lines, table, kinds)
     tables, start = [], 0
-    for rows in _blocks(lines, table, is_row):
-        first, last = rows[0][0], rows[-1][0]
+    for places in _blocks(lines, table, kinds):
         above = [
             _with_point(path, start + number, line, sign)
-            for number, line in enumerate(lines[start:first])
+            for number, line in enumerate(lines[start : places[0]])
         ]
-        tables.append(_table(path, above, rows))
-        start = last + 1
+        rows = [
+            table[place] if kinds[place] == "numbers" else _plain_cells(table[place])
+            for place in places
+        ]
+        tables.append(_table(path, above, places, rows))
+        start = places[-1] + 1
     below = (_with_point(path, start + n, line, sign) for n, line in enumerate(lines[start:]))
     return NumberTables(tuple(tables), tuple(below))
 
 
-def _is_row_of_numbers(cells: Sequence[str]) -> bool:
-    """Whether cells are numbers, or without a value."""
-    return any(cells) and all(not cell or _is_value(cell) for cell in cells)
+def _kinds(table: Sequence[Sequence[str]]) -> list[_Kind]:
+    """Kind of every line by its cells."""
+    kinds: list[_Kind] = []
+    for place, cells in enumerate(table):
+        kind: _Kind = "text"
+        if all(map(_is_float, cells)):
+            kind = "numbers" if cells else "text"
+        elif all(not cell or _is_value(cell) for cell in cells):
+            is_below_row = place > 0 and kinds[-1] != "text"
+            is_as_wide = is_below_row and 1 < len(cells) == len(table[place - 1])
+            if is_as_wide or not all(map(_RULE.fullmatch, cells)):
+                kind = "written numbers"
+        kinds.append(kind)
+    return kinds
 
 
-def _is_value(cell: str) -> bool:
+def _is_float(cell: str) -> bool:
+    """Whether Python reads a cell as a number, or as nan or inf."""
     try:
         float(cell)
     except ValueError:
-        return is_number(cell) or cell.lower() in _WITHOUT_VALUE
+        return False
     return True
 
 
+def _is_value(cell: str) -> bool:
+    return _is_float(cell) or is_number(cell) or is_without_value(cell)
+
+
+def _decimal_sign(path: Path, table: Sequence[list[str]], kinds: Sequence[_Kind]) -> str | None:
+    """Decimal sign of the rows, None if all numbers are whole; see :func:`decimal_sign`."""
+    rows = [place for place, kind in enumerate(kinds) if kind != "text"]
+    if any("," in cell for place in rows if kinds[place] != "numbers" for cell in table[place]):
+        return decimal_sign(path, ((place + 1, table[place]) for place in rows))
+    return "." if any("." in cell for place in rows for cell in table[place]) else None
+
+
 def _blocks(
-    lines: Sequence[str], table: Sequence[list[str]], is_row: Sequence[bool]
-) -> Iterator[_Rows]:
-    """Rows without a text between them.
+    lines: Sequence[str], table: Sequence[list[str]], kinds: Sequence[_Kind]
+) -> Iterator[list[int]]:
+    """Places of rows without a text between them.
 
     Single numbers above wider rows, such as a count of points, do not belong to these.
     """
-    rows: _Rows = []
-    for place, cells in enumerate(table):
-        if is_row[place]:
-            if rows and len(rows[-1][1]) == 1 < len(cells):
-                rows = []
-            rows.append((place, cells))
-        elif rows and lines[place].strip().lstrip("#"):
-            yield rows
-            rows = []
-    if rows:
-        yield rows
+    places: list[int] = []
+    for place, kind in enumerate(kinds):
+        if kind != "text":
+            if places and len(table[places[-1]]) == 1 < len(table[place]):
+                places = []
+            places.append(place)
+        elif places and lines[place].strip().lstrip("#"):
+            yield places
+            places = []
+    if places:
+        yield places
 
 
-def _table(path: Path, above: Sequence[str], rows: _Rows) -> Table:
+def _table(
+    path: Path, above: Sequence[str], places: Sequence[int], rows: Sequence[list[str]]
+) -> Table:
     """A table of rows, without numbers that only count its rows and columns."""
     import pandas
 
-    texts = [_plain_cells(cells) for _, cells in rows]
-    cells = _without_counts(pandas.DataFrame(texts, dtype=object))
-    places = [place + 1 for place, _ in rows][len(rows) - len(cells) :]
+    cells = _without_counts(pandas.DataFrame(rows, dtype=object))
+    numbers = [place + 1 for place in places[len(places) - len(cells) :]]
     n_column = cells.shape[1]
     titles, headings = headings_above(above, n_column) if n_column <= _MOST_COLUMNS else ((), ())
-    return Table(path, tuple(above), titles, headings, cells, tuple(places))
+    return Table(path, tuple(above), titles, headings, cells, tuple(numbers))
 
 
-def _plain_cells(cells: list[str]) -> list[str]:
+def _plain_cells(cells: Sequence[str]) -> list[str]:
     """Cells with points as decimals and nan for no value."""
-    joined = " ".join(cells)
-    if "," not in joined and all(cells) and not _WORD.search(joined):
-        return cells
     return [
-        "nan" if not cell or cell.lower() in _WITHOUT_VALUE else cell.replace(",", ".")
+        "nan" if is_without_value(cell) and not _is_float(cell) else cell.replace(",", ".")
         for cell in cells
     ]
 
@@ -229,28 +255,29 @@ def _with_point(path: Path, place: int, line: str, sign: str | None) -> str:
 
 
 def _check_rows(
-    path: Path, lines: Sequence[str], table: Sequence[Sequence[str]], is_row: Sequence[bool]
+    path: Path, lines: Sequence[str], table: Sequence[Sequence[str]], kinds: Sequence[_Kind]
 ) -> None:
     """Raise at the first line that is meant as a row of numbers and is not one."""
-    width = statistics.mode(map(len, itertools.compress(table, is_row)))
-    first = list(is_row).index(True)
+    widths = [len(cells) for cells, kind in zip(table, kinds, strict=True) if kind != "text"]
+    width = statistics.mode(widths)
+    first = next(place for place, kind in enumerate(kinds) if kind != "text")
     before = 0
-    for number, (line, cells) in enumerate(zip(lines, table, strict=True)):
-        where = f"{path}, line {number + 1}:"
-        if is_row[number]:
+    for place, kind in enumerate(kinds):
+        cells = table[place]
+        if kind != "text":
             if before > 1 and len(cells) != before:
                 raise ValueError(
-                    f"{where} the row has {len(cells)} numbers and the row above has {before}; "
-                    f"{_ADVICE}"
+                    f"{path}, line {place + 1}: the row has {len(cells)} numbers and the row above "
+                    f"has {before}; {_ADVICE}"
                 )
             before = len(cells)
-        elif line.strip():
+        elif lines[place].strip():
             before = 0
-            wrong = _wrong_cell(cells, width if number < first else None)
+            wrong = _wrong_cell(cells, width if place < first else None)
             if wrong is not None:
                 raise ValueError(
-                    f"{where} number {wrong + 1} of the row is {cells[wrong]!r}, which is not a "
-                    f"number; {_ADVICE}"
+                    f"{path}, line {place + 1}: number {wrong + 1} of the row is {cells[wrong]!r}, "
+                    f"which is not a number; {_ADVICE}"
                 )
 
 

@@ -165,7 +165,7 @@ class LineSchedule(Schedule, OnSprings):
         field = problem.field
         # The pinning force of second-order theory is w_rms^2 / w_int = 4 e_el.
         pinned = _BEHIND * 4 * problem.elastic_energy * self.spring
-        # As far behind as the field allows, never less than pinning may hold the front.
+        # As far behind as the field allows, never less than pinning may stop the front.
         inside = min(-first_place(field), last_place(field) - float(self.loads[-1]))
         behind = min(pinned + self.step, max(inside, pinned))
         directions: tuple[Direction, Direction] = (1, -1)
@@ -209,7 +209,7 @@ class LineSchedule(Schedule, OnSprings):
 
 @dataclass(frozen=True, slots=True)
 class LineLoad(SurfaceLoads):
-    """How the straight fronts of a sweep are held and pulled."""
+    """Springs and loads of the straight fronts of a sweep."""
 
     spring_unit: SpringUnit
     """Unit in which the spectra state the length of their springs."""

@@ -68,7 +68,7 @@ class SphereSchedule(Schedule, Pressed):
         return FullCycle(0.0, 0.5)
 
     def spring_at(self, work_of_adhesion: float) -> float:
-        """Length L_kappa over which the edge of the largest smooth contact is held."""
+        """Length L_kappa of the springs that restore the edge of the largest smooth contact."""
         return jkr.spring(jkr.equilibrium_radius(self.max_penetration), work_of_adhesion)
 
     def steady_adhesion(self, result: SimulationResult) -> SteadyAdhesion:

@@ -10,10 +10,12 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from crackfront.analysis.standard_error import standard_error
+from crackfront.analysis.steady_adhesion import SteadyAdhesion, steady_adhesion
 from crackfront.core import jkr
 from crackfront.core.adhesion import FieldKind
 from crackfront.core.arguments import check_positive
@@ -32,6 +34,9 @@ from crackfront.simulate.contact import ExpectedMotion, Problem
 from crackfront.simulate.sphere.full_cycle import SphereSchedule
 from crackfront.simulate.tiles import RandomSurface
 
+if TYPE_CHECKING:
+    from crackfront.simulate.run_simulation import SimulationResult
+
 _FEWEST_TO_TURN = 8
 """Steady states before the approach may turn."""
 
@@ -44,13 +49,22 @@ _LEAST_DRIVE = 1.5
 Single sites may move back: where some repel, no circle with an open edge drives all forward.
 """
 
-_LARGEST_FACTOR, _FAR_BEHIND = 2.6, 20.0
-"""Largest factor k that may hold a front, and distance behind such a front, in correlation lengths,
-at which a circle may be a start too: on fine spectra the drive above needs hundreds of them, and
-fronts deviate from a circle by 7 at most."""
+_LARGEST_FACTOR = 2.6
+"""Largest factor k that may pin a front."""
+
+_FAR_BEHIND = 20.0
+"""Distance behind a front pinned by the largest k at which a circle may be a start too.
+(Units: correlation length)
+
+On fine spectra the drive above needs hundreds of them, and fronts deviate from a circle by 7 at
+most.
+"""
 
 _FEWEST_STATES = 9.0
 """States of an approach that turns as early as it may: one before it is steady."""
+
+_LEAST_TRAVEL = 0.1
+"""Least way from state to state that is advised, in correlation lengths: shorter ones cost time."""
 
 _VARIANCE = 0.6
 """Variance of k from state to state, times e_el and the independent pieces of the front."""
@@ -133,6 +147,12 @@ class SteadySchedule(SphereSchedule):
             penetration -= step
             yield Load(penetration, -1)
 
+    def steady_adhesion(self, result: SimulationResult) -> SteadyAdhesion:
+        """Means over the steady states, as of full cycles, with the keys that give more of them."""
+        length = result.simulation.correlation_length
+        remedy = "lower start or travel, or raise max_penetration"
+        return steady_adhesion(result.record, length, remedy)
+
     def expected_motion(self, surface: RandomSurface) -> ExpectedMotion:
         """States of both branches until k has the requested standard error."""
         length = surface.correlation_length
@@ -149,11 +169,37 @@ class SteadySchedule(SphereSchedule):
     ) -> float:
         """Penetration that leaves the approach so many steady states."""
         low, _ = works
-        length = surface.correlation_length
-        # It begins a correlation length behind, and the retraction behind the end.
-        begin = jkr.equilibrium_radius(self.start, low) - length
-        needed = travel + n_state * self.travel * length
-        return float(jkr.equilibrium_penetration(begin + needed, low))
+        end = self._begin(surface, low) + self._way(surface, travel, n_state)
+        return float(jkr.equilibrium_penetration(end, low))
+
+    def steadier_start(
+        self, surface: RandomSurface, works: tuple[float, float], travel: float, n_state: int
+    ) -> float | None:
+        """Start from which the approach has so many steady states; None below first contact."""
+        low, _ = works
+        end = jkr.equilibrium_radius(self.max_penetration, low)
+        begin = end - self._way(surface, travel, n_state) + surface.correlation_length
+        if begin < jkr.equilibrium_radius(0.0, low):
+            return None
+        return float(jkr.equilibrium_penetration(begin, low))
+
+    def steadier_travel(
+        self, surface: RandomSurface, works: tuple[float, float], travel: float, n_state: int
+    ) -> float | None:
+        """Travel with which the approach has so many steady states; None if it is too small."""
+        low, _ = works
+        whole = jkr.equilibrium_radius(self.max_penetration, low) - self._begin(surface, low)
+        shorter = float(whole - travel) / (n_state * surface.correlation_length)
+        return shorter if shorter > _LEAST_TRAVEL else None
+
+    def _begin(self, surface: RandomSurface, work_of_adhesion: float) -> float:
+        """Radius of the circle at which the approach begins, a correlation length behind."""
+        radius = jkr.equilibrium_radius(self.start, work_of_adhesion)
+        return float(radius) - surface.correlation_length
+
+    def _way(self, surface: RandomSurface, travel: float, n_state: int) -> float:
+        """Way of the approach until it has so many steady states (Units: length)."""
+        return travel + n_state * self.travel * surface.correlation_length
 
 
 def integral_breadth(kind: FieldKind, spectrum: Spectrum) -> float:
@@ -209,7 +255,7 @@ def forward_circle(
 
     Circles are tried from the radius `near` on backwards: inwards in approach (direction +1),
     outwards in retraction (-1). The first is taken that :data:`_LEAST_DRIVE` allows, or that lies
-    :data:`_FAR_BEHIND` the first circle that pinning by the largest k cannot hold. Without any it
+    :data:`_FAR_BEHIND` the first circle that pinning by the largest k cannot stop. Without any it
     is the last: in approach that within which the edge is in compression, in retraction the end of
     the field. (Units: reduced lateral length, the penetration reduced vertical length)
     """
@@ -218,16 +264,21 @@ def forward_circle(
         furthest = max(math.sqrt(max(penetration, 0.0)), first_place(field))
     if direction * (furthest - near) > 0:
         return np.full(field.geometry.n_site, furthest)
-    unheld = None
+    beyond_pinning = None
     for radius in np.linspace(near, furthest, _N_CIRCLE):
         circle = np.full(field.geometry.n_site, radius)
         adhesion = front_adhesion(circle, field)
         drive = direction * (np.mean(adhesion) - jkr.energy_release_rate(radius, penetration))
         if drive > _LEAST_DRIVE * np.std(adhesion):
             return circle
-        # The drive of a front that is held is at most k e_el, with w_rms^2 = 4 e_el w_int.
-        if unheld is None and drive > _LARGEST_FACTOR * np.var(adhesion) / (4 * WORK_OF_ADHESION):
-            unheld = radius
-        if unheld is not None and abs(radius - unheld) > _FAR_BEHIND * correlation_length:
+        # The drive of a pinned front is at most k e_el, with w_rms^2 = 4 e_el w_int.
+        if beyond_pinning is None and drive > _LARGEST_FACTOR * np.var(adhesion) / (
+            4 * WORK_OF_ADHESION
+        ):
+            beyond_pinning = radius
+        if (
+            beyond_pinning is not None
+            and abs(radius - beyond_pinning) > _FAR_BEHIND * correlation_length
+        ):
             return circle
     return np.full(field.geometry.n_site, furthest)

@@ -69,14 +69,6 @@ def test_a_soft_machine_that_is_taken_as_stiff_is_told_or_refused():
         analyse_loop(softer, Rig(RADIUS, MODULUS))
 
 
-def test_a_branch_alone_is_refused():
-    whole = loop(0, force_noise=0.0, radius_noise=0.0)
-    approach = slice(0, int(np.argmax(whole.radius)) + 1)
-    alone = Recording(force=whole.force[approach], radius=whole.radius[approach], displacement=None)
-    with pytest.raises(ValueError, match="lacks an approach or a retraction in contact; record"):
-        analyse_loop(alone, Rig(RADIUS, MODULUS))
-
-
 @pytest.mark.parametrize(
     ("made", "given"),
     [

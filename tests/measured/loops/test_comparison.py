@@ -21,6 +21,8 @@ def test_a_hysteresis_far_beyond_the_prediction_names_the_page_of_reasons(times,
     verdict = Verdict((doubt, Remark("k", "note", "as usual")))
     predicted = SimpleNamespace(
         verdict=verdict,
+        work_of_adhesion=0.05,
+        e_el=Estimate(0.005, 0.001, 0.003, 0.007),
         **{name: getattr(found, name) for name in ("w_appr", "w_retr", "hysteresis")},
     )
     larger = replace(found, hysteresis=found.hysteresis.each(lambda work: times * work))

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from crackfront.measured.loops.recording import read_recording
+from crackfront.measured.loops.loop_table import read_recording
 
 FORCE, RADIUS = np.array([-1.5e-3, 2.25e-3, 0.5e-3]), np.array([50e-6, 60.5e-6, 70e-6])
 ROWS = [("-1.5", "50"), ("2.25", "60.5"), ("0.5", "70")]

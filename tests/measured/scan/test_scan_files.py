@@ -15,7 +15,7 @@ from tests.measured.made import HEAD, one_cell, read, refusal, write_text
 N_POINT = 48
 
 
-@pytest.mark.parametrize("text", ["***", "1,5", "NULL", "1.2.3", "--"])
+@pytest.mark.parametrize("text", ["***", "1,5", "none", "1.2.3", "1-"])
 def test_a_cell_that_is_no_number_is_refused_with_its_line(tmp_path, noise, text):
     path = write_text(tmp_path / "scan.txt", noise, one_cell(text))
     message = refusal(path)

@@ -9,7 +9,8 @@ from click.testing import CliRunner
 
 from studies.__main__ import STUDIES, main
 from studies.numbers import stored
-from studies.paper.figure import Check, figure
+from studies.paper.checks import Check
+from studies.paper.figure import figure
 from tests.studies.paper.made import CONFIGURATIONS
 
 
@@ -25,7 +26,7 @@ def test_commands_compute_draw_check_and_keep_a_figure(tmp_path, monkeypatch):
     assert run("draw", data).exit_code == 0
     assert data.with_suffix(".pdf").stat().st_size > 1000
     assert run("check", "--output", output).exit_code == 0
-    assert "4 of 4 agree, 0 differ" in (output / "checks.md").read_text()
+    assert "4 of 4 agree, 0 differ" in (output / "checks.md").read_text().splitlines()[2]
     monkeypatch.chdir(tmp_path)
     assert run("gallery", "--output", output).exit_code == 0
     kept = stored("paper").tables["main-1d"]
@@ -33,18 +34,43 @@ def test_commands_compute_draw_check_and_keep_a_figure(tmp_path, monkeypatch):
     assert Path("docs/experiments/figures/main-1d.png").stat().st_size > 1000
 
 
-def test_what_fails_stands_in_the_last_lines_and_first_in_the_file(tmp_path, monkeypatch):
-    path = tmp_path / "quick" / "main-1d.nc"
+def with_checks(monkeypatch, folder, *checks):
+    """Folder with data of one figure, whose checks are replaced."""
+    path = folder / "quick" / "main-1d.nc"
     path.parent.mkdir()
     path.touch()
-    failing = Check("k is 3", "3", "2", passed=False)
-    shown = SimpleNamespace(title="Fig. 1", checks=lambda _: (failing,))
+    shown = SimpleNamespace(title="Fig. 1", checks=lambda _: checks)
     monkeypatch.setattr("studies.paper.commands._figure_and_record", lambda _: (shown, None))
-    last = run("check", "--output", tmp_path).stdout.splitlines()[-1]
-    assert last == "FAIL: Fig. 1 (quick): k is 3: 3 expected, 2 found"
-    lines = (tmp_path / "checks.md").read_text().splitlines()
-    assert "0 of 1 agree" in lines[2]
-    assert lines[4] == f"- {last}"
+
+
+def test_counts_and_what_fails_stand_first_in_the_file_and_last_in_the_output(
+    tmp_path, monkeypatch
+):
+    with_checks(monkeypatch, tmp_path, Check("k is 3", "3", "2", passed=False))
+    last = run("check", "--output", tmp_path).stdout.splitlines()[-2:]
+    assert "0 of 1 agree" in last[0]
+    assert last[1] == "- FAIL: Fig. 1 (quick): k is 3: 3 expected, 2 found"
+    assert (tmp_path / "checks.md").read_text().splitlines()[2:4] == last
+
+
+def test_expectations_and_what_is_undecided_do_not_fail_and_are_counted_by_themselves(
+    tmp_path, monkeypatch
+):
+    checks = (
+        Check("k is 3", "3", "3", passed=True),
+        Check("onset", "in order", "-", passed=False, undecided="too few surfaces"),
+        Check("tau", "1.28", "1.1", passed=False, expectation="Theory of depinning."),
+    )
+    with_checks(monkeypatch, tmp_path, *checks)
+    counts = run("check", "--output", tmp_path).stdout.splitlines()[1:]
+    assert len(counts) == 2
+    assert "1 of 2 agree" in counts[0]
+    assert "1 cannot be decided" in counts[0]
+    assert "0 of 1 are met, 1 are not met" in counts[1]
+    text = (tmp_path / "checks.md").read_text()
+    assert "FAIL" not in text
+    assert "cannot be decided at quick scale: too few surfaces" in text
+    assert text.rstrip().endswith("Theory of depinning.")
 
 
 def test_the_studies_and_their_commands_are_listed():

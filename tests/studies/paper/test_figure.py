@@ -13,16 +13,7 @@ from crackfront.simulate.provenance import provenance
 from crackfront.simulate.storage import UnreadableFileError, read_attributes
 from crackfront.sweep.section import ConfigurationError
 from studies.numbers import stored
-from studies.paper.figure import (
-    FIGURES,
-    SCALES,
-    Check,
-    checks_table,
-    close_to,
-    figure,
-    load_figure,
-    sweep_of_figure,
-)
+from studies.paper.figure import FIGURES, SCALES, figure, load_figure, sweep_of_figure
 from studies.records import read_record, write_record
 from tests.studies.paper.made import CONFIGURATIONS
 
@@ -130,19 +121,6 @@ def test_a_file_that_lacks_data_is_refused(tmp_path):
     write_record(path, Short(np.arange(3.0)), provenance())
     with pytest.raises(UnreadableFileError, match="Long: stiffness is missing"):
         read_record(path, Long)
-
-
-def test_a_check_that_fails_says_so():
-    assert "**FAIL**" in "\n".join(checks_table([close_to("a", 1.0, 2.0, 0.5)]))
-    assert "| agrees |" in "\n".join(checks_table([Check("a", "1", "1", passed=True)]))
-
-
-def test_a_difference_that_the_law_predicts_is_told_with_its_number():
-    predicted = close_to("k", 2.1, 3.0, 0.5, law=(2.2, 0.2))
-    assert predicted.result == "differs as the law of k says"
-    assert "differs as the law of k says: 2.20 ± 0.20 |" in "\n".join(checks_table([predicted]))
-    assert close_to("k", 2.9, 3.0, 0.5, law=(2.2, 0.2)).result == "agrees"
-    assert close_to("k", 1.9, 3.0, 0.5, law=(2.2, 0.2)).result == "FAIL"
 
 
 @pytest.mark.usefixtures("_few_draws")

@@ -19,6 +19,7 @@ def coarse(**others):
         "elastic_energy": 0.1,
         "step": 0.1,
         "patch_side": 0.4,
+        "close_side": 0.2,
     }
     return parameters("main-3cd", **given | others)
 

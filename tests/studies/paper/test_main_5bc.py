@@ -21,11 +21,12 @@ def film_parameters(**others):
     coarse = {
         "seed": 1,
         "error": 0.5,
-        "tile_roll_offs": 10.0,
         "short_cutoff": 1.05e-6,
         "step": 240e-9,
         "retraction_step": 480e-9,
         "line_step": 480e-9,
+        "n_surface": 2,
+        "precision": 2e-9,
     }
     return parameters("main-5bc", **coarse | others)
 
@@ -57,11 +58,12 @@ def test_a_wrong_nanodiamond_contact_fails_its_checks(contact):
         status="the cycle ended early",
         whole_elastic_energy=2 * contact.whole_elastic_energy,
         retraction=contact.approach * 1.01,
-        extent=contact.extent / 100,
+        widest=contact.widest / 100,
+        tile_side=contact.tile_side / 10,
         synthetic_fit=contact.synthetic_fit * 1.1,
         simulated_fit=contact.simulated_fit * 2,
     )
-    assert len(failed(wrong)) == 11
+    assert len(failed(wrong)) == 12
 
 
 def test_an_advance_goes_on_across_the_first_ray():
@@ -76,6 +78,20 @@ def test_an_advance_goes_on_across_the_first_ray():
     assert advances(before, after, 0.6) == []
     (whole,) = advances(before, before + 1, 0.1)
     assert whole.extent == pytest.approx(2 * np.pi * 1.5)
+
+
+def test_single_instabilities_are_narrower_than_the_parts_that_jump_in_a_load_step(contact):
+    widest = [contact.extents[contact.surface == surface].max() for surface in (0, 1)]
+    assert np.all(contact.widest > 20e-6)
+    assert np.all(contact.widest <= np.array(widest) * (1 + 1e-12))
+    assert contact.widest[0] < 0.9 * widest[0]
+
+
+def test_the_widest_instability_does_not_depend_on_the_load_step(contact):
+    parameters = film_parameters(step=120e-9, n_surface=1)
+    finer = computed("main-5bc", parameters)
+    assert finer.extents.max() < contact.extents[contact.surface == 0].max()
+    assert finer.widest[0] == pytest.approx(contact.widest[0], rel=0.02)
 
 
 def test_the_drawing_of_its_file_has_labelled_axes(contact, tmp_path):

@@ -1,0 +1,150 @@
+"""Checks of figures: what the paper states, and what this project expects, against the data."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from typing import Literal
+
+from crackfront.analysis.estimate import with_error
+
+Result = Literal[
+    "agrees", "differs as the law of k says", "cannot be decided", "is not met", "FAIL"
+]
+"""How a check ends."""
+
+
+@dataclass(frozen=True, slots=True)
+class Check:
+    """One claim and whether the data agree with it."""
+
+    claim: str  # what the paper states, what must be true, or what this project expects
+    expected: str  # its number, with the tolerance
+    computed: str  # what the data of the figure say
+    passed: bool
+    remark: str = ""  # where the difference comes from, or what the number rests on
+    law: str = ""  # number of the law of k, if the computed one agrees with it
+    undecided: str = ""  # why data of this size can neither confirm nor contradict the claim
+    # Where an expectation comes from that the paper does not state, and why data may differ.
+    expectation: str = ""
+
+    @property
+    def result(self) -> Result:
+        """How the check ends.
+
+        A difference fails unless the law of k predicts it, the data cannot decide, or the claim is
+        an expectation of this project.
+        """
+        if self.undecided:
+            return "cannot be decided"
+        if self.passed:
+            return "agrees"
+        if self.law:
+            return "differs as the law of k says"
+        return "is not met" if self.expectation else "FAIL"
+
+
+def close_to(
+    claim: str,
+    measured: float,
+    expected: float,
+    tolerance: float,
+    *,
+    units: str = "",
+    remark: str = "",
+    law: tuple[float, float] | None = None,
+) -> Check:
+    """Check that a number lies within an absolute tolerance of another.
+
+    `law` is the number that the law of k gives, and the half of its interval.
+    """
+    after = f" {units}" if units else ""
+    said = ""
+    if law is not None and abs(measured - law[0]) <= law[1]:
+        said = f"{with_error(*law)}{after}"
+    return Check(
+        claim,
+        f"{with_error(expected, tolerance)}{after}",
+        f"{measured:.6g}{after}",
+        abs(measured - expected) <= tolerance,
+        remark,
+        said,
+    )
+
+
+def checks_tables(checks: Iterable[Check], scale: str) -> Iterator[str]:
+    """Lines of Markdown: statements of the paper and exact results, then expectations.
+
+    A row is a check; the reason of each expectation stands below their table.
+    """
+    statements, expectations = _groups(checks)
+    yield from _table(statements, scale)
+    if expectations:
+        yield ""
+        yield f"{EXPECTATIONS}, which the paper does not state:"
+        yield ""
+        yield from _table(expectations, scale)
+        for reason in dict.fromkeys(check.expectation for check in expectations):
+            yield ""
+            yield reason
+
+
+STATEMENTS = "Statements of the paper and exact results"
+EXPECTATIONS = "Expectations of this project"
+
+
+def _groups(checks: Iterable[Check]) -> tuple[list[Check], list[Check]]:
+    """Statements of the paper with exact results, and expectations."""
+    every = list(checks)
+    return (
+        [check for check in every if not check.expectation],
+        [check for check in every if check.expectation],
+    )
+
+
+def _table(checks: Iterable[Check], scale: str) -> Iterator[str]:
+    """Lines of a Markdown table, one row a check."""
+    yield "| claim | expected | found | result | remark |"
+    yield "| --- | --- | --- | --- | --- |"
+    for check in checks:
+        cells = check.claim, check.expected, check.computed, _told(check, scale), check.remark
+        yield f"| {' | '.join(cells)} |"
+
+
+def _told(check: Check, scale: str) -> str:
+    """Result of a check as its row tells it."""
+    if check.result == "FAIL":
+        return "**FAIL**"
+    if check.result == "differs as the law of k says":
+        return f"{check.result}: {check.law}"
+    if check.result == "cannot be decided":
+        return f"cannot be decided at {scale} scale: {check.undecided}"
+    return check.result
+
+
+def counted(checks: Iterable[Check]) -> tuple[str, ...]:
+    """Sentences that count the results of both groups.
+
+    Examples
+    --------
+    >>> [sentence] = counted([Check("k is 3", "3", "3", passed=True)])
+    >>> sentence.partition(",")[0]
+    'Statements of the paper and exact results: 1 of 1 agree'
+    """
+    statements, expectations = _groups(checks)
+    results = Counter(check.result for check in statements)
+    sentences = [
+        f"{STATEMENTS}: {results['agrees']} of {len(statements)} agree, "
+        f"{results['differs as the law of k says']} differ as the law of k says, "
+        f"{results['cannot be decided']} cannot be decided at their scale, "
+        f"{results['FAIL']} fail."
+    ]
+    if expectations:
+        results = Counter(check.result for check in expectations)
+        sentences.append(
+            f"{EXPECTATIONS}: {results['agrees']} of {len(expectations)} are met, "
+            f"{results['is not met']} are not met, "
+            f"{results['cannot be decided']} cannot be decided at their scale."
+        )
+    return tuple(sentences)
