@@ -31,7 +31,7 @@ number of the law is stated too. Or it fails, and the difference is unexplained.
 _TABLES = """\
 # Tables of the study {}
 
-`python -m studies pages` writes this page."""
+The [experiments](../index.md) explain these tables. `python -m studies pages` writes this page."""
 
 
 def written_pages(studies: Mapping[str, Stored]) -> dict[Path, str]:
