@@ -10,7 +10,7 @@ from docutils import nodes
 from docutils.utils.math.latex2mathml import tex2mathml
 from sphinx.application import Sphinx
 from sphinx.errors import ExtensionError
-from sphinx.util.math import get_node_equation_number
+from sphinx.util.nodes import make_refnode
 from sphinx.writers.html5 import HTML5Translator
 
 import crackfront
@@ -37,7 +37,6 @@ extensions = [
 ]
 exclude_patterns = ["_build", "_templates", "sg_execution_times.rst"]
 templates_path = ["_templates"]
-numfig = True
 nitpicky = True
 # Constants that a module has from another one are on no page, and other packages on none of ours.
 nitpick_ignore_regex = [
@@ -74,7 +73,8 @@ numpydoc_validation_checks = {
 numpydoc_validation_exclude = {r"\.elastic_energies$", r"\.[A-Z]+_FACTOR$"}
 
 # The pages, which are read on GitHub too.
-myst_enable_extensions = ["dollarmath", "colon_fence"]
+myst_enable_extensions = ["dollarmath"]
+myst_fence_as_directive = {"math"}
 myst_heading_anchors = 3
 
 # The examples, executed; an error in one of them ends the build.
@@ -94,7 +94,7 @@ sphinx_gallery_conf = {
 
 # MathML, which browsers draw themselves: no script, and nothing from a network.
 html_math_renderer = "mathml"
-html_css_files = ["equations.css"]
+html_css_files = ["pages.css"]
 html_static_path = ["_static"]
 
 html_theme = "pydata_sphinx_theme"
@@ -141,6 +141,16 @@ def _describe_options(
         lines.append("")
 
 
+def _link_names(app: Sphinx, doctree: nodes.document, docname: str) -> None:
+    """Link code spans that are names of the library to their pages."""
+    objects = app.env.domains.python_domain.objects
+    for span in list(doctree.findall(nodes.literal)):
+        entry = objects.get(span.astext())
+        if entry is not None and not isinstance(span.parent, nodes.reference):
+            place = entry.docname, entry.node_id
+            span.replace_self(make_refnode(app.builder, docname, *place, span.deepcopy()))
+
+
 def _visit_math(self: HTML5Translator, node: nodes.math) -> None:
     """Write a formula in a line."""
     self.body.append(tex2mathml(node.astext()))
@@ -148,13 +158,9 @@ def _visit_math(self: HTML5Translator, node: nodes.math) -> None:
 
 
 def _visit_displaymath(self: HTML5Translator, node: nodes.math_block) -> None:
-    """Write an equation of its own, with its number if it has one."""
+    """Write an equation of its own."""
     self.body.append(self.starttag(node, "div", CLASS="equation"))
     self.body.append(tex2mathml(node.astext(), as_block=True))
-    if node["number"]:
-        self.body.append(f'<span class="eqno">({get_node_equation_number(self, node)})')
-        self.add_permalink_ref(node, "Link to this equation")
-        self.body.append("</span>")
     self.body.append("</div>\n")
     raise nodes.SkipNode
 
@@ -221,9 +227,7 @@ def _write_references(app: Sphinx) -> None:
         "`crackfront loop --json`": [item for item in variables(MeasuredLoop) if not item.dims],
     }
     tables = ["# Variables of files and of JSON", "", "For those who read one of them.", ""]
-    tables += [
-        "What is said of a file's origin stands in {py:mod}`crackfront.simulate.provenance`."
-    ]
+    tables += ["What is said of a file's origin stands in `crackfront.simulate.provenance`."]
     tables += ["In JSON a number with an interval has `value`, `standard_error`, `low` and `high`."]
     for name, listed in files.items():
         tables += [
@@ -243,10 +247,11 @@ def _write_references(app: Sphinx) -> None:
 
 
 def setup(app: Sphinx) -> None:
-    """Draw formulas, and leave out what is not ours before numpydoc reads what is."""
+    """Draw formulas, link names, and leave out what is not ours before numpydoc reads what is."""
     app.add_html_math_renderer("mathml", (_visit_math, None), (_visit_displaymath, None))
     app.connect("autodoc-skip-member", _is_foreign)
     app.connect("autodoc-process-docstring", _escape_magnitudes, priority=400)
     app.connect("autodoc-process-docstring", _describe_options, priority=600)
     app.connect("builder-inited", _write_references)
+    app.connect("doctree-resolved", _link_names)
     app.connect("build-finished", _check_network)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import importlib
-from pathlib import Path
 
 import click
 
@@ -58,16 +57,19 @@ def main() -> None:
 
 @main.command(epilog=examples("python -m studies pages"))
 def pages() -> None:
-    """Write the stored tables and numbers of all studies into docs."""
+    """Write the pages of stored tables; name the pages that quote other numbers than are stored."""
     from studies.numbers import stored
-    from studies.pages import renewed
+    from studies.quotes import read_quotes
+    from studies.table_pages import written_pages
 
     studies = {name: stored(name) for name in STUDIES}
-    for path in sorted(Path("docs").rglob("*.md")):
-        text = path.read_text(encoding="utf-8")
-        if (new := renewed(text, studies)) != text:
-            write_text(path, new)
+    for path, text in written_pages(studies).items():
+        if not path.exists() or path.read_text(encoding="utf-8") != text:
+            write_text(path, text)
             click.echo(f"page: {path}")
+    for quote in read_quotes():
+        if not quote.is_shown(studies):
+            click.echo(f"edit {quote.page}, which should say: {quote.text(studies)}")
 
 
 @main.command(

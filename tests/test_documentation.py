@@ -14,7 +14,9 @@ from crackfront import __all__
 from crackfront.cli import main
 from crackfront.measured.options import ReadingOptions
 from crackfront.sweep.configuration import Configuration
+from studies.__main__ import STUDIES
 from studies.numbers import stored
+from studies.quotes import read_quotes
 from tests.commands import slow
 
 ROOT = Path(__file__).parents[1]
@@ -118,73 +120,13 @@ def test_every_link_of_a_page_to_a_file_leads_to_one():
     assert dead == []
 
 
-QUOTED = [
-    # page, text with {} for the number, study, name, format of its value and error
-    *(
-        (page, *quote)
-        for page in ("README.md", "docs/index.md", "paper.md")
-        for quote in (
-            ("k is {} at vanishing", "law", "k at vanishing disorder", "{:.2f} ± {:.2f}"),
-            ("{} for a flat spectrum", "law", "k at s = 0.84, a flat spectrum", "{:.2f} ± {:.2f}"),
-            (
-                "{} for H = 0.8",
-                "law",
-                "k at s = 0.84, H = 0.8 over three octaves",
-                "{:.2f} ± {:.2f}",
-            ),
-            ("at g = {} with", "law", "g of k = 3 at vanishing disorder", "{:.1f}"),
-            (
-                "s = {} in the infinite",
-                "law",
-                "s of k = 3 in the infinite contact",
-                "{:.2f} ± {:.2f}",
-            ),
-            ("the {} of 90 pairs", "law", "spheres with g above 1", "{:g}"),
-            ("of {} pairs", "law", "spheres", "{:g}"),
-            ("agree with it to {} rms", "law", "rms difference of spheres", "{:.1%}"),
-        )
-    ),
-    ("README.md", "has {} times the", "paper", "nanodiamond, measured over prediction", "{:.1f}"),
-    ("README.md", "is {} at the rough", "boundary-elements", "ratio at e_el = 0.177", "{:.2f}"),
-    (
-        "paper.md",
-        "takes {} times less time, at an error of 1%",
-        "accuracy",
-        "times faster than the authors, chemical-0.04, 1%",
-        "{:.0f}",
-    ),
-    (
-        "paper.md",
-        "take {} times less time",
-        "speed",
-        "newton faster, flat 0.02, w_rms 0.05, N 4096, step 0.1",
-        "{:.1f}",
-    ),
-    (
-        "paper.md",
-        "and {} times less at the 0.84",
-        "speed",
-        "newton faster, flat 0.02, w_rms 0.84, N 4096, step 0.1",
-        "{:.1f}",
-    ),
-    ("paper.md", "by {} of the", "boundary-elements", "median difference of the force", "{:.2%}"),
-    ("paper.md", "and {} of 54 jumps", "boundary-elements", "shared jumps of the front", "{:g}"),
-    ("paper.md", "of {} jumps", "boundary-elements", "jumps of the front", "{:g}"),
-    ("paper.md", "c = {}, a factor", "boundary-elements", "coefficient", "{:.2f} ± {:.2f}"),
-    ("paper.md", "of {} at 0.18", "boundary-elements", "ratio at e_el = 0.177", "{:.2f}"),
-    ("paper.md", "in {} of the hardest", "accuracy", "coverage of the hardest scans", "{:.0%}"),
-    ("paper.md", "gives {} $", "paper", "nanodiamond, front", "{:.1f} ± {:.1f}"),
-    ("paper.md", "elements, {} $", "paper", "nanodiamond, prediction", "{:.0f} ± {:.0f}"),
-]
-"""Numbers of the pages without blocks."""
-
-
-@pytest.mark.parametrize(("page", "text", "study", "name", "form"), QUOTED)
-def test_a_quoted_number_is_the_stored_one(page, text, study, name, form, monkeypatch):
+def test_pages_show_the_stored_numbers_that_they_quote(monkeypatch):
     monkeypatch.chdir(ROOT)
-    number = stored(study).numbers[name]
-    words = " ".join(Path(page).read_text().split())
-    assert text.format(form.format(number.value, number.error)) in words
+    studies = {name: stored(name) for name in STUDIES}
+    quotes = read_quotes()
+    assert len(quotes) > 80
+    lacking = [quote for quote in quotes if not quote.is_shown(studies)]
+    assert [f"{quote.page}: {quote.text(studies)}" for quote in lacking] == []
 
 
 def test_the_page_of_the_command_line_names_every_command_and_exit_code():

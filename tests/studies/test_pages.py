@@ -1,4 +1,4 @@
-"""What studies store, and the pages that show it."""
+"""What studies store, and the pages that show or quote it."""
 
 from pathlib import Path
 
@@ -7,42 +7,71 @@ from click.testing import CliRunner
 
 from studies.__main__ import STUDIES, main
 from studies.numbers import Number, Stored, Table, store, stored
-from studies.pages import renewed
+from studies.quotes import QUOTED, Quote
+from studies.table_pages import GALLERY, TABLES, written_pages
 
 ROOT = Path(__file__).parents[2]
-PAGE = "<!-- law: limit -->\nold\n<!-- end -->\nAfter <!-- speed: ratio -->7<!-- end --> times\n"
 ORIGIN = {"command": "studies law", "commit": "1a2b3c4d5e", "machine": "EPYC", "date": "2026-11-28"}
 
 
-def known(table):
-    """Stored table of one study and number of another."""
+def known(text):
+    """Stored tables of two studies, and a number."""
     number = Number(8.0, 0.5, command="studies speed", commit="9f8e7d6c5b", date="2026-11-27")
+    law, counts = Table(text, **ORIGIN), Table("3 of 3 agree", **ORIGIN)
+    figure = Table("## Fig. 1d", **(ORIGIN | {"command": "make figures"}))
     return {
-        "law": Stored(tables={"limit": Table(table, **ORIGIN)}),
+        "law": Stored(tables={"limit": law}),
+        "paper": Stored(tables={"main-1d": figure, "counts": counts}),
         "speed": Stored(numbers={"ratio": number}),
     }
 
 
-def test_a_page_has_its_blocks_and_one_last_line_that_says_where_they_were_measured():
-    text = renewed(PAGE, known("| 3 |"))
-    assert "-->\n\n| 3 |\n\n<!--" in text
-    assert "After <!-- speed: ratio -->8.00 ± 0.50<!-- end --> times" in text
-    assert "`studies law` (commit 1a2b3c4, EPYC, 2026-11-28)" in text.splitlines()[-2]
-    assert text.count("Numbers of this page") == 1
-    assert renewed(text, known("| 3 |")) == text
+def test_each_study_with_tables_has_a_page_whose_last_line_says_where_they_were_measured():
+    pages = written_pages(known("# k\n\n| 3 |"))
+    assert set(pages) == {TABLES / "law.md", GALLERY}
+    lines = pages[TABLES / "law.md"].splitlines()
+    assert [line for line in lines if line.startswith("#")][1:] == ["## Limit", "## k"]
+    assert "| 3 |" in lines
+    assert "`studies law` (commit 1a2b3c4, EPYC, 2026-11-28)" in lines[-1]
 
 
-def test_a_block_may_be_a_cell_of_a_table():
-    table = "| a | b |\n| --- | --- |\n| 1 | 2 |\n| 1 | 3 |"
-    cell = "k is <!-- law: limit / 1 | 3 / 2 -->0<!-- end -->\n"
-    assert renewed(cell, known(table)).startswith(cell.replace(">0<", ">3<"))
-    with pytest.raises(ValueError, match="no row of the table begins with '4'"):
-        renewed(cell.replace("1 | 3", "4"), known(table))
+def test_the_gallery_begins_with_the_counts_of_its_checks():
+    text = written_pages(known("| 3 |"))[GALLERY]
+    assert text.index("3 of 3 agree") < text.index("## Fig. 1d") < text.index("1a2b3c4")
 
 
-def test_a_block_that_was_not_measured_is_refused_by_its_name():
-    with pytest.raises(ValueError, match="the study speed has not measured 'ratio'"):
-        renewed(PAGE, {"law": known("| 3 |")["law"]})
+@pytest.mark.parametrize(
+    ("place", "shown"),
+    [
+        ("{speed: ratio}", "8.00 ± 0.50"),
+        ("{speed: ratio -> .1f}", "8.0"),
+        ("{speed: ratio -> .0f ± .1f}", "8 ± 0.5"),
+        ("{law: limit / 1 | 3 / 2}", "3"),
+        ("{law: limit}", "| a | b |\n| --- | --- |\n| 1 | 2 |\n| **1** | 3 |"),
+    ],
+)
+def test_a_quote_is_a_number_in_a_form_or_a_cell_or_a_table(place, shown, tmp_path):
+    page = tmp_path / "page.md"
+    studies = known("| a | b |\n| --- | --- |\n| 1 | 2 |\n| **1** | 3 |")
+    quote = Quote(page, f"it is {place} times")
+    assert quote.text(studies) == f"it is {shown} times"
+    page.write_text(f"So it\nis {shown} times as large.")
+    assert quote.is_shown(studies)
+    page.write_text("So it is 9 times as large.")
+    assert not quote.is_shown(studies)
+
+
+@pytest.mark.parametrize(
+    ("place", "message"),
+    [
+        ("{speed: size}", "the study speed has not measured 'size'"),
+        ("{power: ratio}", "the study power has not measured 'ratio'"),
+        ("{law: limit / 4 / 2}", "no row of the table begins with '4'"),
+    ],
+)
+def test_a_quote_of_what_was_not_measured_names_it(place, message):
+    with pytest.raises(ValueError, match=message):
+        Quote(Path("page.md"), place).text(known("| 3 |"))
 
 
 def test_what_is_stored_is_read_again_and_leaves_the_rest(tmp_path, monkeypatch):
@@ -56,22 +85,20 @@ def test_what_is_stored_is_read_again_and_leaves_the_rest(tmp_path, monkeypatch)
     assert found.numbers["k"].date[:2] == "20"
 
 
-def test_the_pages_hold_what_is_stored(monkeypatch):
+def test_the_written_pages_show_what_is_stored(monkeypatch):
     monkeypatch.chdir(ROOT)
-    studies = {name: stored(name) for name in STUDIES}
-    pages = {path: path.read_text() for path in Path("docs").rglob("*.md")}
-    assert [path for path, text in pages.items() if renewed(text, studies) != text] == []
-    shown = " ".join(pages.values())
-    tables = {(study, name) for study, known in studies.items() for name in known.tables}
-    assert {
-        (study, name) for study, name in tables if f"<!-- {study}: {name}" not in shown
-    } == set()
+    pages = written_pages({name: stored(name) for name in STUDIES})
+    assert [path for path, text in pages.items() if path.read_text() != text] == []
 
 
-def test_the_command_writes_the_blocks_of_all_pages(tmp_path, monkeypatch):
+def test_the_command_writes_the_pages_of_tables_and_names_pages_to_edit(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    store("law", tables={"limit": "| 3 |"})
-    Path("docs/law.md").write_text(PAGE.splitlines()[0] + "\nold\n<!-- end -->\n")
-    done = CliRunner().invoke(main, ["pages"])
-    assert done.output == "page: docs/law.md\n"
-    assert "| 3 |" in Path("docs/law.md").read_text()
+    store("law", tables={"limit": "| 3 |"}, numbers={"k": Number(3.7)})
+    Path("page.md").write_text("k is 3.6")
+    QUOTED.write_text("page.md: ['k is {law: k}']")
+    first = CliRunner().invoke(main, ["pages"]).output.splitlines()
+    assert first[0] == f"page: {TABLES / 'law.md'}"
+    assert "page.md" in first[-1]
+    assert "k is 3.7" in first[-1]
+    Path("page.md").write_text("k is 3.7")
+    assert CliRunner().invoke(main, ["pages"]).output == ""
