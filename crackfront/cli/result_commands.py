@@ -110,8 +110,10 @@ def figures(configuration: Path, output: Path | None) -> None:
 
 
 _CAPTIONS = {
-    "factor": "The factor k against disorder (a) and against the size of the roughness (b).",
-    "hysteresis": "Hysteresis against disorder, and the spectra.",
+    "factor": "k against e_el/w_int (a), and averaged over the range of the fit against the "
+    "correlation length of w_loc (b). Straight fronts: k against size g (a), and k of the infinite "
+    "contact against disorder (b).",
+    "hysteresis": "Hysteresis against disorder (a), and the spectra (b).",
     "loop": "One simulation of the sweep: the loop of force against radius, or of a straight front "
     "the pinning force against its load.",
 }
