@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 
-from studies.numbers import Origin, Stored
+from studies.numbers import Origin, Stored, Table
 from studies.paper.figure import FIGURES
 
 TABLES = Path("docs/experiments/tables")
@@ -43,7 +43,7 @@ def written_pages(studies: Mapping[str, Stored]) -> dict[Path, str]:
         if shown:
             pages[GALLERY] = _page([_GALLERY, *(table.text for table in shown)], shown)
         if tables:
-            sections = (_section(name, table.text) for name, table in sorted(tables.items()))
+            sections = (_section(name, table) for name, table in sorted(tables.items()))
             pages[TABLES / f"{study}.md"] = _page(
                 [_TABLES.format(study), *sections], tables.values()
             )
@@ -55,9 +55,10 @@ def _page(parts: Iterable[str], origins: Iterable[Origin]) -> str:
     return "\n\n".join([*parts, _measured_line(origins)]) + "\n"
 
 
-def _section(name: str, text: str) -> str:
-    """Stored table below its name; headings within it are one level lower."""
-    return f"## {name[0].upper()}{name[1:]}\n\n{re.sub('^#', '##', text, flags=re.MULTILINE)}"
+def _section(name: str, table: Table) -> str:
+    """Name, command and text of a stored table; headings within it are one level lower."""
+    text = re.sub("^#", "##", table.text, flags=re.MULTILINE)
+    return f"## {name[0].upper()}{name[1:]}\n\nBy `{table.command}`:\n\n{text}"
 
 
 def _measured_line(origins: Iterable[Origin]) -> str:

@@ -307,7 +307,8 @@ def parts() -> dict[str, str]:
     ]
     return {
         "late": late_table((10**4, 10**5, 10**6)),
-        "efficiency": f"{sum(map(len, sweeps[0][0]))} simulations of {useful:.0f} core hours; "
+        "efficiency": "The times are simulated event by event; no sweep of this size was run. "
+        f"{sum(map(len, sweeps[0][0]))} simulations of {useful:.0f} core hours; "
         f"{1e3 * losses.hand_out:.2f} ms to hand out and store one, {losses.start:.1f} s to start "
         f"a job. A simulation takes {slower:.2f} times what is expected."
         f"\n\n{markdown_table(header, cells)}",

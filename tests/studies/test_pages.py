@@ -35,6 +35,13 @@ def test_each_study_with_tables_has_a_page_whose_last_line_says_where_they_were_
     assert "`studies law` (commit 1a2b3c4, EPYC, 2026-11-28)" in lines[-1]
 
 
+def test_each_table_of_a_page_has_its_command_below_its_heading():
+    tables = {name: Table("| 3 |", **(ORIGIN | {"command": name})) for name in ("make a", "make b")}
+    page = written_pages({"law": Stored(tables=tables)})[TABLES / "law.md"]
+    assert "## Make a\n\nBy `make a`:" in page
+    assert "## Make b\n\nBy `make b`:" in page
+
+
 def test_the_gallery_begins_with_the_counts_of_its_checks():
     text = written_pages(known("| 3 |"))[GALLERY]
     assert text.index("3 of 3 agree") < text.index("## Fig. 1d") < text.index("1a2b3c4")
