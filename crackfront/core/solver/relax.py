@@ -7,7 +7,6 @@ Where the edge of a sphere would be in compression (a^2 < b) no front can rest, 
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, ClassVar
@@ -41,12 +40,7 @@ class Solver:
     tolerance : float
         Largest force along the motion that may be left, relative to w_int per front length.
     max_sweeps : int
-        Limit on the sweeps of one relaxation.
-
-    Raises
-    ------
-    ValueError
-        If the limit on the sweeps is not positive.
+        Limit on the sweeps of one relaxation, at least 1.
     """
 
     tolerance: float = DEFAULT_TOLERANCE
@@ -55,10 +49,6 @@ class Solver:
     name: ClassVar[str]
     kernel: ClassVar[Callable[..., Any]]
     """Moves the sites of an array; returns code, sweeps, updates of single sites, residual."""
-
-    def __post_init__(self) -> None:
-        if self.max_sweeps < 1:
-            raise ValueError(f"max_sweeps is {self.max_sweeps}; it must be at least 1")
 
 
 class Newton(Solver):
@@ -102,6 +92,8 @@ def relax(
 ) -> Relaxation:
     r"""First metastable front in the direction of motion at a fixed load.
 
+    :func:`crackfront.core.cycle.follow.follow` checks the arguments and calls it for every load.
+
     On a sphere, at the penetration b, equilibrium is, per angle,
 
     .. math:: a w_{loc}(a, \theta) = a G_{JKR}(b, a) + w_{int} (-\Delta_\theta)^{1/2} a .
@@ -109,7 +101,7 @@ def relax(
     Parameters
     ----------
     front : (n_site,) array
-        Front to start from; forces against the motion are left as they are.
+        Front to start from, inside the field; forces against the motion are left as they are.
         (Units: reduced lateral length)
     load : float
         Penetration of a sphere, or place of the springs of a straight front.
@@ -132,9 +124,6 @@ def relax(
 
     Raises
     ------
-    ValueError
-        If the front does not fit the field or is not finite, the direction is unknown, or the
-        tolerance is below round-off.
     DefectError
         If the fast solver finds that it has passed an equilibrium, which is a defect.
 
@@ -144,7 +133,6 @@ def relax(
     .. [2] Sanner et al., Sci. Adv. (2024), supplement, Sec. II.
     """
     solver = solver or Newton()
-    _check_start(front, load, direction, field, solver.tolerance)
     moved = np.array(front, dtype=float)
     if direction > 0:
         np.maximum(moved, lowest_place(field.geometry, load), out=moved)
@@ -187,30 +175,6 @@ def front_force(front: Array, load: float, field: Field) -> Array:
         Force per angle; zero in equilibrium. (Units: reduced energy / length)
     """
     return np.asarray(forces.front_force(front, float(load), field))
-
-
-def _check_start(front: Array, load: float, direction: int, field: Field, tolerance: float) -> None:
-    """Raise if a relaxation cannot start."""
-    n_site = field.geometry.n_site
-    if direction not in (1, -1):
-        raise ValueError(f"direction is {direction}; it must be 1 (approach) or -1 (retraction)")
-    if front.shape != (n_site,):
-        raise ValueError(f"front has shape {front.shape}; the field has {n_site} rays")
-    if not (np.all(np.isfinite(front)) and math.isfinite(load)):
-        noun = field.geometry.state_type.load_noun
-        raise ValueError(f"the front or the {noun} ({load}) is not finite; check both")
-    inner, outer = first_place(field), last_place(field)
-    if np.min(front) < inner or np.max(front) > outer:
-        raise ValueError(
-            f"the front spans {np.min(front):.6g} to {np.max(front):.6g}; the field is sampled "
-            f"from {inner:.6g} to {outer:.6g}, so start inside it"
-        )
-    round_off = float(np.finfo(float).eps) * front.size
-    if not tolerance >= round_off:
-        raise ValueError(
-            f"tolerance {tolerance} is below the round-off of a front of {front.size} sites "
-            f"({round_off:.1e}); raise it"
-        )
 
 
 def _can_rest_inside(field: Field, load: float) -> bool:
