@@ -573,7 +573,7 @@ def test_a_front_may_start_exactly_on_the_samples(solver):
         (Rays(11, 24, 0.1), 1.0, -2.0, -1, Status.LOST_CONTACT, "contact was lost"),
         # Below pull-off contact is lost even if the field has a hole.
         (Rays(12, 24, 0.05, start=0.5), 2.0, -1.5, -1, Status.LOST_CONTACT, "contact was lost"),
-        (Rays(12, 24, 0.05, start=1.3), 2.0, -0.5, -1, Status.LEFT_FIELD_INWARD, "smaller radii"),
+        (Rays(12, 24, 0.05, start=1.3), 2.0, -0.5, -1, Status.LEFT_FIELD_INWARD, "further inside"),
         (Rays(13, 24, largest=1.5), 0.1, 1.5, 1, Status.LEFT_FIELD_OUTWARD, "enlarge the field or"),
     ],
     ids=["below any equilibrium", "beside a hole", "inward", "outward"],
