@@ -165,8 +165,8 @@ MUTATIONS = [
     ),
     Mutation(
         "core/solver/reference.py",
-        "force = product - restoring_force(geometry, a, load) - line[i]",
-        "force = product - restoring_force(geometry, a, load) + line[i]",
+        "force = product - restoring_force(geometry, place, load) - line[i]",
+        "force = product - restoring_force(geometry, place, load) + line[i]",
         "sign of the line force of the reference",
     ),
     Mutation(

@@ -1,7 +1,8 @@
 """The quasi-static solver: the first metastable front in the direction of motion.
 
 A front that advances (direction +1) stops at the smallest front that is nowhere behind its start
-and that nowhere wants to advance; a receding one (direction -1) at the mirror image of that.
+and that nowhere wants to advance. A receding front (direction -1) stops at the largest front that
+is nowhere ahead of its start and that nowhere wants to recede.
 Where the edge of a sphere would be in compression (a^2 < b) no front can rest, in either direction.
 """
 
@@ -19,15 +20,16 @@ from crackfront.core.field.samples import SampleMemory, evaluate, make_memory
 from crackfront.core.geometry.base import lowest_place
 from crackfront.core.outcome import DefectError, Direction, Relaxation, Status
 from crackfront.core.solver import DEFAULT_MAX_SWEEPS, DEFAULT_TOLERANCE, forces
+from crackfront.core.solver.codes import Code
 from crackfront.core.solver.monotone import monotone_newton
 from crackfront.core.solver.reference import rosso_krauth
 
-_CODES = {
-    forces.CONVERGED: Status.CONVERGED,
-    forces.INWARD: Status.LEFT_FIELD_INWARD,
-    forces.OUTWARD: Status.LEFT_FIELD_OUTWARD,
-    forces.LIMIT: Status.STEP_LIMIT,
-    forces.STILL: Status.ROUND_OFF,
+_STATUSES = {
+    Code.CONVERGED: Status.CONVERGED,
+    Code.LEFT_FIELD_INWARD: Status.LEFT_FIELD_INWARD,
+    Code.LEFT_FIELD_OUTWARD: Status.LEFT_FIELD_OUTWARD,
+    Code.SWEEP_LIMIT: Status.STEP_LIMIT,
+    Code.STANDS_STILL: Status.ROUND_OFF,
 }
 
 
@@ -59,7 +61,7 @@ class Newton(Solver):
 
 
 class Reference(Solver):
-    """The paper's algorithm (Rosso and Krauth), which every other solver is held to."""
+    """The paper's algorithm (Rosso and Krauth), the reference for every other solver."""
 
     __slots__ = ()
     name, kernel = "reference", staticmethod(rosso_krauth)
@@ -75,7 +77,7 @@ def named_solver(name: str, tolerance: float, max_sweeps: int = DEFAULT_MAX_SWEE
     Raises
     ------
     ValueError
-        If there is none.
+        If no solver has this name.
     """
     if name not in SOLVERS:
         raise ValueError(f"solver is {name!r}; choose one of {', '.join(sorted(SOLVERS))}")
@@ -140,17 +142,17 @@ def relax(
         return Relaxation(moved, Status.LEFT_FIELD_OUTWARD, 0, 0, np.inf)
     if memory is None:
         memory = make_memory(field)
-    problem = forces.make_problem(
+    task = forces.make_task(
         moved, float(load), int(direction), field, memory, float(solver.tolerance)
     )
-    code, sweeps, updates, residual = solver.kernel(moved, problem, int(solver.max_sweeps))
-    if code == forces.TURNED:
+    code, sweeps, updates, residual = solver.kernel(moved, task, int(solver.max_sweeps))
+    if code == Code.PASSED_EQUILIBRIUM:
         noun = field.geometry.state_type.load_noun
         raise DefectError(
             f"the {solver.name} solver moved a site past its equilibrium at {noun} {load}; "
             "this is a defect, please report it and use the solver 'reference' meanwhile"
         )
-    status = _CODES[code]
+    status = _STATUSES[code]
     if status is Status.LEFT_FIELD_INWARD and not _can_rest_inside(field, load):
         status = Status.LOST_CONTACT
     return Relaxation(moved, status, int(sweeps), int(updates), float(residual))
