@@ -23,8 +23,8 @@ def gaussian_field(
     """Periodic Gaussian random field with uncorrelated phases.
 
     Random numbers are drawn for wavevectors, not for pixels: the same generator gives the same
-    surface on every grid that resolves the spectrum. A mode on the grid's Nyquist wavevector has
-    no sign there and is left out.
+    surface on every grid that resolves the spectrum. A mode on the grid's Nyquist wavevector
+    lacks a sign there and is left out.
 
     Parameters
     ----------

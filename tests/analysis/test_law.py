@@ -201,7 +201,7 @@ def test_what_is_no_number_has_no_k():
         (lambda: pinning_factor(0.3, 5.0, "rough"), "kind is 'rough'; it must be"),
         (lambda: sphere_factors("roughness", FLAT, 1.0, 1.9), "energy of full conformity is 1"),
         (lambda: sphere_factors("roughness", FLAT, 0.05, 0.0), "contact radius is 0"),
-        (lambda: sphere_factors("roughness", FLAT, 0.05, 0.5), "nothing holds the edge"),
+        (lambda: sphere_factors("roughness", FLAT, 0.05, 0.5), "the edge is unstable"),
     ],
 )
 def test_what_has_no_k_is_refused(call, sentence):

@@ -35,7 +35,7 @@ assert not others, others
 def cycle():
     """How a small cycle ends, and the digits of its radii."""
     noise = np.random.default_rng(1).standard_normal((16, 16)) / 5
-    field = core.contact_field(core.chemical_adhesion(noise, 0.2), 0.5, n_angle=24)
+    field = core.contact_field(core.chemical_adhesion(noise, 0.2), 0.5, n_site=24)
     record = core.run_cycle(field, core.LoadSchedule(0.5, 0.25))
     return f"{record.status.name} {record.states.mean_radius.tobytes().hex()}"
 

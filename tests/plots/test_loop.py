@@ -21,7 +21,7 @@ def record():
     """A cycle over a small pinning field, on a tile, for which every environment has kernels."""
     x, y = np.meshgrid(*[np.arange(64) * np.pi / 16] * 2, indexing="ij")
     adhesion = chemical_adhesion(0.2 * WORK_OF_ADHESION * np.sin(2 * x) * np.cos(2 * y), 4.8 / 64)
-    field = contact_field(adhesion, 1.0, n_angle=32, spacing=0.02)
+    field = contact_field(adhesion, 1.0, n_site=32, spacing=0.02)
     return run_cycle(field, LoadSchedule(1.0, 0.05), Newton(1e-6))
 
 

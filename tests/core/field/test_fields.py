@@ -86,11 +86,6 @@ def test_a_value_that_is_not_finite_is_refused_with_its_place(value):
         polar_field(radii, adhesion)
 
 
-def test_a_field_of_zeros_is_refused():
-    with pytest.raises(ValueError, match="zero everywhere; nothing adheres"):
-        polar_field(np.array([1.0, 2.0]), np.zeros((2, 8)))
-
-
 @pytest.mark.parametrize(
     "radii", [[0.1, 0.1, 0.2], [0.1, 0.3, 0.2], [-0.1, 0.1, 0.2], [0.1, np.nan, 0.3]]
 )
@@ -265,8 +260,6 @@ def test_cubic_pieces_have_one_slope_where_they_meet(rng, kind):
 
 def test_an_unknown_interpolation_is_refused():
     with pytest.raises(ValueError, match="interpolation is 'quintic'; choose one of cubic, linear"):
-        polar_field(*noisy_polar(), interpolation="quintic")
-    with pytest.raises(ValueError, match="interpolation is 'quintic'; choose one of cubic, linear"):
         tile_field(tile(np.ones((8, 8))), sphere(8), 0.1, 1.0, "quintic")
 
 
@@ -278,19 +271,14 @@ def test_a_tile_with_a_value_that_is_not_finite_is_refused_with_its_place(value)
         tile_field(tile(values), sphere(8), 0.1, 1.0)
 
 
-def test_a_tile_of_zeros_is_refused():
-    with pytest.raises(ValueError, match="zero everywhere; nothing adheres"):
-        tile_field(tile(np.zeros((8, 8))), sphere(8), 0.1, 1.0)
-
-
 def test_a_tile_for_fewer_than_four_angles_is_refused():
-    with pytest.raises(ValueError, match="number of angles is 3; at least 4 are needed"):
+    with pytest.raises(ValueError, match="the front has 3 sites; give at least 4"):
         tile_field(tile(np.ones((8, 8))), sphere(3), 0.1, 1.0)
 
 
 @pytest.mark.parametrize("spacing", [0.0, -0.1, 0.5, float("nan")])
 def test_a_sample_spacing_that_cannot_resolve_the_ray_is_refused(spacing):
-    with pytest.raises(ValueError, match=f"sample spacing {spacing} must be positive and below"):
+    with pytest.raises(ValueError, match=f"sample spacing is {spacing}; it must be positive"):
         tile_field(tile(np.ones((8, 8))), sphere(8), spacing, 1.0)
 
 

@@ -16,7 +16,7 @@ from crackfront.core.cycle.record import Recorder
 from crackfront.core.field.rays import front_adhesion
 from crackfront.core.geometry.line import initial_front, line_field
 from crackfront.core.solver.forces import line_force
-from crackfront.core.solver.relax import SOLVERS, Newton, Reference, front_force, relax
+from crackfront.core.solver.relax import SOLVERS, Newton, Reference, front_force
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.plots.figures import plot_fronts, plot_loop
 
@@ -84,8 +84,8 @@ def first_stops(wave, spring, loads, start):
 
 def test_messages_name_the_load_of_a_line():
     field = line_field(tile(np.ones((8, 16))), 5.0, (0.0, 20.0))
-    with pytest.raises(ValueError, match=r"the front or the load \(nan\) is not finite"):
-        relax(np.full(16, 4.0), np.nan, 1, field)
+    with pytest.raises(ValueError, match="load is nan; it must be finite"):
+        front_at(field, np.full(16, 4.0), Load(np.nan, 1))
 
 
 @every_solver

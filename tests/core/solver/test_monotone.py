@@ -21,7 +21,8 @@ from crackfront.core.field.samples import make_memory
 from crackfront.core.geometry.sphere import polar_field, sphere
 from crackfront.core.jkr import energy_release_rate
 from crackfront.core.outcome import Status
-from crackfront.core.solver.forces import hardening, make_problem
+from crackfront.core.solver.forces import make_task
+from crackfront.core.solver.hardening import hardening
 from crackfront.core.solver.relax import SOLVERS, relax
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.synthesis import gaussian_field
@@ -51,8 +52,8 @@ def outcomes(front, penetration, direction, field):
 
 # Kept on disk, as the kernels that it calls are.
 @jit
-def stiffness_ahead(problem, radius, segment, product, reach):
-    return hardening(problem, 0, radius, product, segment, reach)
+def stiffness_ahead(task, radius, segment, product, reach):
+    return hardening(task, 0, radius, product, segment, reach)
 
 
 @pytest.mark.slow
@@ -84,8 +85,8 @@ def test_no_chord_of_the_drive_is_steeper_than_the_hardening(
 
     segment = segment_below(field, radius, direction)
     product = front_products(np.full(4, radius), field)[0]
-    problem = make_problem(radius, penetration, direction, field, make_memory(field), 1e-8)
-    found = stiffness_ahead(problem, radius, segment, product, reach)
+    task = make_task(radius, penetration, direction, field, make_memory(field), 1e-8)
+    found = stiffness_ahead(task, radius, segment, product, reach)
     distances = reach * np.linspace(0.01, 1, 100)
     chords = (drive(0.0) - drive(distances)) / distances
     assert found >= chords.max() - 1e-9 / reach

@@ -8,6 +8,7 @@ from scipy.ndimage import gaussian_filter
 
 from crackfront.core import jkr
 from crackfront.core.adhesion import AdhesionMap
+from crackfront.core.cycle.follow import Load, front_at
 from crackfront.core.field.fields import tile_field
 from crackfront.core.field.rays import front_adhesion, sampled_on_rays
 from crackfront.core.geometry.sphere import polar_field, sphere
@@ -572,7 +573,7 @@ def test_a_front_may_start_exactly_on_the_samples(solver):
         (Rays(11, 24, 0.1), 1.0, -2.0, -1, Status.LOST_CONTACT, "contact was lost"),
         # Below pull-off contact is lost even if the field has a hole.
         (Rays(12, 24, 0.05, start=0.5), 2.0, -1.5, -1, Status.LOST_CONTACT, "contact was lost"),
-        (Rays(12, 24, 0.05, start=1.3), 2.0, -0.5, -1, Status.LEFT_FIELD_INWARD, "smaller radii"),
+        (Rays(12, 24, 0.05, start=1.3), 2.0, -0.5, -1, Status.LEFT_FIELD_INWARD, "further inside"),
         (Rays(13, 24, largest=1.5), 0.1, 1.5, 1, Status.LEFT_FIELD_OUTWARD, "enlarge the field or"),
     ],
     ids=["below any equilibrium", "beside a hole", "inward", "outward"],
@@ -604,7 +605,7 @@ def test_the_step_limit_is_an_outcome_that_says_what_to_do(solver):
 def test_a_front_of_another_number_of_sites_is_refused(solver, n_angle):
     case = Rays(15, n_angle=24)
     with pytest.raises(ValueError, match=rf"front has shape \({n_angle},\); the field has 24 rays"):
-        relax(np.full(n_angle, 0.5), 0.0, 1, case.field, SOLVERS[solver]())
+        front_at(case.field, np.full(n_angle, 0.5), Load(0.0, 1), SOLVERS[solver]())
 
 
 @every_solver
@@ -612,7 +613,7 @@ def test_a_front_of_another_number_of_sites_is_refused(solver, n_angle):
 def test_a_tolerance_that_round_off_cannot_reach_is_refused(solver, tolerance):
     case = Rays(15)
     with pytest.raises(ValueError, match=rf"tolerance {tolerance} is below the round-off"):
-        relax(case.circle(), 0.0, 1, case.field, SOLVERS[solver](tolerance))
+        front_at(case.field, case.circle(), Load(0.0, 1), SOLVERS[solver](tolerance))
 
 
 def test_an_unknown_solver_is_refused_with_the_known_ones():
