@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal, TypeVar, get_args
+from typing import TYPE_CHECKING, Literal, TypeVar
 
 import numpy as np
 from scipy.fft import fft2, fftfreq, irfft2, rfft2, rfftfreq
@@ -19,12 +19,6 @@ FieldKind = Literal["roughness", "chemical"]
 """What a field of heights or of w_loc describes."""
 
 Value = TypeVar("Value", float, Array)
-
-
-def check_kind(kind: str) -> None:
-    """Raise ValueError if a kind of fields is unknown."""
-    if kind not in get_args(FieldKind):
-        raise ValueError(f"kind is {kind!r}; choose one of {', '.join(get_args(FieldKind))}")
 
 
 def front_stress_intensity(heights: Array, pixel: float, modulus: float = CONTACT_MODULUS) -> Array:
