@@ -30,7 +30,9 @@ SECONDS = {
 }
 
 
-SHORT_SECONDS = 30  # of processor time: starting ranks on all cores costs more than they save
+SHORT_SECONDS = (
+    30  # of processor time: starting ranks on all cores costs more than they save
+)
 
 
 def shard_cores(cores):
@@ -40,7 +42,9 @@ def shard_cores(cores):
     """
     n_left = sum(not Path(RESULTS, f"shards/{name}.nc").exists() for name in SHARDS)
     is_short = max(SECONDS.values()) < SHORT_SECONDS
-    side_by_side = (n_left >= 2 * cores or is_short) and cores * RANK_BYTES < memory_at_hand()
+    side_by_side = (
+        n_left >= 2 * cores or is_short
+    ) and cores * RANK_BYTES < memory_at_hand()
     return 1 if side_by_side else cores
 
 
