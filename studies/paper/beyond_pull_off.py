@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Annotated
+from typing import Annotated, Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -56,7 +56,7 @@ class PullOffParameters(RoughParameters):
             self.simulation(spectrum)
         return self
 
-    def spectra(self) -> NDArray[np.object_]:
+    def spectra(self) -> NDArray[Any]:
         """Spectra by Hurst exponent, cutoff and height; those of one height have one h_rms."""
         sizes = len(self.hurst), len(self.short_cutoffs), len(self.elastic_energies)
         spectra = np.empty(sizes, dtype=object)
