@@ -53,7 +53,7 @@ class PullOffParameters(RoughParameters):
     @model_validator(mode="after")
     def _possible(self) -> PullOffParameters:
         for spectrum in self.spectra().flat:
-            self.simulation(spectrum)
+            self.simulation_on(spectrum)
         return self
 
     def spectra(self) -> NDArray[Any]:
@@ -69,7 +69,7 @@ class PullOffParameters(RoughParameters):
             spectra[hurst, cutoff, height] = coarse.amplified(square / coarse.mean_square(0.0))
         return spectra
 
-    def simulation(self, spectrum: SelfAffineSpectrum, realisation: int = 0) -> Simulation:
+    def simulation_on(self, spectrum: SelfAffineSpectrum, realisation: int = 0) -> Simulation:
         """Full cycle on a surface of a spectrum."""
         schedule = FullCycle(self.max_penetration, self.step)
         return self.simulation_of(spectrum, spectrum.elastic_energy, schedule, realisation)
@@ -112,7 +112,7 @@ def pull_off_forces(parameters: PullOffParameters, progress: Progress) -> PullOf
 
 def _pull_off(parameters: PullOffParameters, spectrum: SelfAffineSpectrum, number: int) -> float:
     """Lowest force of a cycle on one surface (Units: pi w_int R)."""
-    simulation = parameters.simulation(spectrum, number)
+    simulation = parameters.simulation_on(spectrum, number)
     compile_solver(simulation.solver.name, FullCycle)
     field = simulation_field(simulation, simulation_adhesion(simulation))
     schedule = FullCycle(parameters.max_penetration, parameters.step)
@@ -121,7 +121,7 @@ def _pull_off(parameters: PullOffParameters, spectrum: SelfAffineSpectrum, numbe
 
 def expected_seconds(parameters: PullOffParameters) -> float:
     """Processor time of all cycles (Units: s)."""
-    simulations = map(parameters.simulation, parameters.spectra().flat)
+    simulations = map(parameters.simulation_on, parameters.spectra().flat)
     return parameters.n_surface * sum(expected_cost(each).seconds for each in simulations)
 
 
