@@ -146,7 +146,7 @@ _REDUCED: Mapping[str, tuple[Mapping[str, Any], Callable[[Any], Numbers]]] = {
     "main-1d": ({}, _smooth_loop),
     "main-2": ({}, _rings),
     "main-3ab": ({"short_cutoff": 0.14, "precision": 2e-4}, _instabilities),
-    "main-3cd": ({"short_cutoff": 0.01, "roll_off": 0.16}, _pinned_loop),
+    "main-3cd": ({"short_cutoff": 0.01, "roll_off": 0.16, "tile_roll_offs": 20}, _pinned_loop),
     "main-4": ({}, _mapping),
     "main-5a": ({}, _film_scales),
     "main-5bc": (

@@ -70,6 +70,9 @@ def test_the_theory_lines_lie_where_theory_says(table, fit):
         np.testing.assert_allclose(hysteresis, factor * variance / 2)
     pooled = line_labelled(factor_figure(fit).axes[0], "pooled")
     np.testing.assert_allclose(pooled.get_data(), ([0.01, 0.15], [fit.pooled.factor.value] * 2))
+    variance, hysteresis = line_labelled(axes, "pooled").get_data()
+    np.testing.assert_allclose(variance, [0.04, 0.6])
+    np.testing.assert_allclose(hysteresis, fit.pooled.factor.value * variance / 2)
 
 
 def curves(axes, colour):

@@ -66,7 +66,7 @@ def test_expectations_and_what_is_undecided_do_not_fail_and_are_counted_by_thems
     assert len(counts) == 2
     assert "1 of 2 agree" in counts[0]
     assert "1 cannot be decided" in counts[0]
-    assert "0 of 1 are met, 1 are not met" in counts[1]
+    assert "0 of 1 met, 1 not met" in counts[1]
     text = (tmp_path / "checks.md").read_text()
     assert "FAIL" not in text
     assert "cannot be decided at quick scale: too few surfaces" in text
