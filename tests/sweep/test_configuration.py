@@ -360,7 +360,7 @@ BAD = {
     ),
     "unknown solver": (
         ("solver: reference", "solver: none-such"),
-        "numerics: solver is 'none-such'; choose one of",
+        "numerics.solver is 'none-such'; it must be one of",
     ),
     "angles twice": (
         ("angles_per_cutoff: 2", "angles_per_cutoff: 2\n  angles: 128"),
@@ -370,6 +370,13 @@ BAD = {
         ("angles_per_cutoff: 2", "angles: 20"),
         "per short cutoff of flat, with which k comes out too large; use 225 or more, as "
         "angles_per_cutoff: 2 does",
+    ),
+    "too few points": (
+        (
+            "pixels_per_cutoff: 4\n  tile: {roll_offs: 10, cutoffs: 20}",
+            "pixels_per_cutoff: 2\n  tile: {roll_offs: 0, cutoffs: 1}",
+        ),
+        "tiles of flat have 2 points a side; use at least 4",
     ),
     "too few cubic samples": (
         ("samples_per_cutoff: 4", "samples_per_cutoff: 1.9"),
