@@ -17,7 +17,7 @@ from crackfront.core.outcome import Status
 from crackfront.core.solver.relax import SOLVERS, front_force, relax
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.synthesis import gaussian_field
-from crackfront.core.units import WORK_OF_ADHESION, Scales
+from crackfront.core.units import CONTACT_MODULUS, WORK_OF_ADHESION, Scales
 from crackfront.simulate.run_simulation import run_simulation
 from crackfront.sweep.parameters import load_sweep
 from tests.yaml_texts import from_yaml, to_yaml
@@ -439,6 +439,17 @@ def test_zero_adhesion_at_places_is_physical_and_is_accepted(solver):
         assert record.status is Status.LOST_CONTACT
         assert np.all(record.states.residual <= 1e-8)
         assert np.all(record.dissipated_energy > 0)
+
+
+@every_solver
+def test_a_field_of_zeros_gives_the_contact_of_hertz(solver):
+    field = polar_field(0.06 * np.arange(1, 51), np.zeros((50, 32)))
+    states = run_cycle(field, LoadSchedule(0.6, 0.2), SOLVERS[solver]()).states
+    pressed = (states.penetration > 0) & (states.direction > 0)
+    radius = np.sqrt(states.penetration[pressed])
+    assert np.count_nonzero(pressed) == 3
+    assert states.mean_radius[pressed] == pytest.approx(radius, rel=1e-12)
+    assert states.force[pressed] == pytest.approx(4 / 3 * CONTACT_MODULUS * radius**3, rel=1e-12)
 
 
 # --- units
