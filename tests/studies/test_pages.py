@@ -3,13 +3,12 @@
 from pathlib import Path
 
 import pytest
-from click.testing import CliRunner
 
-from studies.__main__ import STUDIES, main
+from studies.__main__ import STUDIES
 from studies.numbers import Number, Stored, Table, store, stored
 from studies.pages import renewed
+from tests.places import ROOT
 
-ROOT = Path(__file__).parents[2]
 PAGE = "<!-- law: limit -->\nold\n<!-- end -->\nAfter <!-- speed: ratio -->7<!-- end --> times\n"
 ORIGIN = {"command": "studies law", "commit": "1a2b3c4d5e", "machine": "EPYC", "date": "2026-11-28"}
 
@@ -40,20 +39,15 @@ def test_a_block_may_be_a_cell_of_a_table():
         renewed(cell.replace("1 | 3", "4"), known(table))
 
 
-def test_a_block_that_was_not_measured_is_refused_by_its_name():
-    with pytest.raises(ValueError, match="the study speed has not measured 'ratio'"):
-        renewed(PAGE, {"law": known("| 3 |")["law"]})
-
-
 def test_what_is_stored_is_read_again_and_leaves_the_rest(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     origin = {"command": "a", "git_commit": "b", "processor": "EPYC", "date": "2026-11-28"}
     store("law", numbers={"k": Number(3.7, 0.1)}, tables={"limit": "| 3 |"}, data=origin)
     store("law", numbers={"k": Number(3.8, 0.1)}, canaries={"fit, k": Number(3.7, 0.1)})
-    found = stored("law")
-    assert (found.numbers["k"].value, found.canaries["fit, k"].value) == (3.8, 3.7)
-    assert (found.tables["limit"].text, found.tables["limit"].commit) == ("| 3 |", "b")
-    assert found.numbers["k"].date[:2] == "20"
+    study = stored("law")
+    assert (study.numbers["k"].value, study.canaries["fit, k"].value) == (3.8, 3.7)
+    assert (study.tables["limit"].text, study.tables["limit"].commit) == ("| 3 |", "b")
+    assert study.numbers["k"].date[:2] == "20"
 
 
 def test_the_pages_hold_what_is_stored(monkeypatch):
@@ -66,12 +60,3 @@ def test_the_pages_hold_what_is_stored(monkeypatch):
     assert {
         (study, name) for study, name in tables if f"<!-- {study}: {name}" not in shown
     } == set()
-
-
-def test_the_command_writes_the_blocks_of_all_pages(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    store("law", tables={"limit": "| 3 |"})
-    Path("docs/law.md").write_text(PAGE.splitlines()[0] + "\nold\n<!-- end -->\n")
-    done = CliRunner().invoke(main, ["pages"])
-    assert done.output == "page: docs/law.md\n"
-    assert "| 3 |" in Path("docs/law.md").read_text()
