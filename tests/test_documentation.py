@@ -16,8 +16,8 @@ from crackfront.measured.options import ReadingOptions
 from crackfront.sweep.configuration import Configuration
 from studies.numbers import stored
 from tests.commands import slow
+from tests.places import ROOT
 
-ROOT = Path(__file__).parents[1]
 DOCS = ROOT / "docs"
 
 
