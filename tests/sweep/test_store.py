@@ -1,5 +1,6 @@
 """The store: what belongs stays, what is missing, older or damaged is made again, and no more."""
 
+import json
 import os
 import re
 import shutil
@@ -173,6 +174,8 @@ def test_a_higher_limit_of_sweeps_runs_again_what_reached_the_lower_one(
     stopped = set(re.findall(r"\] (.+?): step_limit", output))
     assert 0 < len(stopped) < 8
     change(configuration, "max_sweeps: 10", "max_sweeps: 100000")
+    plan = json.loads(done("plan", configuration, "--output", folder, "--json").stdout)
+    assert plan["missing"] == len(stopped)
     assert simulate(configuration, folder) == stopped
     found, expected = aggregated(configuration, folder), table(made.hysteresis)
     assert found.drop_vars("max_sweeps").identical(expected.drop_vars("max_sweeps"))

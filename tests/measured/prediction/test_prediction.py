@@ -155,6 +155,9 @@ def test_a_pull_off_force_gives_the_work_of_adhesion_that_it_implies(surface, pr
 
 def test_an_implied_interval_that_ends_with_the_theory_says_so(surface):
     least = least_work_of_adhesion(surface, SCENE)
+    for times, applies in ((1.001, True), (0.98, False)):
+        near = predicted(surface, replace(SCENE, work_of_adhesion=times * least))
+        assert (near.verdict.outcome == "applies with reservations") == applies
     weak = predicted(surface, replace(SCENE, work_of_adhesion=1.01 * least))
     prediction = predicted(surface, SCENE, pull_off=weak.pull_off_force.value)
     assert prediction.implied_work_of_adhesion.low == least
