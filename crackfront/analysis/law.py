@@ -29,7 +29,7 @@ from pydantic import Field
 from scipy.special import ndtr
 
 from crackfront.analysis.estimate import Estimate, normal_estimate
-from crackfront.core.adhesion import FieldKind
+from crackfront.core.adhesion import FieldKind, adhesion_order, mean_adhesion
 from crackfront.core.arrays import Array
 from crackfront.validation import checked_call
 
@@ -217,8 +217,8 @@ def spectral_breadth(kind: FieldKind, spectrum: Spectrum) -> float:
     """
     shortest, longest = spectrum.short_cutoff, 20 * spectrum.longest_feature
     wavevector = 2 * np.pi / np.geomspace(longest, shortest, 4001)
-    # C_w is q times the density of heights.
-    variance = wavevector ** (3 if kind == "roughness" else 2) * spectrum.density(wavevector)
+    # C_w is proportional to q^(2 order) C.
+    variance = wavevector ** (2 + 2 * adhesion_order(kind)) * spectrum.density(wavevector)
     step = math.log(longest / shortest) / 4000
     return _NARROWEST + float(step * np.sum(variance) ** 2 / np.sum(variance**2))
 
@@ -312,7 +312,7 @@ def pinning_factor(
         statistical=float(factors.statistical),
         numerical=float(factors.numerical),
         model=float(factors.model),
-        negative_share=float(ndtr(-mean_w_loc(kind, w_rms**2 / 4) / w_rms)),
+        negative_share=float(ndtr(-mean_adhesion(kind, w_rms**2 / 4) / w_rms)),
         warning="; ".join(sentences),
     )
 
@@ -365,11 +365,6 @@ def pinning_factors(
     # Hysteresis begins at the smallest size of the law.
     low = np.where(g < law.size[0], 0.0, np.maximum(factor.low, 0.0))
     return PinningFactors(replace(factor, low=low), statistical, numerical, model)
-
-
-def mean_w_loc(kind: FieldKind, elastic_energy: float) -> float:
-    """Mean of w_loc (Units: w_int)."""
-    return 1 - elastic_energy if kind == "roughness" else 1.0
 
 
 def infinite_ratio(

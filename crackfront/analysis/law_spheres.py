@@ -16,14 +16,13 @@ from crackfront.analysis.estimate import Estimate, FloatOrArray, normal_estimate
 from crackfront.analysis.law import (
     PinningFactor,
     law_value,
-    mean_w_loc,
     pinning_factor,
     pinning_factors,
     shipped_law,
     spectral_breadth,
 )
 from crackfront.core import jkr
-from crackfront.core.adhesion import FieldKind, larkin_length
+from crackfront.core.adhesion import FieldKind, adhesion_rms, larkin_length, mean_adhesion
 from crackfront.core.arrays import Array
 from crackfront.core.bounds import LENGTH, check_within
 
@@ -120,7 +119,7 @@ def sphere_estimates(
             spring = _sphere_spring(float(energy), float(radius))
             on_springs = _sizes_on_springs(kind, spectrum, float(energy), spring, breadth)
             sizes[:, place] = on_springs.approach, on_springs.retraction, on_springs.smooth
-    w_rms = 2 * np.sqrt(np.where(np.isfinite(sizes[0]), elastic_energy, np.nan))
+    w_rms = adhesion_rms(np.where(np.isfinite(sizes[0]), elastic_energy, np.nan))
     approach, retraction = (
         _widened_on_a_circle(pinning_factors(w_rms, size, breadth).factor) for size in sizes[:2]
     )
@@ -151,7 +150,7 @@ def factors_on_springs(
     """
     breadth = spectral_breadth(kind, spectrum)
     sizes = _sizes_on_springs(kind, spectrum, elastic_energy, spring, breadth)
-    w_rms = 2 * math.sqrt(elastic_energy)
+    w_rms = adhesion_rms(elastic_energy)
     approach, retraction = (
         pinning_factor(w_rms, size, kind, breadth) for size in (sizes.approach, sizes.retraction)
     )
@@ -213,9 +212,9 @@ def _sizes_on_springs(
     breadth: float,
 ) -> _SpringSizes:
     """Sizes g of both branches; arguments and errors as for :func:`factors_on_springs`."""
-    w_rms = 2 * math.sqrt(elastic_energy)
+    w_rms = adhesion_rms(elastic_energy)
     larkin = larkin_length(kind, spectrum, w_rms)
-    mean = mean_w_loc(kind, elastic_energy)
+    mean = mean_adhesion(kind, elastic_energy)
     # Retraction first, because it loses contact at a larger radius, which the error then names.
     retraction = _branch_size(w_rms, larkin, mean, 1, spring, breadth)
     approach = _branch_size(w_rms, larkin, mean, -1, spring, breadth)

@@ -148,7 +148,14 @@ def fit_sweep(
     n_large, departure = law_departure(cells.factor, cells.law_factor, cells.size)
     largest, probability = _largest_deviation(cells, in_range)
     law_exponent = _law_exponents(cells, in_range)
-    in_cells = (values[:, in_range] for values in (cells.w_rms, cells.size, cells.factor.value))
+    powers = power_fit(
+        cells.w_rms[:, in_range],
+        cells.size[:, in_range],
+        cells.factor.value[:, in_range],
+        cells.law_factor.value[:, in_range],
+        draws,
+        freedom,
+    )
     by_name = dict(zip([item.name for item in fields(LawEstimates)], shares, strict=True))
     return SweepFit(
         table=table,
@@ -170,7 +177,7 @@ def fit_sweep(
         pooled_n_needed=_needed_realisations(pooled_laws.factor, np.max(n_realisation)),
         law_exponent=law_exponent,
         pooled_law_exponent=_weighted_mean(law_exponent, by_name["exponent"]),
-        powers=power_fit(*in_cells, cells.law_factor.value[:, in_range], draws, freedom),
+        powers=powers,
         midpoint_largest=largest,
         midpoint_probability=probability,
         from_force=_force_difference(table, in_range),

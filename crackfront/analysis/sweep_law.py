@@ -17,7 +17,7 @@ from crackfront.analysis.law import (
 )
 from crackfront.analysis.law_spheres import sphere_estimates
 from crackfront.analysis.table import SweepTable
-from crackfront.core.adhesion import FieldKind, larkin_length
+from crackfront.core.adhesion import FieldKind, adhesion_rms, larkin_length
 from crackfront.core.arrays import Array
 
 LARGE = 1.0
@@ -59,7 +59,7 @@ class SweepLaw:
         if not self.table.on_springs:
             return sphere_estimates(self.kind, spectrum, energies, supports)
         valid = (energies > 0) & (energies < 1) & (supports > 0) & (supports < math.inf)
-        w_rms = 2 * np.sqrt(np.where(valid, energies, np.nan))
+        w_rms = adhesion_rms(np.where(valid, energies, np.nan))
         sizes = supports * w_rms**2 / larkin_length(self.kind, spectrum, 1.0)
         breadth = spectral_breadth(self.kind, spectrum)
         return pinning_factors(self._disorder(w_rms), sizes, breadth).factor, sizes
@@ -100,7 +100,7 @@ class SweepLaw:
         """
         shapes = map(self.table.shape_of, range(self.table.spectrum.size))
         breadth = np.array([spectral_breadth(self.kind, shape) for shape in shapes])[:, None]
-        gain = infinite_ratio(self._disorder(2 * np.sqrt(self.energy)), size, breadth)
+        gain = infinite_ratio(self._disorder(adhesion_rms(self.energy)), size, breadth)
         value, relative = factor.value * gain.value, factor.value * gain.standard_error
         error = np.hypot(factor.standard_error * gain.value, relative)
         reach = np.hypot((factor.high - factor.value) * gain.value, REACH * relative)

@@ -70,6 +70,7 @@ def law(
     """
     from crackfront.analysis.law import pinning_factor, shipped_law, spectral_breadth
     from crackfront.analysis.law_spheres import sphere_factors
+    from crackfront.core.adhesion import adhesion_rms
 
     front, sphere = (w_rms, g), (spectrum, elastic_energy, contact_radius)
     names_front = any(item is not None for item in (*front, breadth))
@@ -87,7 +88,7 @@ def law(
     elif spectrum is not None and elastic_energy is not None and contact_radius is not None:
         factors = sphere_factors(field, _shape(spectrum), elastic_energy, contact_radius)
         size, shape = factors.size, spectral_breadth(field, _shape(spectrum))
-        inputs = {"w_rms": 2 * math.sqrt(elastic_energy), "l_kappa": factors.spring}
+        inputs = {"w_rms": adhesion_rms(elastic_energy), "l_kappa": factors.spring}
         inputs |= {"larkin_length": factors.larkin_length, "g": factors.size}
         entries = _entries(
             factors.both, factors.approach, factors.retraction, inputs, factors.warning

@@ -210,8 +210,8 @@ def _price_lines(prices: Sequence[ErrorCost]) -> Iterator[str]:
 def _to_run(name: str, n_shard: int, missing: Sequence[MissingSimulations]) -> tuple[str, ...]:
     """Row of what the missing simulations of a spectrum, or of all, are expected to cost."""
     cost, n_missing = _cost(missing), sum(item.realisations.size for item in missing)
-    cells = f"{cost.core_seconds / 3600:.3g}", f"{cost.longest_seconds:.3g}"
-    cells += (f"{cost.bytes_a_rank / 1e6:.0f}",)
+    hours, longest = f"{cost.core_seconds / 3600:.3g}", f"{cost.longest_seconds:.3g}"
+    cells = hours, longest, f"{cost.bytes_a_rank / 1e6:.0f}"
     return name, str(n_shard), str(n_missing), *cells
 
 

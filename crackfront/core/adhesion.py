@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal, get_args
+from typing import TYPE_CHECKING, Literal, TypeVar
 
 import numpy as np
 from scipy.fft import fft2, fftfreq, irfft2, rfft2, rfftfreq
@@ -16,12 +16,9 @@ if TYPE_CHECKING:
     from crackfront.core.spectrum import Spectrum
 
 FieldKind = Literal["roughness", "chemical"]
+"""What a field of heights or of w_loc describes."""
 
-
-def check_kind(kind: str) -> None:
-    """Raise ValueError if a kind of fields is unknown."""
-    if kind not in get_args(FieldKind):
-        raise ValueError(f"kind is {kind!r}; choose one of {', '.join(get_args(FieldKind))}")
+Value = TypeVar("Value", float, Array)
 
 
 def front_stress_intensity(heights: Array, pixel: float, modulus: float = CONTACT_MODULUS) -> Array:
@@ -93,8 +90,9 @@ class AdhesionMap:
     pixel: float
     """Grid spacing. (Units: reduced lateral length)"""
     e_el: float
+    """Energy of full conformity of the tile; (w_rms / w_int)^2 / 4 if chemical. (Units: w_int)"""
     w_rms: float
-    """Measured on the tile; for a chemical field e_el is (w_rms / w_int)^2 / 4. (Units: w_int)"""
+    """Rms deviation of w_loc from its mean on the tile. (Units: w_int)"""
     corner: tuple[float, float] = (0.0, 0.0)
     """Coordinates of the first point, where they matter. (Units: reduced lateral length)"""
 
@@ -168,14 +166,32 @@ def chemical_adhesion(fluctuation: Array, pixel: float) -> AdhesionMap:
     )
 
 
+def mean_adhesion(kind: FieldKind, elastic_energy: Value) -> Value | float:
+    """Mean of w_loc: roughness lowers it by e_el, chemistry does not (Units: w_int)."""
+    return 1 - elastic_energy if kind == "roughness" else 1.0
+
+
+def adhesion_rms(elastic_energy: Value) -> Value:
+    """Rms of w_loc, 2 sqrt(e_el), for fields of any kind (Units: w_int)."""
+    return 2 * np.sqrt(elastic_energy)
+
+
+def adhesion_order(kind: FieldKind) -> float:
+    """Order of the derivative of a field whose spectrum is proportional to the spectrum of w_loc.
+
+    C_w(q) is proportional to q^(2 order) C(q): w_loc follows from a half-derivative of heights, and
+    is the field itself if it is chemical.
+    """
+    return 0.5 if kind == "roughness" else 0.0
+
+
 def correlation_length(kind: FieldKind, spectrum: Spectrum) -> float:
     """Wavelength of the mean wavevector of w_loc, weighted by its variance (Units: length).
 
     The kind is what the spectrum describes.
     """
-    if kind == "roughness":
-        return spectrum.correlation_length
-    return 2 * np.pi * spectrum.mean_square(0.0) / spectrum.mean_square(0.5)
+    order = adhesion_order(kind)
+    return 2 * np.pi * spectrum.mean_square(order) / spectrum.mean_square(order + 0.5)
 
 
 def larkin_length(kind: FieldKind, spectrum: Spectrum, w_rms: float) -> float:
@@ -196,5 +212,5 @@ def larkin_length(kind: FieldKind, spectrum: Spectrum, w_rms: float) -> float:
 
 def force_correlation_length(kind: FieldKind, spectrum: Spectrum) -> float:
     """Distance over which the force on a front is correlated, xi_u of :func:`larkin_length`."""
-    order = 0.0 if kind == "roughness" else -0.5
+    order = adhesion_order(kind) - 0.5
     return float(np.sqrt(spectrum.mean_square(order) / spectrum.mean_square(order + 1)))

@@ -26,10 +26,10 @@ _logger = logging.getLogger(__name__)
 
 @functools.cache
 def kernel_folder() -> Path | None:
-    """Folder of the kernels of these sources; None if no place is safe, which is said once."""
+    """Folder of the kernels of these sources; None if no folder is safe, which is said once."""
     name = f"kernels-{_sources_digest(Path(__file__).parent)}"
-    for place in _places():
-        folder = _safe_folder(place / name)
+    for parent in _cache_folders():
+        folder = _safe_folder(parent / name)
         if folder is not None:
             return folder
     _logger.warning(
@@ -39,7 +39,7 @@ def kernel_folder() -> Path | None:
     return None
 
 
-def _places() -> Iterator[Path]:
+def _cache_folders() -> Iterator[Path]:
     """Folders for caches: the one given to numba, the user's, the one for temporary files."""
     if numba.config.CACHE_DIR:
         yield Path(numba.config.CACHE_DIR)

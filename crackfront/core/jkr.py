@@ -143,13 +143,13 @@ def radius_at_force(force: float, work_of_adhesion: float = 1.0) -> float:
 
 
 def spring(radius: float, work_of_adhesion: float = 1.0) -> float:
-    r"""Length of the spring that holds a piece of the edge, L_kappa.
+    r"""Length of the spring that restores a piece of the edge, L_kappa.
 
     .. math:: L_\kappa = \frac{w_{int}}{dG/da} = \frac{a}{\sqrt{6 a^3 w} - w}
 
     Over it the edge is as stiff against a wave as against the penetration, at which it is fixed.
-    (Units: reduced lateral length) ValueError if the radius is not above pull-off, where
-    nothing holds the edge.
+    (Units: reduced lateral length) ValueError if the radius is not above pull-off, where the edge
+    is unstable.
 
     Examples
     --------
@@ -162,7 +162,7 @@ def spring(radius: float, work_of_adhesion: float = 1.0) -> float:
     if not stiffness > 0:
         raise ValueError(
             f"contact radius {radius:g} is at or below pull-off "
-            f"({pull_off_radius(work_of_adhesion):.4g}), where nothing holds the edge; enlarge it"
+            f"({pull_off_radius(work_of_adhesion):.4g}), where the edge is unstable; enlarge it"
         )
     return radius / stiffness
 

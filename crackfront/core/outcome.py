@@ -27,7 +27,7 @@ class Status(enum.Enum):
         "the front left the sampled field outward; enlarge the field or reduce the largest load"
     )
     LEFT_FIELD_INWARD = (
-        "the front left the sampled field inward; add samples at smaller radii to the field"
+        "the front left the sampled field inward; add samples further inside to the field"
     )
     STEP_LIMIT = (
         "the solver reached its limit of sweeps before the tolerance; raise max_sweeps or the "
@@ -35,7 +35,7 @@ class Status(enum.Enum):
     )
     ROUND_OFF = (
         "the front stands still above the tolerance, because the field rises too steeply for the "
-        "digits of a radius; raise the tolerance"
+        "digits of the places of its sites; raise the tolerance"
     )
 
 

@@ -73,8 +73,8 @@ def _group_limits() -> Iterator[float]:
             continue
         root = Path("/sys/fs/cgroup", controllers)
         file = "memory.limit_in_bytes" if controllers else "memory.max"
-        here = root / name.lstrip("/")
-        for path in (folder / file for folder in (here, *here.parents)):
+        group = root / name.lstrip("/")
+        for path in (folder / file for folder in (group, *group.parents)):
             with contextlib.suppress(OSError, ValueError):  # no file, or no number but "max"
                 yield float(int(path.read_text()))
 

@@ -122,10 +122,11 @@ class Spectrum(ABC):
     def dominant_wavelengths(self, order: float, share: float = 0.8) -> tuple[float, float]:
         """Shortest and longest wavelength of the range that carries a share of a mean square.
 
-        The mean square is as in :meth:`mean_square`. Half of the rest lies
-        at shorter wavelengths, the other half at longer ones.
+        The mean square is as in :meth:`mean_square`. Half of the remaining share lies at shorter
+        wavelengths, the other half at longer ones.
         """
-        total, rest = self.mean_square(order), (1 - share) / 2
+        total = self.mean_square(order)
+        share_outside = (1 - share) / 2
 
         def wavelength_above_which(part: float) -> float:
             def excess(logarithm: float) -> float:
@@ -137,7 +138,7 @@ class Spectrum(ABC):
                 high += 1.0
             return math.exp(scipy.optimize.brentq(excess, low, high, xtol=1e-13))
 
-        return wavelength_above_which(1 - rest), wavelength_above_which(rest)
+        return wavelength_above_which(1 - share_outside), wavelength_above_which(share_outside)
 
     def mean_square_between(self, order: float, shortest: float, longest: float) -> float:
         """Part of :meth:`mean_square` of the waves between two wavelengths (Units: length)."""
@@ -147,12 +148,15 @@ class Spectrum(ABC):
 
     @property
     def elastic_energy(self) -> float:
-        """Energy of full conformity e_el = E'/4 [h_rms^(1/2)]^2, in units of w_int."""
+        """Energy of full conformity of heights, e_el = E'/4 [h_rms^(1/2)]^2, in units of w_int."""
         return math.pi * CONTACT_MODULUS / 4 * self.mean_square(0.5)
 
     @property
     def correlation_length(self) -> float:
-        """Wavelength of the mean wavevector of w_loc, weighted by its variance (Units: length)."""
+        """Correlation length of w_loc if the spectrum describes heights (Units: length).
+
+        For fields of any kind: :func:`crackfront.core.adhesion.correlation_length`.
+        """
         return 2 * math.pi * self.mean_square(0.5) / self.mean_square(1.0)
 
     def with_elastic_energy(self, elastic_energy: float) -> Self:

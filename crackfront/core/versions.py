@@ -1,4 +1,4 @@
-"""Versions of what a result depends on besides its parameters; golden files keep them honest.
+"""What a result depends on in addition to its parameters; golden files keep the versions honest.
 
 A result is stored with both. Raise a version when its golden file says that numbers moved
 (tests/golden), add a line to its history, and name the change in the commit.

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from crackfront.analysis.finding import PAPER_FACTOR
 from crackfront.analysis.steady_adhesion import steady_adhesion
 from crackfront.core import jkr
-from crackfront.core.adhesion import FieldKind
+from crackfront.core.adhesion import FieldKind, mean_adhesion
 from crackfront.core.arrays import Array
 from crackfront.core.geometry.line import LineState
 from crackfront.core.geometry.sphere import ContactState
@@ -219,7 +219,7 @@ def draw_loop(
             label = rf"JKR, $w_\mathrm{{{branch}}} = {units.adhesion_text(adhesion)}$"
             draw_curve(adhesion, label, color=style.colour, linewidth=1.0, zorder=2)
     if np.isfinite(elastic_energy):
-        centre = 1 - elastic_energy if kind == "roughness" else 1.0
+        centre = mean_adhesion(kind, elastic_energy)
         text = f"JKR, $k = {PAPER_FACTOR:g}$ (paper)"
         for sign, name in ((-1, text), (1, None)):
             adhesion = max(centre + sign * PAPER_FACTOR * elastic_energy, 0.0)

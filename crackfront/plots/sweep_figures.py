@@ -29,6 +29,7 @@ from crackfront.analysis.law import (
 )
 from crackfront.analysis.result import SweepFit
 from crackfront.analysis.sweep_law import LARGE
+from crackfront.core.adhesion import adhesion_rms
 from crackfront.core.arrays import Array
 from crackfront.plots.parts import (
     PointStyle,
@@ -164,7 +165,7 @@ def draw_factor_by_size(axes: Axes, fit: SweepFit) -> None:
             label = rf"$e_\mathrm{{el}}={energy:.3g}\,w_\mathrm{{int}}$"
             axes.plot([], [], color=colour, linewidth=3.0, label=label)
         else:
-            _draw_law_by_size(axes, fit, 2 * math.sqrt(energy), colour)
+            _draw_law_by_size(axes, fit, adhesion_rms(energy), colour)
     if fit.uncorrelated:
         # The law of weak disorder is the same at all amplitudes.
         _draw_law_by_size(axes, fit, 0.0, BLACK)

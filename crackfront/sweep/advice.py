@@ -6,10 +6,9 @@ import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
-from crackfront.analysis.law import mean_w_loc
 from crackfront.analysis.law_spheres import factors_on_springs
 from crackfront.analysis.standard_error import FEWEST_STATES
-from crackfront.core.adhesion import force_correlation_length, larkin_length
+from crackfront.core.adhesion import force_correlation_length, larkin_length, mean_adhesion
 from crackfront.simulate.contact import Pressed
 from crackfront.simulate.line.line_loads import front_rms
 from crackfront.simulate.simulation import Simulation
@@ -79,7 +78,7 @@ def _steady_travel(simulation: Simulation, size: float) -> float:
 
 def _expected_works(simulation: Simulation, factor: float) -> tuple[float, float]:
     """Expected works of adhesion of approach and retraction (Units: w_int)."""
-    mean = mean_w_loc(simulation.kind, simulation.elastic_energy)
+    mean = mean_adhesion(simulation.kind, simulation.elastic_energy)
     low = max(mean - factor * simulation.elastic_energy, 0.0)
     return low, mean + factor * simulation.elastic_energy
 

@@ -8,6 +8,7 @@ import numpy as np
 from scipy import stats
 
 from crackfront.analysis.steady_adhesion import steady_adhesion
+from crackfront.core.adhesion import mean_adhesion
 from crackfront.core.arrays import Array
 from crackfront.core.variables import ADHESION, variable
 from crackfront.simulate.costs import expected_cost
@@ -206,7 +207,7 @@ def _steady(simulation: Simulation) -> list[tuple[float, float]]:
     result = run_simulation(simulation)
     steady = steady_adhesion(result.record, length)
     # Tiles differ in the mean of w_loc and in e_el: k is made of what is relative to both.
-    mean = 1 - result.measures.e_el if simulation.kind == "roughness" else 1.0
+    mean = mean_adhesion(simulation.kind, result.measures.e_el)
     scale = simulation.elastic_energy / result.measures.e_el
     return [
         (scale * (steady.w_appr - mean), scale * (steady.w_retr - mean)),

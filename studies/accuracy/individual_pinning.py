@@ -12,7 +12,7 @@ import itertools
 import numpy as np
 from scipy.signal import resample
 
-from crackfront.analysis.estimate import mean_estimate, with_error
+from crackfront.analysis.estimate import Estimate, mean_estimate, with_error
 from crackfront.core.adhesion import AdhesionMap, chemical_adhesion
 from crackfront.core.arrays import Array
 from crackfront.core.cycle.follow import Load, converged_front, follow
@@ -88,13 +88,13 @@ def independent_hysteresis(seed: int) -> float:
     return 2 * float(np.mean(lags)) / SPRING
 
 
-def exponent(low: Array, high: Array, ratio: float) -> Number:
+def exponent(low: Array, high: Array, ratio: float) -> Estimate[float]:
     """Exponent of the hysteresis between two disorders, a mean over surfaces.
 
     Both hystereses are over w_rms and share their surfaces; `ratio` is the ratio of the disorders.
     """
     mean, _ = mean_estimate(1 + np.log(high / low) / np.log(ratio))
-    return interval_number(mean)
+    return mean.each(float)
 
 
 def measured_pinning() -> tuple[str, dict[str, Number]]:
@@ -105,7 +105,7 @@ def measured_pinning() -> tuple[str, dict[str, Number]]:
     slopes = [
         exponent(low, high, DISORDERS[1] / DISORDERS[0]) for low, high in itertools.pairwise(fronts)
     ]
-    texts = ["", *(with_error(slope.value, slope.error) for slope in slopes)]
+    texts = ["", *(with_error(slope.value, slope.high - slope.value) for slope in slopes)]
     rows = [
         (f"{s:g}", f"{front.mean():.3f}", text, f"{np.mean(front / independent):.3f}")
         for s, front, text in zip(DISORDERS, fronts, texts, strict=True)
@@ -113,5 +113,5 @@ def measured_pinning() -> tuple[str, dict[str, Number]]:
     header = "w_rms/w_int | hysteresis / w_rms | exponent since the row above | / independent"
     return (
         markdown_table(header, rows),
-        {"exponent of individual pinning": slopes[-1]},
+        {"exponent of individual pinning": interval_number(slopes[-1])},
     )

@@ -14,7 +14,7 @@ import numpy as np
 from crackfront.analysis.estimate import REACH, Estimate, student_estimate
 from crackfront.analysis.validity import ValidityRow
 from crackfront.core import jkr
-from crackfront.core.adhesion import larkin_length
+from crackfront.core.adhesion import adhesion_rms, larkin_length
 from crackfront.core.spectrum import SelfAffineSpectrum
 from studies.boundary_elements.hysteresis import Hysteresis
 
@@ -217,7 +217,7 @@ def _validity_row(
     row, energy = setting.rows[0], float(setting.mean(attrgetter("elastic_energy")).value)
     reach = float(logarithm.high - logarithm.value)
     spectrum = SelfAffineSpectrum(short_cutoff, row.roll_off, row.hurst)
-    larkin = larkin_length("roughness", spectrum, 2 * math.sqrt(energy))
+    larkin = larkin_length("roughness", spectrum, adhesion_rms(energy))
     return ValidityRow(
         roll_off=row.roll_off / short_cutoff,
         hurst=row.hurst,

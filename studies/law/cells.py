@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import csv
 import io
-import math
 from collections.abc import Sequence
 from dataclasses import astuple, dataclass, fields, replace
 from pathlib import Path
@@ -16,7 +15,13 @@ from numpy.typing import ArrayLike
 
 from crackfront.analysis.estimate import mean_estimate
 from crackfront.analysis.law import spectral_breadth
-from crackfront.core.adhesion import FieldKind, force_correlation_length, larkin_length
+from crackfront.core.adhesion import (
+    FieldKind,
+    adhesion_rms,
+    force_correlation_length,
+    larkin_length,
+    mean_adhesion,
+)
 from crackfront.core.variables import variable
 from crackfront.simulate.line.line_loads import LineLoad
 from crackfront.sweep.sweep import Sweep
@@ -103,7 +108,7 @@ def mean_factors(kind: FieldKind, *columns: ArrayLike) -> Means:
     """Mean k of realisations with the values of :data:`COLUMNS`; those without are left out."""
     e_el, w_appr, w_retr, *errors = (np.asarray(column, dtype=float) for column in columns)
     e_el = np.where(np.isfinite(w_appr + w_retr), e_el, np.nan)
-    mean = 1 - e_el if kind == "roughness" else 1.0
+    mean = mean_adhesion(kind, e_el)
     lowering, raising = (mean - w_appr) / e_el, (w_retr - mean) / e_el
     approach, retraction = mean_estimate(lowering)[0], mean_estimate(raising)[0]
     both, count = mean_estimate((lowering + raising) / 2)
@@ -138,7 +143,7 @@ def law_cells(sweep: Sweep, dataset: xr.Dataset) -> list[LawCell]:
     for (place, amplitude), means in cell_means(sweep.kind, dataset).items():
         item, requested = sweep.spectra[place], sweep.elastic_energies[amplitude]
         simulation = sweep.simulation(item, requested, 0)
-        larkin = larkin_length(sweep.kind, item.spectrum, 2 * math.sqrt(requested))
+        larkin = larkin_length(sweep.kind, item.spectrum, adhesion_rms(requested))
         depth = force_correlation_length(sweep.kind, item.spectrum)
         cell = dataset.isel(spectrum=place, amplitude=amplitude)
         # A spectrum has an entry for every spring, whose name ends with the spring's.
@@ -147,7 +152,7 @@ def law_cells(sweep: Sweep, dataset: xr.Dataset) -> list[LawCell]:
             LawCell(
                 spectrum=name if sweep.kind == "roughness" else f"{name}-{sweep.kind}",
                 breadth=spectral_breadth(sweep.kind, item.spectrum),
-                disorder=0.0 if load.uncorrelated else 2 * math.sqrt(means.elastic_energy),
+                disorder=0.0 if load.uncorrelated else adhesion_rms(means.elastic_energy),
                 size=simulation.schedule.spring_at(1.0) / larkin,
                 realisations=means.realisations,
                 approach=means.approach,

@@ -13,7 +13,7 @@ from crackfront.analysis.estimate import REACH, Estimate, with_error, with_inter
 from crackfront.analysis.law import spectral_breadth
 from crackfront.analysis.law_spheres import SphereFactors, sphere_factors
 from crackfront.core import jkr
-from crackfront.core.adhesion import FieldKind
+from crackfront.core.adhesion import FieldKind, adhesion_rms
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.simulate.numerics import Numerics
 from crackfront.simulate.run_simulation import run_simulation
@@ -188,7 +188,7 @@ def sphere_points(rows: Sequence[SphereRow]) -> LawPoints:
     """Spheres as the figure of the law draws them."""
     return LawPoints(
         name="spheres",
-        disorder=2 * np.sqrt([row.elastic_energy for row in rows]),
+        disorder=adhesion_rms(np.array([row.elastic_energy for row in rows])),
         size=np.array([law_of(row).size for row in rows]),
         factor=np.array([row.both for row in rows]),
         error=np.array([row.both_error for row in rows]),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Annotated
+from typing import Annotated, Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -30,7 +30,7 @@ from crackfront.simulate.costs import expected_cost
 from crackfront.simulate.run_simulation import compile_solver
 from crackfront.simulate.simulation import Simulation, simulation_adhesion, simulation_field
 from crackfront.simulate.sphere.full_cycle import FullCycle
-from crackfront.sweep.section import Count, Energy, Positive
+from crackfront.validation import Count, Fraction, Positive
 from studies.paper.checks import Check
 from studies.paper.drawing import DASHED, name_panels
 from studies.paper.figure import Figure, Progress
@@ -45,7 +45,7 @@ class PullOffParameters(RoughParameters):
     hurst: Annotated[tuple[float, ...], Field(min_length=2, max_length=2, strict=False)]
     roll_off: Positive  # of all surfaces (reduced lateral length)
     short_cutoffs: Annotated[tuple[Positive, ...], Field(min_length=2, max_length=2, strict=False)]
-    elastic_energies: Annotated[tuple[Energy, ...], Field(min_length=2, strict=False)]
+    elastic_energies: Annotated[tuple[Fraction, ...], Field(min_length=2, strict=False)]
     max_penetration: Positive  # where the retraction begins (reduced vertical length)
     step: Positive
     n_surface: Count  # of each kind
@@ -53,10 +53,10 @@ class PullOffParameters(RoughParameters):
     @model_validator(mode="after")
     def _possible(self) -> PullOffParameters:
         for spectrum in self.spectra().flat:
-            self.simulation(spectrum)
+            self.simulation_on(spectrum)
         return self
 
-    def spectra(self) -> NDArray[np.object_]:
+    def spectra(self) -> NDArray[Any]:
         """Spectra by Hurst exponent, cutoff and height; those of one height have one h_rms."""
         sizes = len(self.hurst), len(self.short_cutoffs), len(self.elastic_energies)
         spectra = np.empty(sizes, dtype=object)
@@ -69,7 +69,7 @@ class PullOffParameters(RoughParameters):
             spectra[hurst, cutoff, height] = coarse.amplified(square / coarse.mean_square(0.0))
         return spectra
 
-    def simulation(self, spectrum: SelfAffineSpectrum, realisation: int = 0) -> Simulation:
+    def simulation_on(self, spectrum: SelfAffineSpectrum, realisation: int = 0) -> Simulation:
         """Full cycle on a surface of a spectrum."""
         schedule = FullCycle(self.max_penetration, self.step)
         return self.simulation_of(spectrum, spectrum.elastic_energy, schedule, realisation)
@@ -112,7 +112,7 @@ def pull_off_forces(parameters: PullOffParameters, progress: Progress) -> PullOf
 
 def _pull_off(parameters: PullOffParameters, spectrum: SelfAffineSpectrum, number: int) -> float:
     """Lowest force of a cycle on one surface (Units: pi w_int R)."""
-    simulation = parameters.simulation(spectrum, number)
+    simulation = parameters.simulation_on(spectrum, number)
     compile_solver(simulation.solver.name, FullCycle)
     field = simulation_field(simulation, simulation_adhesion(simulation))
     schedule = FullCycle(parameters.max_penetration, parameters.step)
@@ -121,7 +121,7 @@ def _pull_off(parameters: PullOffParameters, spectrum: SelfAffineSpectrum, numbe
 
 def expected_seconds(parameters: PullOffParameters) -> float:
     """Processor time of all cycles (Units: s)."""
-    simulations = map(parameters.simulation, parameters.spectra().flat)
+    simulations = map(parameters.simulation_on, parameters.spectra().flat)
     return parameters.n_surface * sum(expected_cost(each).seconds for each in simulations)
 
 

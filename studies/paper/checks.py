@@ -143,8 +143,8 @@ def counted(checks: Iterable[Check]) -> tuple[str, ...]:
     if expectations:
         results = Counter(check.result for check in expectations)
         sentences.append(
-            f"{EXPECTATIONS}: {results['agrees']} of {len(expectations)} are met, "
-            f"{results['is not met']} are not met, "
+            f"{EXPECTATIONS}: {results['agrees']} of {len(expectations)} met, "
+            f"{results['is not met']} not met, "
             f"{results['cannot be decided']} cannot be decided at their scale."
         )
     return tuple(sentences)

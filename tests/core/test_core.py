@@ -35,7 +35,7 @@ assert not others, others
 def cycle():
     """How a small cycle ends, and the digits of its radii."""
     noise = np.random.default_rng(1).standard_normal((16, 16)) / 5
-    field = core.contact_field(core.chemical_adhesion(noise, 0.2), 0.5, n_angle=24)
+    field = core.contact_field(core.chemical_adhesion(noise, 0.2), 0.5, n_site=24)
     record = core.run_cycle(field, core.LoadSchedule(0.5, 0.25))
     return f"{record.status.name} {record.states.mean_radius.tobytes().hex()}"
 
@@ -70,6 +70,7 @@ def output(program):
     return done.stdout
 
 
+@pytest.mark.slow
 def test_what_is_blocked_cannot_be_imported():
     done = subprocess.run(
         [sys.executable, "-c", f"{ALONE}import xarray"], capture_output=True, text=True
@@ -89,6 +90,7 @@ assert settings() == before, (settings(), before)
 """
 
 
+@pytest.mark.slow
 def test_the_core_runs_without_any_other_library_and_its_import_changes_nothing():
     found = output(f"{ALONE}{UNCHANGED}{IMPORTS}{CYCLE}")
     assert found == f"{cycle()}\n"

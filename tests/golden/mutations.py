@@ -165,8 +165,8 @@ MUTATIONS = [
     ),
     Mutation(
         "core/solver/reference.py",
-        "force = product - restoring_force(geometry, a, load) - line[i]",
-        "force = product - restoring_force(geometry, a, load) + line[i]",
+        "force = product - restoring_force(geometry, place, load) - line[i]",
+        "force = product - restoring_force(geometry, place, load) + line[i]",
         "sign of the line force of the reference",
     ),
     Mutation(
@@ -288,8 +288,8 @@ EQUIVALENT = [
     Mutation("core/solver/forces.py", "GROWTH = 8", "GROWTH = 4", "limit on the growth of steps"),
     Mutation(
         "core/field/samples.py",
-        "_CUBIC_MEMORY = 128, 32",
-        "_CUBIC_MEMORY = 64, 64",
+        "_CUBIC_MEMORY = 32",
+        "_CUBIC_MEMORY = 64",
         "samples that are remembered",
     ),
 ]

@@ -99,10 +99,10 @@ def protocol(loads: Sequence[float], step: float = math.inf) -> Iterator[Load]:
         raise ValueError(f"step is {step}; it must be positive")
     if not len(loads):
         raise ValueError("there are no loads; give one or more")
-    return _way(loads, step)
+    return _protocol_loads(loads, step)
 
 
-def _way(loads: Sequence[float], step: float) -> Iterator[Load]:
+def _protocol_loads(loads: Sequence[float], step: float) -> Iterator[Load]:
     """Loads of a protocol, one after the other."""
     direction: Direction = 1
     yield Load(float(loads[0]), direction)

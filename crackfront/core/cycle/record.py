@@ -74,8 +74,9 @@ class Recorder:
     front: Array
     """Front of the last state. (Units: reduced lateral length)"""
     load: float
+    """Load of the last step. (Units: of the loads of the geometry)"""
     status: Status
-    """Load of the last step, and how it ended."""
+    """How the last step ended."""
 
     def __init__(
         self,

@@ -123,18 +123,20 @@ def tile_field(
         If a count or length is too small, a value of the tile is not finite, or the interpolation
         is unknown.
     """
-    check_interpolation(interpolation)
+    if interpolation not in get_args(Interpolation):
+        kinds = ", ".join(get_args(Interpolation))
+        raise ValueError(f"interpolation is {interpolation!r}; choose one of {kinds}")
     values = np.asarray(adhesion.work_of_adhesion, dtype=float)
     if values.ndim != 2:
         raise ValueError(f"work of adhesion has shape {values.shape}; a tile must be (x, y)")
     check_field_values(values, names=("x", "y"))
     check_positive(pixel=adhesion.pixel)
     if geometry.n_site < 4:
-        raise ValueError(f"number of angles is {geometry.n_site}; at least 4 are needed")
+        raise ValueError(f"the front has {geometry.n_site} sites; give at least 4")
     if not 0 < spacing < (largest_place - origin) / 2 < np.inf:
         raise ValueError(
-            f"sample spacing {spacing} must be positive and below half the largest radius "
-            f"{largest_place}"
+            f"sample spacing is {spacing}; it must be positive and below half the distance from "
+            f"{origin:.6g} to the largest place, {largest_place:.6g}"
         )
     if band_limited:
         coefficients = _mode_coefficients(values)
@@ -161,23 +163,14 @@ def _mode_coefficients(values: Array) -> Array:
     return np.asarray(irfft2(modes, s=(n_x, n_y)))
 
 
-def check_interpolation(interpolation: str) -> None:
-    """Raise ValueError if an interpolation is unknown."""
-    if interpolation not in get_args(Interpolation):
-        kinds = ", ".join(get_args(Interpolation))
-        raise ValueError(f"interpolation is {interpolation!r}; choose one of {kinds}")
-
-
 def check_field_values(values: Array, names: tuple[str, ...]) -> None:
-    """Raise if a field contains NaN or infinity, or nothing but zeros."""
+    """Raise if a field contains NaN or infinity, with the indices of the first."""
     finite = np.isfinite(values)
     if not np.all(finite):
         bad = np.argwhere(~finite)
-        place = ", ".join(f"{name} index {i}" for name, i in zip(names, bad[0], strict=True))
+        indices = ", ".join(f"{name} index {i}" for name, i in zip(names, bad[0], strict=True))
         count = f" ({len(bad)} values are not finite)" if len(bad) > 1 else ""
         raise ValueError(
-            f"work of adhesion is {values[tuple(bad[0])]} at {place}{count}; "
+            f"work of adhesion is {values[tuple(bad[0])]} at {indices}{count}; "
             "replace it by a finite value"
         )
-    if not np.any(values):
-        raise ValueError("work of adhesion is zero everywhere; nothing adheres, so check the field")

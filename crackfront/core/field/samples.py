@@ -64,7 +64,7 @@ class SampleMemory(NamedTuple):
     ----------
     samples : (n_site, size, 2) array
         Products and slopes, or (n_site, size, 1) products where pieces are linear; sample m of a
-        ray has the place m modulo size, a power of 2.
+        ray is in the slot m modulo size, a power of 2.
     first, last : (n_site,) int array
         Range of samples that are stored for each ray.
     """
@@ -74,8 +74,17 @@ class SampleMemory(NamedTuple):
     last: NDArray[np.int64]
 
 
-_LINEAR_MEMORY, _CUBIC_MEMORY = 128, 32
-"""Samples of a ray that are remembered: a cubic piece does the work of four straight ones."""
+_LINEAR_MEMORY = 128
+"""Samples of a ray that are remembered where pieces are straight; a power of 2.
+
+More of them allow longer steps of a solver, and take memory and caches.
+"""
+
+_CUBIC_MEMORY = 32
+"""Samples of a ray that are remembered where pieces are cubic; a power of 2.
+
+A cubic piece does the work of four straight ones.
+"""
 
 
 def distance_ahead(field: Field) -> float:
@@ -118,9 +127,9 @@ def _ray_fetch(field: Any, memory: Any, ray: int, first: int, last: int) -> None
 
 @implements(peek, RayField)
 def _ray_peek(field: Any, memory: Any, ray: int, sample: int) -> Any:
-    site, place = np.uint64(ray), np.uint64(sample)
-    slope = field.slopes[site, place] if field.slopes.size > 0 else 0.0
-    return field.products[site, place], slope
+    site, column = np.uint64(ray), np.uint64(sample)
+    slope = field.slopes[site, column] if field.slopes.size > 0 else 0.0
+    return field.products[site, column], slope
 
 
 @implements(sample_place, TileField)
@@ -198,9 +207,9 @@ def _tile_fetch(field: Any, memory: Any, ray: int, first: int, last: int) -> Non
 def _tile_peek(field: Any, memory: Any, ray: int, sample: int) -> Any:
     """From memory."""
     site = np.uint64(ray)
-    place = np.uint64(sample) & np.uint64(memory.samples.shape[1] - 1)
-    slope = memory.samples[site, place, 1] if field.cubic else 0.0
-    return memory.samples[site, place, 0], slope
+    slot = np.uint64(sample) & np.uint64(memory.samples.shape[1] - 1)
+    slope = memory.samples[site, slot, 1] if field.cubic else 0.0
+    return memory.samples[site, slot, 0], slope
 
 
 @kernel
@@ -231,8 +240,8 @@ def _fill(field, memory, ray, first, last):
 @kernel
 def _store(field, memory, ray, sample):
     """Evaluate one sample."""
-    place = sample & (memory.samples.shape[1] - 1)
+    slot = sample & (memory.samples.shape[1] - 1)
     product, slope = evaluate(field, ray, sample)
-    memory.samples[ray, place, 0] = product
+    memory.samples[ray, slot, 0] = product
     if field.cubic:
-        memory.samples[ray, place, 1] = slope
+        memory.samples[ray, slot, 1] = slope

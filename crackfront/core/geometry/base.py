@@ -40,8 +40,8 @@ from crackfront.core.variables import Variable
 class State(Protocol):
     """Record of one front at rest, or of all fronts of a cycle: a dataclass of numbers or arrays.
 
-    Its fields are made by :func:`crackfront.core.variables.variable`. The first is the load. Those
-    of any kind of contact are below; a kind that loses contact also has a `force`.
+    Its fields are made by :func:`crackfront.core.variables.variable`. The first is the load. Every
+    kind of contact has the fields below; a kind that loses contact also has a `force`.
     """
 
     load_noun: ClassVar[str]

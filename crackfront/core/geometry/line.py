@@ -1,4 +1,4 @@
-r"""A straight periodic front whose every site is held by a spring; its rays are parallel.
+r"""A straight periodic front, each site of which is on a spring; its rays are parallel.
 
 With the place X of the springs' other end as the load,
 
@@ -67,8 +67,8 @@ class Line(NamedTuple):
 
     Attributes
     ----------
-    n_ray : int
-        Sites.
+    n_site : int
+        Number of sites.
     length : float
         Period. (Units: length)
     stiffness : float
@@ -79,16 +79,11 @@ class Line(NamedTuple):
         Coordinates of the first point of a tile; rays begin at x = 0. (Units: length)
     """
 
-    n_ray: int
+    n_site: int
     length: float
     stiffness: float
     mean: float
     corner: tuple[float, float] = (0.0, 0.0)
-
-    @property
-    def n_site(self) -> int:
-        """Number of rays."""
-        return self.n_ray
 
     @property
     def perimeter(self) -> float:
@@ -98,7 +93,7 @@ class Line(NamedTuple):
     @property
     def sites(self) -> Array:
         """Places of the rays along the front (Units: length)."""
-        return self.corner[1] + self.length * np.arange(self.n_ray) / self.n_ray
+        return self.corner[1] + self.length * np.arange(self.n_site) / self.n_site
 
     @property
     def state_type(self) -> type[LineState[Array]]:
@@ -132,7 +127,7 @@ class Line(NamedTuple):
         """Energy of springs and line (Units: reduced energy)."""
         springs = self.mean * front + self.stiffness / 2 * (front - load) ** 2
         power = np.abs(rfft(front, norm="forward")) ** 2
-        power[1 : (self.n_ray + 1) // 2] *= 2
+        power[1 : (self.n_site + 1) // 2] *= 2
         line = np.sum(_stiffness(self, 1.0) * np.arange(power.size) * power) / 2
         return self.length * float(np.mean(springs) + line)
 
@@ -210,7 +205,7 @@ def initial_front(field: TileField, adhesion: AdhesionMap, load: float) -> Array
         The front. (Units: length)
     """
     line = field.geometry
-    return np.full(line.n_ray, load - _reach(adhesion, line.stiffness))
+    return np.full(line.n_site, load - _reach(adhesion, line.stiffness))
 
 
 def _reach(adhesion: AdhesionMap, stiffness: float) -> float:
@@ -245,13 +240,13 @@ def _stiffness(geometry: Any, mode: float) -> float:
 
 
 @implements(base.weight, Line)
-def _one(geometry: Any, place: float) -> float:
+def _unit_weight(geometry: Any, place: float) -> float:
     """Weight of the work of adhesion, 1: forces are per length of the front."""
     return 1.0
 
 
 @implements(base.weight_slope, Line)
-def _zero(geometry: Any) -> float:
+def _no_slope(geometry: Any) -> float:
     """Derivative of the constant weight."""
     return 0.0
 
@@ -259,7 +254,7 @@ def _zero(geometry: Any) -> float:
 @implements(base.ray_start, Line)
 def _row(geometry: Any, ray: int, n_x: int, n_y: int, inverse_pixel: float) -> Any:
     """Point of a tile at which the ray, parallel to x, crosses x = 0."""
-    spacing = geometry.length / geometry.n_ray
+    spacing = geometry.length / geometry.n_site
     return -geometry.corner[0] * inverse_pixel, ray * spacing * inverse_pixel
 
 

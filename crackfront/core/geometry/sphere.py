@@ -25,7 +25,6 @@ from crackfront.core.field.fields import (
     RayField,
     TileField,
     check_field_values,
-    check_interpolation,
     tile_field,
 )
 from crackfront.core.geometry import base
@@ -88,7 +87,7 @@ class Sphere(NamedTuple):
 
     Attributes
     ----------
-    cosine, sine : (n_angle,) array
+    cosine, sine : (n_site,) array
         Directions of the rays.
     """
 
@@ -156,15 +155,15 @@ class Sphere(NamedTuple):
         return bool(np.any(radius * (product / place) >= ring))
 
 
-def sphere(n_angle: int) -> Sphere:
+def sphere(n_site: int) -> Sphere:
     """Sphere whose front has sites at equally spaced angles."""
-    angle = _angles(n_angle)
+    angle = _angles(n_site)
     return Sphere(np.cos(angle), np.sin(angle))
 
 
-def _angles(count: int) -> Array:
+def _angles(n_site: int) -> Array:
     """Equally spaced angles, the first 0."""
-    return 2 * np.pi * np.arange(count) / count
+    return 2 * np.pi * np.arange(n_site) / n_site
 
 
 def polar_field(
@@ -177,7 +176,7 @@ def polar_field(
     radii : (n_sample,) array
         Increasing radii. A leading zero is dropped: the product vanishes there.
         (Units: reduced lateral length)
-    work_of_adhesion : (n_sample, n_angle) or (n_sample,) array
+    work_of_adhesion : (n_sample, n_site) or (n_sample,) array
         Local work of adhesion; on rings, where it depends on the radius alone, one ray is enough.
         (Units: reduced energy / area, w_int = 1/pi)
     interpolation : {"linear", "cubic"}, optional
@@ -187,15 +186,14 @@ def polar_field(
     Returns
     -------
     RayField
-        Field whose front has `n_angle` sites; a single one is a circle, without line elasticity.
+        Field whose front has `n_site` sites; a single one is a circle, without line elasticity.
 
     Raises
     ------
     ValueError
         If shapes disagree, radii do not increase or are negative, fewer than two samples, or two
-        or three angles are given, a value is not finite, or the interpolation is unknown.
+        or three angles are given, or a value is not finite.
     """
-    check_interpolation(interpolation)
     radii = np.asarray(radii, dtype=float)
     values = np.asarray(work_of_adhesion, dtype=float)
     if radii.ndim != 1 or values.ndim not in (1, 2) or values.shape[0] != radii.size:
@@ -227,7 +225,7 @@ def polar_field(
 def contact_field(
     adhesion: AdhesionMap,
     max_penetration: float,
-    n_angle: int | None = None,
+    n_site: int | None = None,
     spacing: float | None = None,
     interpolation: Interpolation = "cubic",
     *,
@@ -244,7 +242,7 @@ def contact_field(
         Work of adhesion on the tile, which may be smaller than the contact.
     max_penetration : float
         Largest penetration. (Units: reduced vertical length)
-    n_angle : int, optional
+    n_site : int, optional
         Sites of the front; by default at least one a pixel on the smooth contact's largest circle.
     spacing : float, optional
         Distance of samples along a ray; by default half a pixel, or a quarter where straight
@@ -257,9 +255,9 @@ def contact_field(
     ValueError
         If the penetration is below pull-off, or as :func:`crackfront.core.field.fields.tile_field`.
     """
-    if n_angle is None:
+    if n_site is None:
         circle = 2 * math.pi * jkr.equilibrium_radius(max_penetration)
-        n_angle = fast_site_count(circle / adhesion.pixel)
+        n_site = fast_site_count(circle / adhesion.pixel)
     if spacing is None:
         spacing = adhesion.pixel / (2 if interpolation == "cubic" else 4)
     values = adhesion.work_of_adhesion
@@ -267,7 +265,7 @@ def contact_field(
     strongest = float(np.max(values, where=np.isfinite(values), initial=WORK_OF_ADHESION))
     largest = 1.1 * jkr.equilibrium_radius(max_penetration, strongest / WORK_OF_ADHESION)
     return tile_field(
-        adhesion, sphere(n_angle), spacing, largest, interpolation, band_limited=band_limited
+        adhesion, sphere(n_site), spacing, largest, interpolation, band_limited=band_limited
     )
 
 
@@ -278,12 +276,12 @@ def half_laplacian(radius: Array) -> Array:
 
     Parameters
     ----------
-    radius : (n_angle,) array
+    radius : (n_site,) array
         Radius at equally spaced angles. (Units: length)
 
     Returns
     -------
-    (n_angle,) array
+    (n_site,) array
         Generalised curvature; it has zero mean. (Units: length)
 
     References
@@ -305,7 +303,7 @@ def line_energy(radius: Array) -> float:
 
     Parameters
     ----------
-    radius : (n_angle,) array
+    radius : (n_site,) array
         Radius at equally spaced angles. (Units: reduced lateral length)
 
     Returns
@@ -350,7 +348,7 @@ def _radius(geometry: Any, place: float) -> float:
 
 
 @implements(base.weight_slope, Sphere)
-def _one(geometry: Any) -> float:
+def _unit_slope(geometry: Any) -> float:
     """Derivative of the weight by the radius."""
     return 1.0
 

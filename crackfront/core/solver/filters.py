@@ -62,33 +62,64 @@ def make_filter(count, like):
 
 
 @kernel
-def set_filter(filtering, geometry, shift, inverted):
-    """Set the factors to the stiffness of the line plus a shift, or to the inverse of this sum."""
-    size, paired = filtering.sine.size, filtering.paired
-    for k in range(size):
-        factor = mode_stiffness(geometry, k if paired else min(k, size - k)) + shift
-        partner = mode_stiffness(geometry, size - k) + shift if paired else factor
-        if inverted:
-            factor, partner = 1.0 / factor, 1.0 / partner
-        difference = 0.5 * (factor - partner)
-        filtering.straight[k] = 0.5 * (factor + partner) - difference * filtering.sine[k]
-        filtering.crossed[k] = difference * filtering.cosine[k]
+def set_stiffness(filtering, geometry):
+    """Set the factors to the stiffness of the line."""
+    for k in range(filtering.sine.size):
+        mode, partner = _front_modes(filtering, k)
+        factor = mode_stiffness(geometry, mode)
+        _set_factors(filtering, k, factor, mode_stiffness(geometry, partner))
+
+
+@kernel
+def set_inverse(filtering, geometry, shift):
+    """Set the factors to the inverse of the stiffness of the line plus a shift."""
+    for k in range(filtering.sine.size):
+        mode, partner = _front_modes(filtering, k)
+        factor = 1.0 / (mode_stiffness(geometry, mode) + shift)
+        _set_factors(filtering, k, factor, 1.0 / (mode_stiffness(geometry, partner) + shift))
+
+
+@kernel
+def _front_modes(filtering, k):
+    """Numbers of the two modes of the front that mode k of a transform mixes."""
+    size = filtering.sine.size
+    if filtering.paired:
+        return k, size - k
+    return min(k, size - k), min(k, size - k)
+
+
+@kernel
+def _set_factors(filtering, k, factor, partner):
+    """Set the factors of mode k of a transform from the factors of two modes of the front."""
+    difference = 0.5 * (factor - partner)
+    filtering.straight[k] = 0.5 * (factor + partner) - difference * filtering.sine[k]
+    filtering.crossed[k] = difference * filtering.cosine[k]
 
 
 _AXIS = np.zeros(1, np.int64)
 
 
-def _transform(source: Any, target: Any, forward: bool) -> None:
-    """Write the modes of a vector or, backward, the vector of modes into a target."""
-    target[:] = scipy.fft.fft(source) if forward else scipy.fft.ifft(source)
+def _forward(source: Any, modes: Any) -> None:
+    """Write the modes of a vector into an array."""
+    modes[:] = scipy.fft.fft(source)
 
 
-@overload(_transform)
-def _transform_compiled(source, target, forward):
-    """Call the library below scipy, whose own functions allocate memory every time."""
-    return lambda source, target, forward: lowlevel.c2c(
-        source, target, _AXIS, forward, 1.0 if forward else 1.0 / source.size, 1
-    )
+def _backward(modes: Any, target: Any) -> None:
+    """Write the vector of modes into an array."""
+    target[:] = scipy.fft.ifft(modes)
+
+
+# scipy's own functions would allocate memory at every call, the library below them does not.
+
+
+@overload(_forward)
+def _forward_compiled(source, modes):
+    return lambda source, modes: lowlevel.c2c(source, modes, _AXIS, True, 1.0, 1)
+
+
+@overload(_backward)
+def _backward_compiled(modes, target):
+    return lambda modes, target: lowlevel.c2c(modes, target, _AXIS, False, 1.0 / modes.size, 1)
 
 
 @kernel
@@ -97,19 +128,19 @@ def apply_filter(filtering, vector, result):
     before, after = filtering.before, filtering.after
     straight, crossed = filtering.straight, filtering.crossed
     if filtering.paired:
-        _transform(vector.view(before.dtype), before, True)
+        _forward(vector.view(before.dtype), before)
     else:
         for i in range(vector.size):
             before[i] = vector[i]
-        _transform(before, before, True)
+        _forward(before, before)
     modes, mixed = before.view(straight.dtype), after.view(straight.dtype)
     # The partner of the first mode is itself.
     product = 0.0 + _mix(modes[:2], modes[:2], straight[:1], crossed[:1], mixed[:2])
     product += _mix(modes[2:], modes[2:], straight[1:], crossed[1:], mixed[2:])
     if filtering.paired:
-        _transform(after, result.view(before.dtype), False)
+        _backward(after, result.view(before.dtype))
     else:
-        _transform(after, after, False)
+        _backward(after, after)
         for i in range(result.size):
             result[i] = after[i].real
     return product / before.size

@@ -1,4 +1,4 @@
-"""A front at a load, the forces on its sites, and how far ahead these are valid."""
+"""A front at a load and the forces on its sites."""
 
 from __future__ import annotations
 
@@ -10,13 +10,12 @@ from numpy.typing import NDArray
 
 from crackfront.core.arrays import Array
 from crackfront.core.compiled import jit, kernel
-from crackfront.core.field.pieces import blend, hull_until, peek_piece, polynomial, steepest_inside
+from crackfront.core.field.pieces import blend, peek_piece
 from crackfront.core.field.rays import front_products, segment_below
 from crackfront.core.field.samples import (
     SampleMemory,
     distance_ahead,
     fetch,
-    is_cubic,
     peek,
     sample_count,
     sample_place,
@@ -25,22 +24,22 @@ from crackfront.core.geometry.base import (
     lowest_place,
     mode_stiffness,
     restoring_force,
-    restoring_slope,
     weight,
 )
+from crackfront.core.solver.codes import Code
 from crackfront.core.units import WORK_OF_ADHESION
 
-CONVERGED, INWARD, OUTWARD, LIMIT, BLOCKED, TURNED, STILL, NEEDLES = range(8)
-"""Codes with which a compiled solver ends."""
-
 RIGID = 10.0
-"""Ratio of a site's own stiffness to the line's against it, above which it is a needle."""
+"""Stiffness of a site's own force, over the line's against it, above which the site is a needle."""
 
 GROWTH = 8
-"""Longest step of a site, over the longest distance that its step before looked ahead."""
+"""Longest step of a site, relative to the longest distance that its step before looked ahead.
+
+A larger ratio crosses smooth parts in fewer steps, but bounds over longer ways are looser.
+"""
 
 
-class Problem(NamedTuple):
+class RelaxationTask(NamedTuple):
     """What all kernels of a relaxation share.
 
     Attributes
@@ -73,16 +72,24 @@ class Problem(NamedTuple):
     slack: float
 
 
-def make_problem(
+def make_task(
     start: Array, load: float, direction: int, field: Any, memory: SampleMemory, tolerance: float
-) -> Problem:
+) -> RelaxationTask:
     """Relaxation of a front from its start."""
     lowest = float(lowest_place(field.geometry, load))
     if direction > 0 or lowest <= sample_place(field, 0):
         lowest = -np.inf
     slack = tolerance * WORK_OF_ADHESION * weight(field.geometry, float(np.min(start)))
-    ahead = distance_ahead(field)
-    return Problem(field, memory, load, direction, tolerance, lowest, ahead, slack)
+    return RelaxationTask(
+        field=field,
+        memory=memory,
+        load=load,
+        direction=direction,
+        tolerance=tolerance,
+        lowest=lowest,
+        furthest=distance_ahead(field),
+        slack=slack,
+    )
 
 
 class Front(NamedTuple):
@@ -157,98 +164,40 @@ def front_force(front, load, field):
 
 
 @kernel(inline="always")
-def locate(problem, ray, place, segment):
-    """Segment ahead of a place that was in `segment` before it moved, and the product there.
+def locate(task, ray, place, segment):
+    """Code, segment ahead of a place that was in `segment` before it moved, and the product there.
 
-    A negative segment says that the ray ends: -INWARD or -OUTWARD. A site on the first sample may
-    rest there, and leaves only as it moves on.
+    The code says whether the place lies inside the field. A site on the first sample may rest
+    there, and leaves only as it moves on.
     """
-    field = problem.field
+    field = task.field
     last = sample_count(field) - 2
-    if problem.direction > 0:
+    if task.direction > 0:
         while place >= sample_place(field, segment + 1):
             segment += 1
             if segment > last:
-                return -OUTWARD, 0.0
+                return Code.LEFT_FIELD_OUTWARD, segment, 0.0
     else:
         while segment > 0 and place <= sample_place(field, segment):
             segment -= 1
         if place < sample_place(field, segment):
-            return -INWARD, 0.0
+            return Code.LEFT_FIELD_INWARD, segment, 0.0
     inner, outer = sample_place(field, segment), sample_place(field, segment + 1)
-    fetch(field, problem.memory, ray, segment, segment + 1)
-    piece = peek_piece(field, problem.memory, ray, segment)
-    return segment, blend(piece, (place - inner) / (outer - inner))
+    fetch(field, task.memory, ray, segment, segment + 1)
+    piece = peek_piece(field, task.memory, ray, segment)
+    return Code.MOVING, segment, blend(piece, (place - inner) / (outer - inner))
 
 
 @kernel
-def place_sites(problem, front):
-    """Find the segments and products under a front.
-
-    Returns CONVERGED, or the side on which a site has left the field.
-    """
-    code = CONVERGED
+def place_sites(task, front):
+    """Find segments and products under a front; return MOVING, or the code of a site outside."""
+    code = Code.MOVING
     for i in range(front.place.size):
-        segment = segment_below(problem.field, front.place[i], problem.direction)
-        front.segment[i], front.product[i] = locate(problem, i, front.place[i], segment)
-        if front.segment[i] < 0:
-            code = -front.segment[i]
+        below = segment_below(task.field, front.place[i], task.direction)
+        end, front.segment[i], front.product[i] = locate(task, i, front.place[i], below)
+        if end != Code.MOVING:
+            code = end
     return code
-
-
-@kernel(inline="always")
-def hardening(problem, ray, place, product, segment, reach):
-    """Stiffness D >= (f(0) - f(s)) / s for 0 < s <= reach, f the site's own drive after s.
-
-    Pieces lie in the hull of their control points, so that no chord of the product is steeper than
-    the steepest to one of those; of straight pieces only the ends count.
-    The slope of the restoring force increases and is convex: no chord outward is steeper than the
-    mean of the slopes at its ends, none inward steeper than that under the site.
-    """
-    field, memory, direction = problem.field, problem.memory, problem.direction
-    restoring = restoring_slope(field.geometry, place, problem.load)
-    if direction > 0:
-        ahead = restoring_slope(field.geometry, place + reach, problem.load)
-        restoring = 0.5 * (restoring + ahead)
-    last = sample_count(field) - 2
-    inner, outer = sample_place(field, segment), sample_place(field, segment + 1)
-    inverse = 1.0 / (outer - inner)
-    further = int(reach * inverse) + 1
-    if direction > 0:
-        fetch(field, memory, ray, segment, min(segment + 1 + further, last + 1))
-    else:
-        fetch(field, memory, ray, max(segment - further, 0), segment + 1)
-    distance = outer - place if direction > 0 else place - inner
-    piece = peek_piece(field, memory, ray, segment)
-    if not is_cubic(field):
-        steepest = (piece[0] - piece[3]) * inverse
-        sample, end = (segment + 1, piece[3]) if direction > 0 else (segment, piece[0])
-        while distance < reach and 0 <= sample + direction <= last + 1:
-            before, near = distance, end
-            sample += direction
-            distance = direction * (sample_place(field, sample) - place)
-            end, _ = peek(field, memory, ray, sample)
-            if distance > reach:
-                end = near + (reach - before) / (distance - before) * (end - near)
-                distance = reach
-            steepest = max(steepest, direction * (product - end) / distance)
-        return steepest + restoring
-    coefficients = polynomial(field, piece, outer - inner)
-    steepest = steepest_inside(coefficients, place - inner, min(reach, distance), direction)
-    segment += direction
-    while distance < reach and 0 <= segment <= last:
-        width = sample_place(field, segment + 1) - sample_place(field, segment)
-        until = min(distance + width, reach)
-        piece = peek_piece(field, memory, ray, segment)
-        part = (until - distance) / width
-        first, second, end = hull_until(piece, part, direction)
-        third = part * width / 3
-        steepest = max(steepest, direction * (product - first) / (distance + third))
-        steepest = max(steepest, direction * (product - second) / (distance + 2 * third))
-        steepest = max(steepest, direction * (product - end) / until)
-        distance += width
-        segment += direction
-    return steepest + restoring
 
 
 @kernel(inline="always")
@@ -258,50 +207,31 @@ def following(site, count):
     return after if after < np.uint64(count) else np.uint64(0)
 
 
-@kernel(fastmath={"contract", "nnan", "nsz"})
-def harden(problem, front, first, step, part, reach, stiffness):
-    """Raise reaches to part of the steps, and stiffnesses to values that are valid over them.
-
-    The arrays have one entry for each site from `first` on. Returns whether a stiffness grew.
-    """
-    place, segment, product = front.place, front.segment, front.product
-    grew = False
-    i = np.uint64(first)
-    for j in range(step.size):
-        if part * step[j] > reach[j]:
-            reach[j] = part * step[j]
-            ahead = hardening(problem, i, place[i], product[i], segment[i], reach[j])
-            grew = grew or ahead > stiffness[j]
-            stiffness[j] = max(ahead, stiffness[j])
-        i = following(i, place.size)
-    return grew
-
-
 @kernel
-def touch_samples(problem, front, first, values):
+def touch_samples(task, front, first, values):
     """Read the sample under each of the sites from `first` on, to bring them into the cache.
 
     The reads do not wait for one another, as those between the computations of bounds do.
     """
     i = np.uint64(first)
     for j in range(values.size):
-        values[j] = peek(problem.field, problem.memory, i, front.segment[i])[0]
+        values[j] = peek(task.field, task.memory, i, front.segment[i])[0]
         i = following(i, front.place.size)
 
 
 @kernel
-def drive_sites(problem, front, line):
+def drive_sites(task, front, line):
     """Compute the drives from the forces of the line.
 
     Returns the largest and the least relative to w_int, without sites at rest at the lowest
     place.
     """
     place, product, drive = front.place, front.product, front.drive
-    geometry, load, direction = problem.field.geometry, problem.load, problem.direction
+    geometry, load, direction = task.field.geometry, task.load, task.direction
     most, least = 0.0, 0.0
     for i in range(np.uint64(place.size)):
         drive[i] = direction * (product[i] - restoring_force(geometry, place[i], load) - line[i])
-        if place[i] <= problem.lowest:
+        if place[i] <= task.lowest:
             drive[i] = -np.inf
             continue
         relative = drive[i] / (weight(geometry, place[i]) * WORK_OF_ADHESION)

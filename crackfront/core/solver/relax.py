@@ -1,13 +1,13 @@
 """The quasi-static solver: the first metastable front in the direction of motion.
 
 A front that advances (direction +1) stops at the smallest front that is nowhere behind its start
-and that nowhere wants to advance; a receding one (direction -1) at the mirror image of that.
+and that nowhere wants to advance. A receding front (direction -1) stops at the largest front that
+is nowhere ahead of its start and that nowhere wants to recede.
 Where the edge of a sphere would be in compression (a^2 < b) no front can rest, in either direction.
 """
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, ClassVar
@@ -20,15 +20,16 @@ from crackfront.core.field.samples import SampleMemory, evaluate, make_memory
 from crackfront.core.geometry.base import lowest_place
 from crackfront.core.outcome import DefectError, Direction, Relaxation, Status
 from crackfront.core.solver import DEFAULT_MAX_SWEEPS, DEFAULT_TOLERANCE, forces
+from crackfront.core.solver.codes import Code
 from crackfront.core.solver.monotone import monotone_newton
 from crackfront.core.solver.reference import rosso_krauth
 
-_CODES = {
-    forces.CONVERGED: Status.CONVERGED,
-    forces.INWARD: Status.LEFT_FIELD_INWARD,
-    forces.OUTWARD: Status.LEFT_FIELD_OUTWARD,
-    forces.LIMIT: Status.STEP_LIMIT,
-    forces.STILL: Status.ROUND_OFF,
+_STATUSES = {
+    Code.CONVERGED: Status.CONVERGED,
+    Code.LEFT_FIELD_INWARD: Status.LEFT_FIELD_INWARD,
+    Code.LEFT_FIELD_OUTWARD: Status.LEFT_FIELD_OUTWARD,
+    Code.SWEEP_LIMIT: Status.STEP_LIMIT,
+    Code.STANDS_STILL: Status.ROUND_OFF,
 }
 
 
@@ -41,12 +42,7 @@ class Solver:
     tolerance : float
         Largest force along the motion that may be left, relative to w_int per front length.
     max_sweeps : int
-        Limit on the sweeps of one relaxation.
-
-    Raises
-    ------
-    ValueError
-        If the limit on the sweeps is not positive.
+        Limit on the sweeps of one relaxation, at least 1.
     """
 
     tolerance: float = DEFAULT_TOLERANCE
@@ -55,10 +51,6 @@ class Solver:
     name: ClassVar[str]
     kernel: ClassVar[Callable[..., Any]]
     """Moves the sites of an array; returns code, sweeps, updates of single sites, residual."""
-
-    def __post_init__(self) -> None:
-        if self.max_sweeps < 1:
-            raise ValueError(f"max_sweeps is {self.max_sweeps}; it must be at least 1")
 
 
 class Newton(Solver):
@@ -69,7 +61,7 @@ class Newton(Solver):
 
 
 class Reference(Solver):
-    """The paper's algorithm (Rosso and Krauth), which every other solver is held to."""
+    """The paper's algorithm (Rosso and Krauth), the reference for every other solver."""
 
     __slots__ = ()
     name, kernel = "reference", staticmethod(rosso_krauth)
@@ -85,7 +77,7 @@ def named_solver(name: str, tolerance: float, max_sweeps: int = DEFAULT_MAX_SWEE
     Raises
     ------
     ValueError
-        If there is none.
+        If no solver has this name.
     """
     if name not in SOLVERS:
         raise ValueError(f"solver is {name!r}; choose one of {', '.join(sorted(SOLVERS))}")
@@ -102,6 +94,8 @@ def relax(
 ) -> Relaxation:
     r"""First metastable front in the direction of motion at a fixed load.
 
+    :func:`crackfront.core.cycle.follow.follow` checks the arguments and calls it for every load.
+
     On a sphere, at the penetration b, equilibrium is, per angle,
 
     .. math:: a w_{loc}(a, \theta) = a G_{JKR}(b, a) + w_{int} (-\Delta_\theta)^{1/2} a .
@@ -109,7 +103,7 @@ def relax(
     Parameters
     ----------
     front : (n_site,) array
-        Front to start from; forces against the motion are left as they are.
+        Front to start from, inside the field; forces against the motion are left as they are.
         (Units: reduced lateral length)
     load : float
         Penetration of a sphere, or place of the springs of a straight front.
@@ -132,9 +126,6 @@ def relax(
 
     Raises
     ------
-    ValueError
-        If the front does not fit the field or is not finite, the direction is unknown, or the
-        tolerance is below round-off.
     DefectError
         If the fast solver finds that it has passed an equilibrium, which is a defect.
 
@@ -144,7 +135,6 @@ def relax(
     .. [2] Sanner et al., Sci. Adv. (2024), supplement, Sec. II.
     """
     solver = solver or Newton()
-    _check_start(front, load, direction, field, solver.tolerance)
     moved = np.array(front, dtype=float)
     if direction > 0:
         np.maximum(moved, lowest_place(field.geometry, load), out=moved)
@@ -152,17 +142,17 @@ def relax(
         return Relaxation(moved, Status.LEFT_FIELD_OUTWARD, 0, 0, np.inf)
     if memory is None:
         memory = make_memory(field)
-    problem = forces.make_problem(
+    task = forces.make_task(
         moved, float(load), int(direction), field, memory, float(solver.tolerance)
     )
-    code, sweeps, updates, residual = solver.kernel(moved, problem, int(solver.max_sweeps))
-    if code == forces.TURNED:
+    code, sweeps, updates, residual = solver.kernel(moved, task, int(solver.max_sweeps))
+    if code == Code.PASSED_EQUILIBRIUM:
         noun = field.geometry.state_type.load_noun
         raise DefectError(
             f"the {solver.name} solver moved a site past its equilibrium at {noun} {load}; "
             "this is a defect, please report it and use the solver 'reference' meanwhile"
         )
-    status = _CODES[code]
+    status = _STATUSES[code]
     if status is Status.LEFT_FIELD_INWARD and not _can_rest_inside(field, load):
         status = Status.LOST_CONTACT
     return Relaxation(moved, status, int(sweeps), int(updates), float(residual))
@@ -187,30 +177,6 @@ def front_force(front: Array, load: float, field: Field) -> Array:
         Force per angle; zero in equilibrium. (Units: reduced energy / length)
     """
     return np.asarray(forces.front_force(front, float(load), field))
-
-
-def _check_start(front: Array, load: float, direction: int, field: Field, tolerance: float) -> None:
-    """Raise if a relaxation cannot start."""
-    n_site = field.geometry.n_site
-    if direction not in (1, -1):
-        raise ValueError(f"direction is {direction}; it must be 1 (approach) or -1 (retraction)")
-    if front.shape != (n_site,):
-        raise ValueError(f"front has shape {front.shape}; the field has {n_site} rays")
-    if not (np.all(np.isfinite(front)) and math.isfinite(load)):
-        noun = field.geometry.state_type.load_noun
-        raise ValueError(f"the front or the {noun} ({load}) is not finite; check both")
-    inner, outer = first_place(field), last_place(field)
-    if np.min(front) < inner or np.max(front) > outer:
-        raise ValueError(
-            f"the front spans {np.min(front):.6g} to {np.max(front):.6g}; the field is sampled "
-            f"from {inner:.6g} to {outer:.6g}, so start inside it"
-        )
-    round_off = float(np.finfo(float).eps) * front.size
-    if not tolerance >= round_off:
-        raise ValueError(
-            f"tolerance {tolerance} is below the round-off of a front of {front.size} sites "
-            f"({round_off:.1e}); raise it"
-        )
 
 
 def _can_rest_inside(field: Field, load: float) -> bool:

@@ -1,4 +1,4 @@
-"""Windows: a few neighbouring sites are relaxed while the rest of the front is held.
+"""Windows: a few neighbouring sites are relaxed while the rest of the front is fixed.
 
 A step leaves out the coupling to sites beyond :data:`HALF_BAND` neighbours (it only pulls forward),
 which makes it a banded system that is solved directly.
@@ -13,31 +13,46 @@ import numpy as np
 from crackfront.core.arrays import Array
 from crackfront.core.compiled import jit, kernel
 from crackfront.core.geometry.base import restoring_force, weight
-from crackfront.core.solver.forces import (
-    CONVERGED,
-    GROWTH,
-    following,
-    harden,
-    largest_entry,
-    locate,
-    touch_samples,
-)
+from crackfront.core.solver.codes import Code
+from crackfront.core.solver.forces import GROWTH, following, largest_entry, locate, touch_samples
+from crackfront.core.solver.hardening import harden
 from crackfront.core.units import WORK_OF_ADHESION
 
 HALF_BAND = 7
-"""Neighbours on each side whose coupling the step keeps."""
+"""Neighbours on each side whose coupling the step keeps.
+
+More couplings would give longer steps for more work; the elimination is written out for seven.
+"""
 
 LONGEST = 256
-"""Largest number of sites relaxed at once."""
+"""Largest number of sites relaxed at once.
+
+The sums over pairs of sites that each step takes grow with the square of this number.
+"""
 
 _MARGIN = 8
-"""Sites on each side of the active ones that a step moves, too."""
+"""Sites on each side of the active ones that a step moves, too.
+
+Fewer make a step cheaper, but their fixed neighbours stop the active sites earlier.
+"""
 
 _DOMINANCE = 0.02
-"""By how much a pivot exceeds its row, relative to the stiffness of the line against one site."""
+"""By how much a pivot exceeds its row, relative to the stiffness of the line against one site.
+
+It keeps the system positive definite where the field softens. A larger one shortens steps there.
+"""
+
+_CLAMP = 1e15
+"""Stiffness of a site whose step is prescribed, relative to the line's against one site.
+
+The forces of all other sites vanish in its round-off.
+"""
 
 _ROUNDS = 12
-"""Most steps of a window before the drives of the whole front are computed again."""
+"""Most steps of a window before the drives of the whole front are computed again.
+
+Until then a window does not feel the motion of the others; fewer steps take more transforms.
+"""
 
 
 class Window(NamedTuple):
@@ -108,7 +123,8 @@ def _solve_banded(window, count):
     """
     band, step, drive, stiffness = window.band, window.step, window.drive, window.stiffness
     k = window.coupling[LONGEST : LONGEST + HALF_BAND + 1]
-    least, clamp = _DOMINANCE * k[0], 1e15 * k[0]
+    dominance = _DOMINANCE * k[0]
+    clamp = _CLAMP * k[0]
     fresh = (k[0], k[1], k[2], k[3], k[4], k[5], k[6], k[7], 0.0)
     row = second = third = fourth = fifth = sixth = seventh = fresh
     for i in range(count):
@@ -117,21 +133,21 @@ def _solve_banded(window, count):
         right += max(drive[i], 0.0)
         if window.prescribed[i] >= 0.0:
             right, pivot = clamp * window.prescribed[i], clamp
-        rest = least - (c1 + c2) - (c3 + c4) - (c5 + c6) - c7
-        if pivot < rest:
-            stiffness[i] += rest - pivot
-            pivot = rest
+        least_pivot = dominance - (c1 + c2) - (c3 + c4) - (c5 + c6) - c7
+        if pivot < least_pivot:
+            stiffness[i] += least_pivot - pivot
+            pivot = least_pivot
         inverse, step[i] = 1.0 / pivot, right
         band[i, 0], band[i, 1], band[i, 2], band[i, 3] = inverse, c1, c2, c3
         band[i, 4], band[i, 5], band[i, 6], band[i, 7] = c4, c5, c6, c7
-        seen = _behind((pivot, c1, c2, c3, c4, c5, c6, c7, right))
-        row, seen = _eliminated(second, seen, inverse), _behind(seen)
-        second, seen = _eliminated(third, seen, inverse), _behind(seen)
-        third, seen = _eliminated(fourth, seen, inverse), _behind(seen)
-        fourth, seen = _eliminated(fifth, seen, inverse), _behind(seen)
-        fifth, seen = _eliminated(sixth, seen, inverse), _behind(seen)
-        sixth, seen = _eliminated(seventh, seen, inverse), _behind(seen)
-        seventh = _eliminated(fresh, seen, inverse)
+        pivot_row = _behind((pivot, c1, c2, c3, c4, c5, c6, c7, right))
+        row, pivot_row = _eliminated(second, pivot_row, inverse), _behind(pivot_row)
+        second, pivot_row = _eliminated(third, pivot_row, inverse), _behind(pivot_row)
+        third, pivot_row = _eliminated(fourth, pivot_row, inverse), _behind(pivot_row)
+        fourth, pivot_row = _eliminated(fifth, pivot_row, inverse), _behind(pivot_row)
+        fifth, pivot_row = _eliminated(sixth, pivot_row, inverse), _behind(pivot_row)
+        sixth, pivot_row = _eliminated(seventh, pivot_row, inverse), _behind(pivot_row)
+        seventh = _eliminated(fresh, pivot_row, inverse)
     s1 = s2 = s3 = s4 = s5 = s6 = s7 = 0.0
     for i in range(count - 1, -1, -1):
         # The nearest site last: its step is computed last.
@@ -144,25 +160,25 @@ def _solve_banded(window, count):
 
 
 @kernel
-def _choose_step(window, problem, front, first, count, furthest):
+def _choose_step(window, task, front, first, count, furthest):
     """Compute a step of at most `furthest` that passes no barrier and not the lowest place.
 
-    Sites that would go beyond the reach of their stiffness get it anew for the longer way. It can
-    only grow, so that the second step is shorter everywhere and needs no third.
+    The stiffness of a site that would go beyond its reach is computed again for the longer step. It
+    can only grow, so that the second step is shorter everywhere and needs no third.
     """
     reach, stiffness, step = window.reach[:count], window.stiffness[:count], window.step[:count]
     for j in range(count):
-        # A stiffness for a way that is much too long is much too large.
+        # A stiffness for a step that is much too long is much too large.
         step[j] = min(max(reach[j], 1e-9 * furthest), furthest)
         reach[j], stiffness[j] = 0.0, -np.inf
-    harden(problem, front, first, step, 1.0, reach, stiffness)
+    harden(task, front, first, step, 1.0, reach, stiffness)
     _solve_banded(window, count)
     # A part of a safe step is safe.
     part = min(1.0, furthest / largest_entry(step))
-    if harden(problem, front, first, step, part, reach, stiffness):
+    if harden(task, front, first, step, part, reach, stiffness):
         _solve_banded(window, count)
-    if problem.lowest > -np.inf:
-        _stop_at_lowest(window, front, first, count, problem.lowest, part)
+    if task.lowest > -np.inf:
+        _stop_at_lowest(window, front, first, count, task.lowest, part)
     if part < 1.0:
         for j in range(count):
             step[j] *= part
@@ -174,11 +190,11 @@ def _stop_at_lowest(window, front, first, count, lowest, part):
     place, step = front.place, window.step
     site_stiffness, passing = window.coupling[LONGEST], False
     for j in range(count):
-        rest = max(place[(first + j) % place.size] - lowest, 0.0)
-        if part * step[j] > rest:
+        distance = max(place[(first + j) % place.size] - lowest, 0.0)
+        if part * step[j] > distance:
             passing = True
             stiffness = site_stiffness + max(window.stiffness[j], 0.0)
-            window.prescribed[j] = min(max(window.drive[j], 0.0) / stiffness, rest)
+            window.prescribed[j] = min(max(window.drive[j], 0.0) / stiffness, distance)
     if passing:
         _solve_banded(window, count)
 
@@ -196,29 +212,32 @@ def _couple(drive, coupling, step, count):
 
 
 @kernel
-def _move(window, problem, front, first, count):
-    """Move the sites by their steps and update the drives within the window."""
+def _move(window, task, front, first, count):
+    """Move the sites by their steps and update the drives within the window.
+
+    Returns MOVING, or the code of a site that leaves the field.
+    """
     place, segment, product = front.place, front.segment, front.product
-    drive, step, direction = window.drive, window.step, problem.direction
-    geometry, load, lowest = problem.field.geometry, problem.load, problem.lowest
+    drive, step, direction = window.drive, window.step, task.direction
+    geometry, load, lowest = task.field.geometry, task.load, task.lowest
     i = np.uint64(first)
     for j in range(count):
         moved = place[i] + direction * step[j]
         resting = direction < 0 and moved <= lowest
         moved = min(place[i], lowest) if resting else moved
-        low, value = locate(problem, i, moved, segment[i])
-        if low < 0:
-            return -low
+        code, below, value = locate(task, i, moved, segment[i])
+        if code != Code.MOVING:
+            return code
         rise = restoring_force(geometry, moved, load) - restoring_force(geometry, place[i], load)
         drive[j] = -np.inf if resting else drive[j] + direction * (value - product[i] - rise)
-        place[i], segment[i], product[i] = moved, low, value
+        place[i], segment[i], product[i] = moved, below, value
         i = following(i, place.size)
     _couple(drive, window.coupling, step, count)
-    return CONVERGED
+    return Code.MOVING
 
 
 @kernel
-def _trim(window, problem, front, first, count, level):
+def _trim(window, task, front, first, count, level):
     """Reduce the window to sites with a drive above a level, and some next to them.
 
     Returns the first and the number of its sites, which is 0 if none is active.
@@ -227,7 +246,7 @@ def _trim(window, problem, front, first, count, level):
     low, high = count, 0
     i = np.uint64(first)
     for j in range(count):
-        if drive[j] > level * weight(problem.field.geometry, place[i]) * WORK_OF_ADHESION:
+        if drive[j] > level * weight(task.field.geometry, place[i]) * WORK_OF_ADHESION:
             low, high = min(low, j), j + 1
         i = following(i, place.size)
     if high == 0:
@@ -235,36 +254,36 @@ def _trim(window, problem, front, first, count, level):
     low, high = max(low - _MARGIN, 0), min(high + _MARGIN, count)
     for j in range(low, high):
         drive[j - low], reach[j - low] = drive[j], reach[j]
-        window.prescribed[j - low] = 0.0 if drive[j] < -problem.slack else -1.0
+        window.prescribed[j - low] = 0.0 if drive[j] < -task.slack else -1.0
     return (first + low) % place.size, high - low
 
 
 @kernel
-def relax_window(window, problem, front, first, count, level):
+def relax_window(window, task, front, first, count, level):
     """Move `count` sites from `first` on until their drives fall below a level, or for some steps.
 
-    Sites driven backward by more than the slack are held, also those at the lowest place. The
+    Sites driven backward by more than the slack stay fixed, also those at the lowest place. The
     drives of the front are left as they are. Returns a code, the number of updates of a site and
     the largest stiffness of a site's own force.
     """
     drive, reach, step = window.drive, window.reach, window.step
     site_stiffness = window.coupling[LONGEST]
-    touch_samples(problem, front, first, step[:count])
+    touch_samples(task, front, first, step[:count])
     for j in range(count):
         drive[j] = front.drive[(first + j) % front.drive.size]
         reach[j] = 4 * max(drive[j], 0.0) / site_stiffness
     updates, stiffest = 0, 0.0
     for _ in range(_ROUNDS):
-        first, count = _trim(window, problem, front, first, count, level)
+        first, count = _trim(window, task, front, first, count, level)
         if count == 0:
             break
-        furthest = min(GROWTH * largest_entry(reach[:count]), problem.furthest)
-        _choose_step(window, problem, front, first, count, furthest)
+        furthest = min(GROWTH * largest_entry(reach[:count]), task.furthest)
+        _choose_step(window, task, front, first, count, furthest)
         updates += count
         stiffest = max(stiffest, largest_entry(window.stiffness[:count]))
-        code = _move(window, problem, front, first, count)
-        if code != CONVERGED:
+        code = _move(window, task, front, first, count)
+        if code != Code.MOVING:
             return code, updates, stiffest
         for j in range(count):
             reach[j] = 3 * step[j]
-    return CONVERGED, updates, stiffest
+    return Code.MOVING, updates, stiffest

@@ -107,8 +107,8 @@ def _ratio_lines(ratio: Estimate[float]) -> Iterator[str]:
         comparison = "larger" if ratio.low > 1 else "smaller"
         yield (
             f"The measured hysteresis is {comparison} than the predicted one, {interval} times as "
-            "large; the page Questions of an experiment of the documentation (docs/questions.md) "
-            "says which measurements distinguish the causes."
+            "large; the page Explain a difference (docs/questions.md) says which measurements "
+            "distinguish the causes."
         )
 
 

@@ -45,5 +45,5 @@ def test_a_given_tile_is_resolved_by_its_pixels(adhesion):
     straight = contact_field(adhesion, 1.0, interpolation="linear")
     assert (straight.cubic, straight.spacing) == (False, adhesion.pixel / 4)
     assert field.geometry.n_site >= 2 * np.pi * jkr.equilibrium_radius(1.0) / adhesion.pixel
-    chosen = contact_field(adhesion, 1.0, n_angle=12, spacing=adhesion.pixel / 3)
+    chosen = contact_field(adhesion, 1.0, n_site=12, spacing=adhesion.pixel / 3)
     assert (chosen.geometry.n_site, chosen.spacing) == (12, adhesion.pixel / 3)

@@ -50,5 +50,5 @@ def test_both_groups_are_counted_by_themselves():
     statements, expectations = counted([passed, passed, wrong, expected])
     assert "2 of 3 agree" in statements
     assert statements.endswith("1 fail.")
-    assert "0 of 1 are met, 1 are not met" in expectations
+    assert "0 of 1 met, 1 not met" in expectations
     assert len(counted([passed])) == 1
