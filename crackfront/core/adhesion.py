@@ -185,9 +185,9 @@ def larkin_length(kind: FieldKind, spectrum: Spectrum, w_rms: float) -> float:
               \xi_u^2 = \frac{\rho(0)}{-\rho''(0)}
 
     with the correlator :math:`\rho(u)` of w_loc integrated along the front, whose spectrum is
-    :math:`C_w(q, 0)`. The pinning force of second-order perturbation theory is
-    w_rms^2 / w_int. For roughness :math:`\xi_u` is the rms height over the rms slope. docs/law.md derives it. Arguments are as of
-    :func:`correlation_length`, and the rms of w_loc (units: w_int). (Units: as lengths of
+    :math:`C_w(q, 0)`. The pinning force of second-order perturbation theory is w_rms^2 / w_int. For
+    roughness :math:`\xi_u` is the rms height over the rms slope. docs/law.md derives it. Arguments
+    are as of :func:`correlation_length`, and the rms of w_loc (units: w_int). (Units: as lengths of
     the spectrum)
     """
     return 2 * np.pi * force_correlation_length(kind, spectrum) / w_rms**2
