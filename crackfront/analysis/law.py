@@ -1,9 +1,11 @@
 r"""The law of k for a straight front on springs, by disorder s = w_rms / w_int and size g.
 
 The size is the length of the springs over the Larkin length, g = L_kappa / ell. With
-:math:`x = g_s^{-(1-\zeta)}`, :math:`g_s = g\, (\beta_0 / \beta)^f / (1 + c\, s^d)`,
+:math:`\gamma = g_{eff}^{-(1-\zeta)}`,
+:math:`g_{eff} = g\, (\beta_0 / \beta)^{m_9} / (1 + m_6\, s^{m_7})`,
 
-.. math:: k = \frac{k_0}{(1 + a\, s^b (\beta_0 / \beta)^e)(1 + A x + B x^2 + C x^3)} .
+.. math:: k = \frac{k_0}{(1 + m_4\, s^{m_5} (\beta_0 / \beta)^{m_8})
+              (1 + m_1 \gamma + m_2 \gamma^2 + m_3 \gamma^3)} .
 
 In units of the Larkin length, all surfaces have almost the same k at weak disorder. At strong
 disorder k falls with s. It falls less for a broader spectrum of w_loc (:func:`spectral_breadth`,
@@ -47,15 +49,15 @@ class _Coefficients(NamedTuple):
     """Coefficients of the law, numbers or arrays."""
 
     k_0: Any
-    A: Any
-    B: Any
-    C: Any
-    a: Any
-    b: Any
-    c: Any
-    d: Any
-    e: Any
-    f: Any
+    m_1: Any
+    m_2: Any
+    m_3: Any
+    m_4: Any
+    m_5: Any
+    m_6: Any
+    m_7: Any
+    m_8: Any
+    m_9: Any
 
 
 COEFFICIENTS = _Coefficients._fields
@@ -179,10 +181,10 @@ def law_value(
     """
     law = _Coefficients(*coefficients)
     s = np.asarray(disorder, dtype=float)
-    x = effective_size(coefficients, s, size, breadth) ** -np.asarray(exponent)
+    gamma = effective_size(coefficients, s, size, breadth) ** -np.asarray(exponent)
     narrower = TYPICAL_BREADTH / np.asarray(breadth, dtype=float)
-    disorder_term = 1 + law.a * s**law.b * narrower**law.e
-    size_term = 1 + x * np.polyval([law.C, law.B, law.A], x)
+    disorder_term = 1 + law.m_4 * s**law.m_5 * narrower**law.m_8
+    size_term = 1 + gamma * np.polyval([law.m_3, law.m_2, law.m_1], gamma)
     return np.asarray(law.k_0 / disorder_term / size_term)
 
 
@@ -192,11 +194,11 @@ def effective_size(
     size: ArrayLike,
     breadth: ArrayLike = TYPICAL_BREADTH,
 ) -> Array:
-    """Sizes g_s of the law, for arrays of s, g and the breadth."""
+    """Sizes g_eff of the law, for arrays of s, g and the breadth."""
     law = _Coefficients(*coefficients)
     narrower = TYPICAL_BREADTH / np.asarray(breadth, dtype=float)
-    reduction = 1 + law.c * np.asarray(disorder) ** law.d
-    return np.asarray(size, dtype=float) * narrower**law.f / reduction
+    reduction = 1 + law.m_6 * np.asarray(disorder) ** law.m_7
+    return np.asarray(size, dtype=float) * narrower**law.m_9 / reduction
 
 
 def spectral_breadth(kind: FieldKind, spectrum: Spectrum) -> float:

@@ -102,7 +102,7 @@ def rough_adhesion(heights: Array, pixel: float) -> AdhesionMap:
 
     .. math:: w_{loc} = w_{int} - e_{el} - \sqrt{2 w_{int} / E'}\, K
 
-    Its rms is 2 sqrt(e_el w_int) by Parseval, as in the supplement, Eq. (Wrms); the main text
+    Its rms is 2 sqrt(e_el w_int) by Parseval, as in the supplement, Sec. I C; the main text
     prints sqrt(2 e_el w_int).
 
     Parameters
@@ -125,7 +125,7 @@ def rough_adhesion(heights: Array, pixel: float) -> AdhesionMap:
 
     References
     ----------
-    .. [1] Sanner et al., Sci. Adv. (2024), supplement, Sec. I C, Eq. (W-equivalent2).
+    .. [1] Sanner et al., Sci. Adv. (2024), supplement, Sec. I C.
     """
     energy = CONTACT_MODULUS / 4 * half_derivative_mean_square(heights, pixel)
     relative = energy / WORK_OF_ADHESION
@@ -197,14 +197,13 @@ def correlation_length(kind: FieldKind, spectrum: Spectrum) -> float:
 def larkin_length(kind: FieldKind, spectrum: Spectrum, w_rms: float) -> float:
     r"""Larkin length: weak disorder bends a front over it by the correlation length of the force.
 
-    .. math:: \ell = 2 \pi \, \frac{w_{int}\, \xi_u}{f_2}, \quad
-              \xi_u^2 = \frac{\Delta(0)}{-\Delta''(0)}, \quad
-              f_2 = \frac{w_{rms}^2}{w_{int}}
+    .. math:: \ell = 2 \pi \, \xi_u \left(\frac{w_{int}}{w_{rms}}\right)^2, \quad
+              \xi_u^2 = \frac{\rho(0)}{-\rho''(0)}
 
-    with the correlator :math:`\Delta(u)` of w_loc integrated along the front, whose spectrum is
-    :math:`C_w(q, 0)`, and the pinning force f_2 of second-order perturbation theory. For roughness
-    :math:`\xi_u` is the rms height over the rms slope. docs/law.md derives it. Arguments are as of
-    :func:`correlation_length`, and the rms of w_loc (units: w_int). (Units: as lengths of
+    with the correlator :math:`\rho(u)` of w_loc integrated along the front, whose spectrum is
+    :math:`C_w(q, 0)`. The pinning force of second-order perturbation theory is w_rms^2 / w_int. For
+    roughness :math:`\xi_u` is the rms height over the rms slope. docs/law.md derives it. Arguments
+    are as of :func:`correlation_length`, and the rms of w_loc (units: w_int). (Units: as lengths of
     the spectrum)
     """
     return 2 * np.pi * force_correlation_length(kind, spectrum) / w_rms**2

@@ -112,7 +112,7 @@ def gaussian_adhesion(surface: RandomSurface) -> AdhesionMap:
 
 
 def uncorrelated_adhesion(surface: RandomSurface) -> AdhesionMap:
-    """Rows of the spectrum of w_loc integrated along the front; e_el is a quarter of its f_2."""
+    """Rows of the spectrum of w_loc integrated along the front; e_el is w_rms^2 / 4 w_int."""
     spectrum, order = surface.spectrum, 0.5 if surface.kind == "roughness" else 0.0
     rng, pixel = np.random.default_rng(surface.seed), surface.pixel
     rows = uncorrelated_rows(spectrum, order, surface.shape, pixel, rng)

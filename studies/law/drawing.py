@@ -130,9 +130,9 @@ def _style(label: str, colour: str, marker: str, *, is_open: bool = False) -> di
 
 
 def _draw_collapse(axes: Axes, drawn: Sequence[tuple[LawPoints, dict[str, Any]]]) -> None:
-    """Draw k freed of its fall with s against g / (1 + c s^d), and the law, then one curve."""
+    """Draw k freed of its fall with s against the effective size, and the law, then one curve."""
     law = shipped_law()
-    k_0, *_, a, b, _, _, e, _ = law.coefficients
+    k_0, *_, m_4, m_5, _, _, m_8, _ = law.coefficients
     sizes = {
         points.name: effective_size(law.coefficients, points.disorder, points.size, points.breadth)
         for points, _ in drawn
@@ -145,7 +145,7 @@ def _draw_collapse(axes: Axes, drawn: Sequence[tuple[LawPoints, dict[str, Any]]]
     axes.plot(fitted, law_value(law.coefficients, 0.0, fitted), **line, label=label)
     axes.plot(below, law_value(law.coefficients, 0.0, below), **line, dashes=(3, 1.5))
     for points, style in drawn:
-        rise = 1 + a * points.disorder**b * (TYPICAL_BREADTH / points.breadth) ** e
+        rise = 1 + m_4 * points.disorder**m_5 * (TYPICAL_BREADTH / points.breadth) ** m_8
         axes.errorbar(
             sizes[points.name],
             points.factor * rise,
@@ -159,8 +159,8 @@ def _draw_collapse(axes: Axes, drawn: Sequence[tuple[LawPoints, dict[str, Any]]]
     axes.set_xlim(lowest, highest)
     axes.set_ylim(0.0, 1.12 * PERTURBATION_FACTOR)
     label_decimals(axes.xaxis)
-    axes.set_xlabel(r"size $g\,(\beta_0/\beta)^f/\,(1+c\,s^d)$")
-    axes.set_ylabel(r"$k\,(1+a\,s^b\,(\beta_0/\beta)^e)$")
+    axes.set_xlabel(r"effective size $g_\mathrm{eff}$")
+    axes.set_ylabel("$k$, freed of its fall with disorder")
 
 
 def _draw_extrapolated(axes: Axes, points: LawPoints, style: dict[str, Any]) -> None:

@@ -178,7 +178,7 @@ def mapping_checks(record: Mapping) -> tuple[Check, ...]:
             record.rms / math.sqrt(record.energy),
             2.0,
             1e-9,
-            remark="SI Eq. (Wrms); the main text prints sqrt(2) for it",
+            remark="SI I C; the main text prints sqrt(2) for it",
         ),
         close_to(
             "mean of w_loc: w_int - e_el of the tile",

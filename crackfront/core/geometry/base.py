@@ -2,9 +2,9 @@ r"""The interface of a geometry: functions that kernels dispatch on its type, an
 
 A site of a front moves along its ray; its place is its distance along it. At rest, per site,
 
-.. math:: \omega(u)\, w_{loc}(u) = f(u, X) + K u ,
+.. math:: \omega(u)\, w_{loc}(u) = f(u, X) + Q u ,
 
-with a weight :math:`\omega`, the restoring force f under the load X and the stiffness K of the
+with a weight :math:`\omega`, the restoring force f under the load X and the stiffness Q of the
 line, which is diagonal in the modes of the front.
 
 A new geometry, such as :mod:`crackfront.core.geometry.line`, must provide the following:
@@ -18,7 +18,7 @@ A new geometry, such as :mod:`crackfront.core.geometry.line`, must provide the f
 4. The restoring force increases with the place, and so does its slope: solvers find the first
    equilibrium only then. A weight can make it so, as the radius of a sphere.
 5. The restoring force falls where the load increases: an increasing load lets the front advance.
-6. `stored_energy` is the energy whose derivative by the places is :math:`f + K u`, summed over the
+6. `stored_energy` is the energy whose derivative by the places is :math:`f + Q u`, summed over the
    perimeter. The recorder computes dissipated energies from it. The energies of making and losing
    contact also assume that the front is closed, with a perimeter of 2 pi.
 """
@@ -106,7 +106,7 @@ class Geometry(Protocol):
         """What is recorded of a front at rest whose branch began at the front `turn`."""
 
     def stored_energy(self, front: Array, load: float) -> float:
-        """Energy of body and line, the derivative of which is f + K u."""
+        """Energy of body and line, the derivative of which is f + Q u."""
 
     def can_rest_inside(self, place: float, product: float, load: float) -> bool:
         """Whether a front may rest before a place of this weighted work of adhesion."""

@@ -1,14 +1,15 @@
 r"""The fast solver: steps that never pass a barrier, in windows and of the whole front.
 
-Let K be the line stiffness (no positive off-diagonal entry) and f_i the own drive of site i, so
-that its drive is r_i = f_i - (K u)_i for a front u along the motion. If a step s >= 0 satisfies
+Let Q be the line stiffness (no positive off-diagonal entry) and f_i the force on site i
+without the line, so that its drive is r_i = f_i - (Q u)_i for a front u along the motion. If a step
+v >= 0 satisfies
 
-.. math:: (K + D) s \le r, \qquad f_i(u_i + t s_i) \ge f_i(u_i) - D_i t s_i, \quad 0 \le t \le 1,
+.. math:: (Q + D) v \le r, \qquad f_i(u_i + t v_i) \ge f_i(u_i) - D_i t v_i, \quad 0 \le t \le 1,
 
-at every site that moves, then r(u + t s) >= (1 - t) r >= 0 there on the whole way: no site passes
+at every site that moves, then r(u + t v) >= (1 - t) r >= 0 there on the whole way: no site passes
 a position where it would rest, so that the front stays behind the first metastable state. The
 iteration increases, stays below that state and stops only where no drive is left: it ends in it.
-Leaving out couplings (windows) or lowering the right-hand side (inexact solves) only shortens s.
+Leaving out couplings (windows) or lowering the right-hand side (inexact solves) only shortens v.
 
 A needle is a site under which the field is so much stiffer than the line that it rests whatever its
 neighbours do. Steps of the whole front are short among needles.

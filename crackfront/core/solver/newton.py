@@ -232,10 +232,10 @@ def _advance(work, length):
 
 @kernel
 def _solve(work, geometry, shift, tolerance, all_free, scaled, started):
-    """Solve (K + D) step = right on the free sites by conjugate gradients, to a largest residual.
+    """Solve (Q + D) step = right on the free sites by conjugate gradients, to a largest residual.
 
     They go on from the step if they have started. Returns the number of FFT pairs and whether it
-    succeeded; it fails where the matrix is not positive definite. With all sites free, K times a
+    succeeded; it fails where the matrix is not positive definite. With all sites free, Q times a
     direction follows by recurrence from the preconditioner.
     """
     set_inverse(work.preconditioner, geometry, shift)

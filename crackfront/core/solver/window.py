@@ -115,7 +115,7 @@ def _eliminated(row, pivot, inverse):
 
 @kernel(fastmath={"contract"})
 def _solve_banded(window, count):
-    """Solve (K + D) step = drive with K cut to a band, by Gaussian elimination; clip at 0.
+    """Solve (Q + D) step = drive with Q cut to a band, by Gaussian elimination; clip at 0.
 
     D is raised where its softening would make a pivot no larger than the rest of its row. A site
     of prescribed step gets a stiffness against which all others vanish in round-off. Each row

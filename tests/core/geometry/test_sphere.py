@@ -4,7 +4,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from crackfront.core.geometry.sphere import half_laplacian, line_energy
-from crackfront.core.units import WORK_OF_ADHESION
+from crackfront.core.units import CONTACT_MODULUS, WORK_OF_ADHESION
 
 COUNTS = [1, 4, 5, 7, 8, 13, 16, 30, 31, 64]
 
@@ -36,6 +36,23 @@ def test_every_resolved_mode_is_multiplied_by_its_order(n_angle):
 def test_the_alternating_mode_of_an_even_grid_is_multiplied_by_half_the_count(n_angle):
     zigzag = (-1.0) ** np.arange(n_angle)
     assert np.allclose(half_laplacian(zigzag), n_angle / 2 * zigzag, atol=1e-12)
+
+
+def test_a_bend_changes_the_energy_release_rate_as_the_kernel_of_gao_and_rice_says():
+    """SI I D: Xi = sqrt(8 / pi) K / E', G = pi / 16 E' Xi^2, and the kernel with 1 / 2 pi."""
+    n_angle, order, radius = 512, 5, 1.7
+    equilibrium = np.sqrt(16 * WORK_OF_ADHESION / (np.pi * CONTACT_MODULUS))
+    # No angle of the integral is at a site, where the kernel diverges.
+    between = angles(n_angle) + np.pi / n_angle
+    for site in (0, 3, 100):
+        here = angles(n_angle)[site]
+        bend = np.cos(order * between) - np.cos(order * here)
+        distance = 2 * radius * np.sin((between - here) / 2)
+        integral = np.mean(radius * bend / distance**2)
+        intensity_change = -equilibrium * integral
+        change = np.pi / 8 * CONTACT_MODULUS * equilibrium * intensity_change
+        line = WORK_OF_ADHESION / radius * half_laplacian(np.cos(order * angles(n_angle)))
+        assert change == pytest.approx(line[site], abs=1e-12)
 
 
 @pytest.mark.parametrize("n_angle", COUNTS)

@@ -15,7 +15,7 @@ PIXEL = 0.3
 
 
 def brute_force(heights, angle, radius):
-    """SI Eq. (KR-from-h-Fourier) in coordinates that turn with the front, mode by mode."""
+    """SI I B in coordinates that turn with the front, mode by mode."""
     n_x, n_y = heights.shape
     modes = np.fft.fft2(heights) / heights.size
     along, across = (
