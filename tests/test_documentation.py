@@ -19,6 +19,7 @@ from studies.__main__ import STUDIES
 from studies.numbers import stored
 from studies.quotes import read_quotes
 from tests.commands import slow
+from tests.yaml_texts import from_yaml
 
 ROOT = Path(__file__).parents[1]
 DOCS = ROOT / "docs"
@@ -94,6 +95,15 @@ def test_the_page_of_sweeps_computes_the_fit_repeats_a_row_and_compares_results(
     assert shown["exponent"].values == pytest.approx(exponent, rel=1e-9)
     force = table.pull_off_force.sel(spectrum="flat", amplitude=0.1, realisation=0).item()
     assert shown["third"].force.min().item() == force
+
+
+def test_the_page_of_sweeps_shows_the_configuration_of_its_study():
+    text = (DOCS / "sweeps.md").read_text()
+    shown = from_yaml(re.search(r"```yaml\n(.*?)```", text, re.DOTALL)[1])
+    shipped = from_yaml((ROOT / "config/hurst.yaml").read_text())
+    assert shown.pop("numerics").items() <= shipped["numerics"].items()
+    assert {"spectra", "amplitudes", "realisations", "load"} == shown.keys()
+    assert {key: shipped[key] for key in shown} == shown
 
 
 @pytest.mark.usefixtures("_elsewhere")
