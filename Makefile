@@ -157,6 +157,9 @@ reproduce: env  ## For a release: numbers and figures of the pages, but for timi
 	$(MAKE) --no-print-directory accuracy
 	cp results/accuracy/laws.png results/accuracy/work-precision.png docs/figures/
 	cp results/validation/differences.nc $(KEPT)/validation/differences-256.nc
+	cp results/hurst/hysteresis.nc $(KEPT)/hurst.nc
+	for figure in hysteresis factor loop; do \
+	  cp results/hurst/figures/$$figure.png docs/figures/hurst-$$figure.png || exit 1; done
 	cp $(addprefix results/figures/paper/,$(addsuffix .nc,$(PAPER))) $(KEPT)/
 	$(IN_ENV) .venv/bin/python -m studies law spheres config/spheres.yaml --output $(KEPT)
 	$(IN_ENV) .venv/bin/python -m studies law held-out --output $(KEPT)
@@ -176,7 +179,8 @@ reproduce: env  ## For a release: numbers and figures of the pages, but for timi
 	cd docs/examples/images && cp sphx_glr_a_first_loop_001.png ../../figures/tutorial-loop.png \
 	  && cp sphx_glr_a_first_loop_002.png ../../figures/tutorial-fronts.png \
 	  && cp sphx_glr_c_instabilities_001.png ../../figures/tutorial-jumps.png \
-	  && cp sphx_glr_d_si_units_001.png ../../figures/tutorial-si.png
+	  && cp sphx_glr_d_si_units_001.png ../../figures/tutorial-si.png \
+	  && cp sphx_glr_k_hurst_001.png ../../figures/hurst.png
 
 # What has no time among its results but that of the processor: simulations on all cores and, beside
 # them, what runs on one.
@@ -185,6 +189,7 @@ reproduce-fronts: env
 	$(MAKE) --no-print-directory figures SCALE=paper
 	$(MAKE) --no-print-directory validate VALIDATION=config/validation.yaml
 	$(SNAKE) --config sweep=config/spheres.yaml
+	$(SNAKE) --config sweep=config/hurst.yaml
 
 reproduce-scans: env
 	$(IN_ENV) .venv/bin/python -m studies accuracy energies --scans 12 --keep
