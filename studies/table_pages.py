@@ -52,19 +52,20 @@ _TABLES = """\
 {} `python -m studies pages` writes this page."""
 
 _ABOUT_TABLES = {
-    "accuracy": "Errors of the numerics and of stated intervals. Columns are explained on the pages "
-    "of [numerics](../numerics.md), [hard cases](../hard-cases.md), [scans](../scans.md) and "
+    "accuracy": "Errors of the numerics and of stated intervals. Columns are explained on the "
+    "pages of [numerics](../numerics.md), [hard cases](../hard-cases.md), [scans](../scans.md) and "
     "[measured loops](../../loops.md).",
-    "boundary-elements": "The crack front against boundary elements on the same rough spheres, "
-    "[explained here](../boundary-elements.md). Lengths are in reduced units, and e_el is in units "
+    "boundary-elements": "The crack front against boundary elements on the same rough spheres "
+    "([explanation](../boundary-elements.md)). Lengths are in reduced units, and e_el is in units "
     "of w_int. Where the last line says `crackfront validate`, the command is now `python -m "
     "studies boundary-elements validate`.",
-    "law": "[The law of k](../../law.md), its coefficients, and its differences from straight "
+    "law": "[The law of k](../../law.md): its coefficients, and its differences from straight "
     "fronts and [spheres](../spheres.md).",
-    "paper": "Every check of the [gallery](../gallery.md), and the measured and computed hysteresis "
-    "on nanodiamond ([conclusions](../../accuracy.md)).",
-    "speed": "Times of requests, solvers and sweeps, [explained here](../performance.md).",
+    "paper": "Every check of the [gallery](../gallery.md), and the hysteresis on nanodiamond, "
+    "measured and computed ([conclusions](../../accuracy.md)).",
+    "speed": "Times of requests, solvers and sweeps ([explanation](../performance.md)).",
 }
+"""What the page of each study shows, and where it is explained."""
 
 _FIGURE = re.compile(
     r"## (?P<title>.+)\n\n(?P<picture>.+)\n\n(?P<cost>.+)\.\n\n(?P<checks>[\s\S]+)"

@@ -1,4 +1,4 @@
-"""Figures: SI Fig. cf-bem of one case, and the hysteresis of both models against e_el."""
+"""Figures: SI Fig. S-4 of one case, and the hysteresis of both models against e_el."""
 
 from __future__ import annotations
 
