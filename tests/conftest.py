@@ -30,7 +30,7 @@ def pytest_configure(config: pytest.Config) -> None:
     hypothesis.settings.register_profile(
         "ours",
         deadline=None,
-        max_examples=20 if by_day else 100,
+        max_examples=10 if by_day else 100,
         derandomize=bool(os.environ.get("CI")),
     )
     hypothesis.settings.load_profile("ours")

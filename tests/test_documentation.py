@@ -18,8 +18,8 @@ from studies.__main__ import STUDIES
 from studies.numbers import stored
 from studies.quotes import read_quotes
 from tests.commands import slow
+from tests.places import ROOT
 
-ROOT = Path(__file__).parents[1]
 DOCS = ROOT / "docs"
 
 

@@ -19,20 +19,15 @@ from crackfront.core.cycle.energy import dissipated_energy
 from crackfront.core.synthesis import gaussian_field
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.core.variables import ADHESION, FORCE, LATERAL, VERTICAL
-from crackfront.measured.prediction.prediction import predicted
-from crackfront.measured.scan.reading import read_measurements
-from crackfront.measured.spectrum.measured_surface import measured_surface
 from crackfront.simulate.cycle_files import cycle_record
 from crackfront.simulate.run_simulation import run_simulation
 from crackfront.simulate.simulation import simulation_adhesion, simulation_field
 from crackfront.simulate.sphere.full_cycle import FullCycle
 from crackfront.surfaces.random_surface import chosen_simulation
-from crackfront.surfaces.tile_measures import tile_modes
 from crackfront.sweep import parallel, tasks
 from tests.commands import run, stored
+from tests.places import ROOT, TEST
 
-ROOT = Path(__file__).parents[1]
-TEST = ROOT / "config/test.yaml"
 SCAN = ROOT / "examples/scans/nanodiamond-detail.al3d"
 SPHERE = cf.Scales(radius=1.25e-3, work_of_adhesion=63e-3, contact_modulus=0.7e6 / 0.75)
 FLAT = cf.SelfAffineSpectrum(0.4, 0.4, hurst=1.0)
@@ -120,12 +115,12 @@ def test_the_package_offers_the_library_and_its_version():
     ids=["heights", "adhesion"],
 )
 def test_the_loop_of_a_smooth_surface_is_that_of_jkr(smooth):
-    found = cf.run_loop(smooth, step=0.25)
-    radii = [jkr.equilibrium_radius(penetration) for penetration in found.penetration.values]
-    np.testing.assert_allclose(found.mean_radius, radii, rtol=1e-7)
-    np.testing.assert_allclose(found.force, jkr.equilibrium_force(np.array(radii)), atol=1e-7)
-    assert found.attrs["status"] == "lost_contact"
-    assert (float(found.e_el), float(found.w_rms)) == (0, 0)
+    result = cf.run_loop(smooth, step=0.25)
+    radii = [jkr.equilibrium_radius(penetration) for penetration in result.penetration.values]
+    np.testing.assert_allclose(result.mean_radius, radii, rtol=1e-7)
+    np.testing.assert_allclose(result.force, jkr.equilibrium_force(np.array(radii)), atol=1e-7)
+    assert result.attrs["status"] == "lost_contact"
+    assert (float(result.e_el), float(result.w_rms)) == (0, 0)
 
 
 def test_the_loop_of_a_simulation_is_that_of_the_library_to_round_off(surface, loop):
@@ -189,13 +184,6 @@ def test_the_energies_of_a_loop_sum_up_to_its_work(loop):
     assert float(loop.dissipated_energy.sum()) + pull_off == pytest.approx(work, abs=1e-3)
 
 
-def test_a_loop_without_a_steady_part_says_so_where_it_is_shown(surface):
-    found = cf.run_loop(surface, step=0.5, error=0.05, fronts=False)
-    assert np.isnan(found.w_retr)
-    assert "no steady part: w_appr and w_retr are unknown" in repr(found)
-    assert "states" in found.attrs["steady_sentence"]
-
-
 def test_si_units_and_back_change_nothing(surface, loop, jumps):
     for data in (surface, loop, jumps):
         back = cf.in_reduced_units(cf.in_si_units(data, SPHERE), SPHERE)
@@ -210,13 +198,13 @@ def test_si_units_and_back_change_nothing(surface, loop, jumps):
 
 
 def test_a_loop_in_si_units_has_forces_in_newtons(loop):
-    found = cf.in_si_units(loop, SPHERE)
-    assert found.force.attrs["units"] == "N"
-    np.testing.assert_allclose(found.force, loop.force * SPHERE.force)
-    np.testing.assert_allclose(found.contact_area, loop.contact_area * SPHERE.lateral**2)
-    np.testing.assert_allclose(found.w_rms, loop.w_rms * 63e-3)
-    assert found.attrs["end_penetration"] == loop.attrs["end_penetration"] * SPHERE.vertical
-    assert found.direction.dtype == loop.direction.dtype
+    converted = cf.in_si_units(loop, SPHERE)
+    assert converted.force.attrs["units"] == "N"
+    np.testing.assert_allclose(converted.force, loop.force * SPHERE.force)
+    np.testing.assert_allclose(converted.contact_area, loop.contact_area * SPHERE.lateral**2)
+    np.testing.assert_allclose(converted.w_rms, loop.w_rms * 63e-3)
+    assert converted.attrs["end_penetration"] == loop.attrs["end_penetration"] * SPHERE.vertical
+    assert converted.direction.dtype == loop.direction.dtype
 
 
 def test_heights_in_nanometres_give_the_loop_of_reduced_ones(surface, loop):
@@ -225,9 +213,9 @@ def test_heights_in_nanometres_give_the_loop_of_reduced_ones(surface, loop):
         {axis: (axis, 1e6 * measured[axis].values, {"units": "um"}) for axis in "xy"}
     )
     measured = (1e9 * measured).assign_attrs(units="nm")
-    found = cf.run_loop(cf.in_reduced_units(measured, SPHERE), step=0.05, error=0.05)
-    assert float(found.e_el) == pytest.approx(float(loop.e_el), rel=1e-12)
-    np.testing.assert_allclose(found.force, loop.force, atol=1e-3)
+    result = cf.run_loop(cf.in_reduced_units(measured, SPHERE), step=0.05, error=0.05)
+    assert float(result.e_el) == pytest.approx(float(loop.e_el), rel=1e-12)
+    np.testing.assert_allclose(result.force, loop.force, atol=1e-3)
 
 
 def test_a_surface_may_come_with_its_dimensions_in_any_order(surface):
@@ -235,27 +223,6 @@ def test_a_surface_may_come_with_its_dimensions_in_any_order(surface):
         cf.run_loop(given, step=0.5, error=0.05) for given in (surface, surface.transpose("y", "x"))
     )
     np.testing.assert_array_equal(one.radius, other.radius)
-
-
-def test_without_the_spectrum_the_pixels_decide(surface, loop):
-    bare = surface.drop_attrs()
-    bare = bare.assign_attrs(units=VERTICAL).assign_coords(
-        {axis: (axis, surface[axis].values, {"units": LATERAL}) for axis in "xy"}
-    )
-    found = cf.run_loop(bare, step=0.05)
-    assert found.sizes["angle"] >= 2 * np.pi * jkr.equilibrium_radius(1.0) / float(
-        np.diff(bare.x)[0]
-    )
-    assert np.isnan(found.w_appr_numerical_error)
-    lost = [float(item.force.min()) for item in (found, loop)]
-    assert lost[0] == pytest.approx(lost[1], abs=0.05)
-
-
-def test_the_correlation_length_is_that_of_the_spectrum():
-    fine = cf.random_surface(0.05, 0.05, seed=2)
-    found = tile_modes(fine.values, float(fine.x[1] - fine.x[0])).mean_wavelength
-    # Heights of a flat spectrum: the mean of q over 0 to q_s is 2/3 of it.
-    assert found == pytest.approx(1.5 * 0.05, rel=0.02)
 
 
 def test_instabilities_sweep_what_the_front_travels_and_lose_energy(surface, jumps):
@@ -283,14 +250,11 @@ def test_instabilities_sweep_what_the_front_travels_and_lose_energy(surface, jum
         ({"elastic_energy": 1.5}, "elastic_energy is 1.5; it must be less than 1"),
         ({"elastic_energy": 0.5}, "elastic_energy is 0.5; the numerics are known from 0.001 to"),
         ({"roll_off": 9.0}, "the longest waves of the spectrum, of 9, or its e_el is not"),
-        ({"error": 0.0}, "error is 0.0; it must be greater"),
         ({"roll_off": 0.1}, "roll_off 0.1 is shorter than short_cutoff 0.4"),
-        ({"roll_off": 0.8, "hurst": 0.0}, "hurst is 0.0; it must lie in"),
         ({"hurst": 0.8}, "hurst is 0.8, but without a roll_off the spectrum is flat"),
         ({"side": 0.1}, "side is 0.1; the tile must fit the longest waves"),
         ({"kind": "rough"}, "kind is 'rough'; it must be 'roughness' or"),
         ({"seed": -1}, "seed is -1; it must be greater"),
-        ({"realisation": -2}, "realisation is -2; it must be greater"),
     ],
 )
 def test_a_surface_that_cannot_be_is_refused(given, sentence):
@@ -413,31 +377,15 @@ def test_an_array_is_the_same_surface_in_all_units():
         (WAVE, {"units": "w_int"}, "were they deviations from it"),
         (5 + WAVE, {"units": "w_int"}, "check the values, or take their mean for w_int"),
         (
-            0.063 * (1 + WAVE),
-            {"units": "mJ/m2", "side": "1mm", "sphere": SPHERE},
-            r"adhesion is 0\.063 mJ/m2, 0\.001 times the w_int of the sphere; .* check the units",
-        ),
-        (
-            1 + WAVE,
-            {"side": "1mm", "sphere": SPHERE},
-            r"adhesion is 1 J/m\^2, 15\.87 times the w_int of the sphere;",
-        ),
-        (
             1 + WAVE,
             {"units": "mJ/m2"},
             "units is 'mJ/m2', which needs the sphere; give it",
         ),
         ([1.0, 2.0], {}, r"the values have the shape \(2,\); a tile must be"),
-        (WAVE, {"kind": "rough"}, "kind is 'rough'; it must be"),
         (
             np.ma.masked_array(1 + WAVE, np.arange(1024).reshape(32, 32) == 40),
             {"units": "w_int"},
             "work_of_adhesion is nan at x index 1, y index 8",
-        ),
-        (
-            xr.DataArray(1 + WAVE, attrs={"units": "nm"}),
-            {},
-            "units is 'nm', which needs the sphere",
         ),
         (
             xr.DataArray(1 + WAVE, attrs={"units": "w_int"}),
@@ -450,11 +398,6 @@ def test_an_array_is_the_same_surface_in_all_units():
             "side is 4.0, but the coordinate x of the array spans 32",
         ),
         (
-            xr.DataArray(1 + WAVE, {"x": np.arange(32) / 8, "y": np.arange(32) / 4}, ("x", "y")),
-            {"units": "w_int"},
-            "the coordinate y of the array spans 8, where a side of 4.0 along x makes pixels squ",
-        ),
-        (
             xr.DataArray(1 + WAVE, {"x": np.arange(32) / 8, "y": np.arange(32) ** 2}, ("x", "y")),
             {"units": "w_int"},
             "y advances by 1 to 61; it must increase in equal steps",
@@ -464,20 +407,6 @@ def test_an_array_is_the_same_surface_in_all_units():
 def test_an_array_that_is_no_surface_is_refused_with_the_likely_cause(values, given, sentence):
     with pytest.raises(ValueError, match=sentence):
         cf.surface(values, **({"kind": "chemical", "side": 4.0} | given))
-
-
-def test_complex_numbers_are_no_surface():
-    with pytest.raises(TypeError, match="values are complex numbers; give real ones, as in"):
-        cf.surface((1 + WAVE) * (1 + 0.5j), 4.0, kind="chemical", units="w_int")
-    with pytest.raises(TypeError, match="values are complex numbers"):
-        cf.run_loop(tile(0.01 * WAVE * 1j), loads=[0])
-
-
-@pytest.mark.parametrize("coordinates", [{"y": ("row", np.arange(32))}, {"y": 3.0}])
-def test_a_coordinate_along_no_dimension_of_its_name_is_of_no_concern(coordinates):
-    values = xr.DataArray(1 + WAVE, coordinates | {"x": np.arange(32) / 8}, ("x", "row"))
-    found = cf.surface(values, 4.0, kind="chemical", units="w_int")
-    xr.testing.assert_equal(found, cf.surface(1 + WAVE, 4.0, kind="chemical", units="w_int"))
 
 
 @pytest.mark.parametrize("unit", ["um", "m", "reduced"])
@@ -536,8 +465,8 @@ def test_a_straight_front_has_the_works_of_adhesion_of_a_period_of_its_tile():
 def test_loads_that_turn_several_times_count_no_place_twice_and_leave_none_out(loads):
     """At weak disorder no front is pinned, whatever part of the tile it passes."""
     surface = cf.random_surface(0.8, 0.01, side=6.4, kind="chemical", seed=3)
-    found = cf.run_loop(cf.straight_front(surface, spring=1.0), loads=loads, step=0.1)
-    assert abs(float(found.hysteresis)) < 2e-3
+    result = cf.run_loop(cf.straight_front(surface, spring=1.0), loads=loads, step=0.1)
+    assert abs(float(result.hysteresis)) < 2e-3
 
 
 @pytest.mark.parametrize(
@@ -587,12 +516,6 @@ def test_a_part_of_a_larger_map_is_refused_as_a_tile(rng):
         cf.plot_surface(tile(whole[:80, :80], spacing=0.05))
 
 
-@pytest.mark.parametrize("seed", range(4))
-def test_a_surface_that_is_periodic_is_never_refused_for_its_edge(seed):
-    noise = np.random.default_rng(seed).standard_normal((8, 8))
-    assert cf.plot_surface(tile(1e-3 * noise), axes_of_a_figure())
-
-
 def test_a_scan_is_a_surface_to_press_on_that_says_what_was_done_to_it():
     small = cf.Scales("20um", "63mJ/m2", SPHERE.contact_modulus)
     found = cf.read_scan(SCAN, small, shortest="0.4um")
@@ -604,17 +527,6 @@ def test_a_scan_is_a_surface_to_press_on_that_says_what_was_done_to_it():
     assert told["tile"].startswith("the scan mirrored at its edges")
     assert told["waves"].startswith("those shorter than 400 nm were removed")
     assert "is smaller than the contact" in told["notes"]
-
-
-def test_a_prediction_is_that_of_the_measured_surface_and_shows_itself():
-    soft = cf.Scales(SPHERE.radius, SPHERE.work_of_adhesion, 0.5e6)  # At 0.9e6 it may be refused.
-    found = cf.predict([str(SCAN)], soft)
-    surface = measured_surface(read_measurements([SCAN]))
-    expected = predicted(surface, soft)
-    assert found.w_retr == expected.w_retr
-    assert found.surface.checksum == surface.checksum
-    assert repr(found) == repr(expected)
-    assert "w_retr" in repr(found)
 
 
 def test_a_sweep_that_was_stopped_goes_on_to_its_table(tmp_path, monkeypatch):
@@ -629,17 +541,17 @@ def test_a_sweep_that_was_stopped_goes_on_to_its_table(tmp_path, monkeypatch):
         with pytest.raises(KeyboardInterrupt, match="are stored; run the same"):
             cf.run_sweep(TEST, tmp_path, progress=False)
     assert 0 < len(stored(tmp_path)) < 8
-    found = cf.run_sweep(TEST, tmp_path, progress=False)
-    assert found.w_retr.dims == ("spectrum", "amplitude", "realisation")
-    assert bool((found.w_retr > found.w_appr).all())
-    xr.testing.assert_identical(found, xr.load_dataset(tmp_path / "hysteresis.nc"))
+    table = cf.run_sweep(TEST, tmp_path, progress=False)
+    assert table.w_retr.dims == ("spectrum", "amplitude", "realisation")
+    assert bool((table.w_retr > table.w_appr).all())
+    xr.testing.assert_identical(table, xr.load_dataset(tmp_path / "hysteresis.nc"))
     assert (tmp_path / "shards/flat.nc").is_file()
 
     def run_again(*arguments):
         raise AssertionError("nothing is missing")
 
     monkeypatch.setattr(tasks, "run_simulation", run_again)
-    xr.testing.assert_equal(cf.run_sweep(str(TEST), str(tmp_path)), found)
+    xr.testing.assert_equal(cf.run_sweep(str(TEST), str(tmp_path)), table)
 
 
 def test_simulations_without_a_value_are_warned_of(tmp_path):
@@ -647,8 +559,8 @@ def test_simulations_without_a_value_are_warned_of(tmp_path):
     text = TEST.read_text().replace("max_sweeps: 100000", "max_sweeps: 2")
     limited.write_text(text.replace("realisations: 2", "realisations: 1"))
     with pytest.warns(UserWarning, match="4 of 4 simulations have no value: 4 step_limit"):
-        found = cf.run_sweep(limited, tmp_path / "out", progress=False)
-    assert bool(np.isnan(found.w_retr).all())
+        table = cf.run_sweep(limited, tmp_path / "out", progress=False)
+    assert bool(np.isnan(table.w_retr).all())
 
 
 @pytest.mark.parametrize(
@@ -658,15 +570,9 @@ def test_simulations_without_a_value_are_warned_of(tmp_path):
         (cf.run_loop, {"step": 0.0}, "step is 0.0; it must be greater"),
         (cf.run_loop, {"max_penetration": -1.0}, "max penetration -1.0 never makes contact"),
         (cf.run_loop, {"error": 1e-6}, "error is 1e-06, but the finest numerics"),
-        (cf.run_loop, {"error": 2}, "error is 2; it must be less than 1"),
         (cf.find_instabilities, {"direction": "retraction"}, "direction is 'retraction'; it must"),
-        (cf.find_instabilities, {"direction": 0}, "direction is 0; it must be 1 or -1"),
         (cf.find_instabilities, {"precision": 0.01}, "precision is 0.01; .* at most a tenth of"),
-        (cf.find_instabilities, {"precision": 0.0}, "precision is 0.0; it must be greater"),
-        (cf.find_instabilities, {"precision": 2e-15}, "precision is 2e-15, below the round-off of"),
         (cf.find_instabilities, {"step": 0}, "step is 0; it must be greater"),
-        (cf.find_instabilities, {"step": -1.0}, "step is -1.0; it must be greater"),
-        (cf.find_instabilities, {"travel": -1.0}, "travel is -1.0; it must be greater"),
         (cf.find_instabilities, {"travel": 1e-12}, "travel is 1e-12 .* by up to .* of them;"),
         (cf.find_instabilities, {"precision": 2e-3}, "within a precision of 0.002 a front moves"),
     ],
@@ -700,12 +606,6 @@ def test_what_is_in_si_units_already_is_said_so(surface):
         cf.in_si_units(surface.drop_attrs(), SPHERE)
 
 
-def test_fronts_that_do_not_fit_into_memory_are_refused_before_the_loop(surface, monkeypatch):
-    monkeypatch.setattr("crackfront.core.resources.memory_at_hand", lambda: 4e9)
-    with pytest.raises(ValueError, match=r"fronts of .* sites would need .* set fronts=False"):
-        cf.run_loop(surface, max_penetration=5e3)
-
-
 @pytest.mark.parametrize(
     ("units", "sentence"),
     [
@@ -728,28 +628,6 @@ def test_what_was_converted_for_one_sphere_comes_back_for_no_other(surface):
     xr.testing.assert_allclose(cf.in_reduced_units(cf.in_si_units(surface, SPHERE), same), surface)
     with pytest.raises(ValueError, match="in reduced units already; nothing is to be converted"):
         cf.in_reduced_units(surface, SPHERE)
-
-
-def test_the_loop_of_a_surface_without_an_error_has_the_one_that_is_left():
-    coarse = cf.random_surface(1.6, 0.005, side=16, seed=1)
-    with pytest.raises(ValueError, match=r"error is 0\.03, but the finest numerics on 8 pixels"):
-        cf.run_loop(coarse, error=0.03)
-    assert cf.run_loop(coarse, step=0.5).attrs["status"] == "lost_contact"
-
-
-def test_a_home_folder_is_that_of_the_user(surface, tmp_path, monkeypatch):
-    monkeypatch.setenv("HOME", str(tmp_path))
-    cf.save_result(surface, "~/surface.nc")
-    xr.testing.assert_equal(cf.load_result(tmp_path / "surface.nc"), surface)
-    xr.testing.assert_equal(cf.load_result("~/surface.nc"), surface)
-
-
-def test_the_pixels_of_a_map_lie_around_their_places(surface):
-    [image] = cf.plot_surface(surface).images
-    pixel = float(surface.x[1] - surface.x[0])
-    ends = surface.x[0] - pixel / 2, surface.x[-1] + pixel / 2
-    assert image.get_extent() == pytest.approx(2 * [float(end) for end in ends])
-    pyplot.close("all")
 
 
 def test_unknown_variables_have_no_units_to_convert(loop):
@@ -806,32 +684,6 @@ def test_what_is_in_si_units_is_drawn_in_them(surface, loop, jumps):
     assert patches.get_array().max() == pytest.approx(float(jumps_si.dissipated_energy.max()))
 
 
-def test_the_drawn_fronts_are_closed_and_the_last_of_a_branch_is_one_of_them(loop):
-    axes = cf.plot_fronts(loop, axes=axes_of_a_figure(), most=3)
-    lines = axes.get_lines()
-    assert len(lines) <= 6
-    for line in lines:
-        x, y = line.get_data()
-        assert (x[0], y[0]) == (x[-1], y[-1])
-    retraction = [line for line in lines if line.get_label() == "retraction"]
-    np.testing.assert_allclose(np.hypot(*retraction[0].get_data())[:-1], loop.radius[-1])
-
-
-def test_fronts_are_drawn_alike_whatever_the_order_of_their_dimensions(loop):
-    pulled = cf.run_loop(cf.straight_front(tile(0.03 * WAVE), 1.0), loads=np.arange(20.0))
-    for one, site in ((loop, "angle"), (pulled, "y")):
-        square = one.isel(step=slice(0, one.sizes[site]))
-        square = square.isel({site: slice(0, square.sizes["step"])})
-        assert square.sizes["step"] == square.sizes[site]
-        for given in (one, square):
-            drawn, turned = (
-                cf.plot_fronts(data, axes=axes_of_a_figure()).get_lines()
-                for data in (given, given.transpose(site, "step", ...))
-            )
-            for line, other in zip(drawn, turned, strict=True):
-                np.testing.assert_array_equal(line.get_data(), other.get_data())
-
-
 def test_the_patches_of_the_instabilities_have_the_area_of_the_sites_that_moved(jumps):
     [patches] = cf.plot_instabilities(jumps, axes_of_a_figure()).collections
     area = 0.0
@@ -843,28 +695,11 @@ def test_the_patches_of_the_instabilities_have_the_area_of_the_sites_that_moved(
     assert area == pytest.approx(float(swept.where(moved).sum()), rel=0.05)
 
 
-def test_heights_that_were_multiplied_have_no_stated_spectrum(surface):
-    lines = [len(cf.plot_spectrum(one, axes_of_a_figure()).lines) for one in (surface, 3 * surface)]
-    assert lines[1] == lines[0] - 1
-
-
-def test_the_rms_values_of_a_spectrum_are_those_of_the_surface():
-    x = 0.1 * np.arange(20)
-    wave = tile(0.03 * np.cos(2 * np.pi * x)[:, None] * np.ones(20))
-    labels = [text.get_text() for text in cf.plot_spectrum(wave, axes_of_a_figure()).texts]
-    height = 0.03 / np.sqrt(2)
-    for label, order in zip(labels, (0, 0.5, 1), strict=True):
-        assert f"{height * (2 * np.pi) ** order:.3g}" in label
-
-
 @pytest.mark.parametrize(
     ("call", "sentence"),
     [
         (lambda surface, loop, jumps: cf.plot_loop(loop.drop_vars("force")), "it lacks force"),
         (lambda surface, loop, jumps: cf.plot_fronts(loop.drop_vars("radius")), "fronts=True"),
-        (lambda surface, loop, jumps: cf.plot_fronts(loop, most=0), "most is 0"),
-        (lambda surface, loop, jumps: cf.plot_fronts(loop.isel(step=0)), r"\(angle\); a loop has"),
-        (lambda surface, loop, jumps: cf.plot_fronts(loop.drop_vars("direction")), "lacks direc"),
         (lambda surface, loop, jumps: cf.plot_fronts(loop * np.nan), "radius .* not finite; drop"),
         (
             lambda surface, loop, jumps: cf.plot_loop((loop * np.nan).assign_attrs(loop.attrs)),
@@ -875,7 +710,6 @@ def test_the_rms_values_of_a_spectrum_are_those_of_the_surface():
             lambda surface, loop, jumps: cf.plot_instabilities(jumps[{"instability": []}]),
             "no instability",
         ),
-        (lambda surface, loop, jumps: cf.plot_instabilities(loop), "what find_instabilities"),
         (
             lambda surface, loop, jumps: cf.plot_spectrum(
                 (1 + surface).rename("work_of_adhesion").assign_attrs(units=ADHESION)

@@ -10,17 +10,14 @@ import sysconfig
 import tarfile
 import tomllib
 import zipfile
-from importlib.metadata import version
-from pathlib import Path
 
 import numpy as np
 import pytest
 from packaging.version import Version
 
-from crackfront import __version__, pinning_factor
+from crackfront import pinning_factor
+from tests.places import ROOT
 from tests.yaml_texts import from_yaml
-
-ROOT = Path(__file__).parents[1]
 
 pytestmark = pytest.mark.skipif(
     not (ROOT / ".git").exists(), reason="these sources are no clone of the repository"
@@ -81,9 +78,9 @@ def built(clone, tmp_path_factory):
 @pytest.mark.slow
 def test_a_clone_without_tags_has_the_coming_version_and_names_its_commit(clone):
     commit = told("git", "-C", ROOT, "rev-parse", "--short=7", "HEAD")
-    found = scm_version(clone)
-    assert found.startswith(COMING.replace("dev0", "dev"))
-    assert f"+g{commit}" in found
+    clone_version = scm_version(clone)
+    assert clone_version.startswith(COMING.replace("dev0", "dev"))
+    assert f"+g{commit}" in clone_version
 
 
 @pytest.mark.slow
@@ -126,12 +123,8 @@ def test_the_archive_holds_all_that_is_committed_and_the_wheel_the_package_alone
     told(*pip, "check")
     command = (empty / "bin/python", "-I", empty / "bin/crackfront")
     assert told(*command, "--version").endswith(" 7.1.0")
-    found = json.loads(told(*command, "law", "--w-rms", "0.4", "--g", "inf", "--json"))
-    assert found["k"] == pinning_factor(0.4, np.inf).factor.value
-
-
-def test_the_version_is_that_of_the_installed_package():
-    assert __version__ == version("crackfront")
+    content = json.loads(told(*command, "law", "--w-rms", "0.4", "--g", "inf", "--json"))
+    assert content["k"] == pinning_factor(0.4, np.inf).factor.value
 
 
 def test_the_recipe_has_the_version_and_needs_of_the_package():
@@ -143,19 +136,6 @@ def test_the_recipe_has_the_version_and_needs_of_the_package():
     found = [one.replace("matplotlib-base", "matplotlib") for one in recipe["requirements"]["run"]]
     assert found == ["python >=${{ python_min }}", *run]
     assert recipe["requirements"]["host"] == ["python ${{ python_min }}.*", "pip", *host]
-
-
-def test_the_catalogue_of_workflows_finds_what_it_asks_for():
-    usage = from_yaml((ROOT / ".snakemake-workflow-catalog.yml").read_text())["usage"]
-    assert set(usage) == {"mandatory-flags", "software-stack-deployment"}
-    flags = usage["mandatory-flags"]["flags"].split()
-    assert (ROOT / flags[flags.index("--profile") + 1] / "config.yaml").is_file()
-    assert (ROOT / flags[-1].removeprefix("sweep=")).is_file()
-    assert (ROOT / "config/README.md").is_file()
-
-
-def test_the_job_script_is_one_that_bash_can_read():
-    told("bash", "-n", ROOT / "workflow/sbatch.sh")
 
 
 def test_it_is_imported_in_the_folder_beside_its_clone(tmp_path):

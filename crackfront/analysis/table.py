@@ -35,7 +35,7 @@ class SweepRow(SteadyMeasures, RunMeasures):
     iterations: int = variable("sweeps of the solver, sum over the cycle", "1")
     n_step: int = variable("states of the cycle", "1")
     pull_off_force: float = variable("lowest force of a full cycle", FORCE)
-    end_penetration: float = variable("penetration at which the cycle ended", VERTICAL)
+    end_penetration: float = variable("last penetration; NaN of a straight front", VERTICAL)
     status: str = variable("how it ended: lost_contact or steady where it is complete", "1")
     status_sentence: str = variable("the same in words", "1")
     seed: int = variable("numpy.random.default_rng(seed) gives the surface's noise", "1")

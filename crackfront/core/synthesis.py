@@ -13,6 +13,9 @@ from crackfront.core.spectrum import Spectrum
 _AT_ONCE = 16384
 """Modes that are drawn at once."""
 
+FEWEST_POINTS = 4
+"""Fewest points along a side of a tile, which resolve a single wave."""
+
 
 def gaussian_field(
     spectrum: Spectrum,
@@ -76,10 +79,10 @@ def gaussian_field(
 
 def _modes(short_cutoff: float, n_point: int, length: float) -> tuple[int, int]:
     """Largest mode of a spectrum along a side of a tile, and largest mode of its grid."""
-    if n_point < 4 or not 0 < length < math.inf:
+    if n_point < FEWEST_POINTS or not 0 < length < math.inf:
         raise ValueError(
-            f"tile of {n_point} points and side {length} cannot have a surface; use at least 4 "
-            "points and a positive side"
+            f"tile of {n_point} points and side {length} cannot have a surface; use at least "
+            f"{FEWEST_POINTS} points and a positive side"
         )
     pixel = length / n_point
     if short_cutoff < 2 * pixel * (1 - 1e-12):

@@ -8,6 +8,7 @@ from itertools import product
 from pathlib import Path
 
 from crackfront.core.resources import check_memory, check_time
+from crackfront.core.synthesis import FEWEST_POINTS
 from crackfront.simulate.contact import Pressed, SurfaceLoads
 from crackfront.simulate.costs import check_sizes, expected_cost
 from crackfront.simulate.numerical_errors import missed_error
@@ -94,6 +95,11 @@ def _check_costs(sweep: Sweep) -> None:
 def _check_resolution(simulation: Simulation) -> None:
     """Raise ValueError if sites or samples are too few for the spectrum."""
     resolution, name = simulation.resolution, simulation.spectrum_name
+    if resolution.n_point < FEWEST_POINTS:
+        raise ValueError(
+            f"numerics: tiles of {name} have {resolution.n_point} points a side; use at least "
+            f"{FEWEST_POINTS}, by a larger tile or more pixels_per_cutoff"
+        )
     short_cutoff, front_length = simulation.spectrum.short_cutoff, simulation.schedule.front_length
     if (density := resolution.n_angle * short_cutoff / front_length) < _FEWEST_SITES:
         raise ValueError(

@@ -16,6 +16,7 @@ from crackfront.analysis.table import PLACE, SweepRow
 from crackfront.core.cycle.record import CycleRecord
 from crackfront.core.outcome import Status
 from crackfront.core.variables import ADHESION, variables
+from crackfront.simulate.contact import Pressed
 from crackfront.simulate.labels import label
 from crackfront.simulate.numerical_errors import stated_error
 from crackfront.simulate.run_simulation import SimulationResult
@@ -54,7 +55,7 @@ def sweep_row(result: SimulationResult) -> SweepRow:
         iterations=int(np.sum(record.states.iterations)),
         n_step=record.states.direction.size,
         pull_off_force=float(np.min(record.states.force, initial=np.inf)) if is_cycle else np.nan,
-        end_penetration=record.end_load,
+        end_penetration=record.end_load if isinstance(simulation.schedule, Pressed) else math.nan,
         status=status,
         status_sentence=sentence,
         seed=simulation.seed,

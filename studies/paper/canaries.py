@@ -111,6 +111,13 @@ def _pull_off(record: Any) -> Numbers:
     return {"pull-off force": Number(force, 0.02 * abs(force), "pi w_int R", reason)}
 
 
+def _video(record: Any) -> Numbers:
+    """Lowest force of a contact on nanodiamond."""
+    force = 1e3 * float(record.force.min())
+    reason = "2%, more than a requested error of 0.1 of k leaves"
+    return {"lowest force": Number(force, 0.02 * abs(force), "mN", reason)}
+
+
 def _avalanches(record: Any) -> Numbers:
     """Exponent of whole events of straight fronts, and the energy that a sphere dissipates."""
     depth = event_laws.depth_slope(record)
@@ -160,6 +167,7 @@ _REDUCED: Mapping[str, tuple[Mapping[str, Any], Callable[[Any], Numbers]]] = {
         _avalanches,
     ),
     "beyond-pull-off": ({"n_surface": 1, "short_cutoffs": [0.1, 0.05]}, _pull_off),
+    "beyond-video": ({"short_cutoff": 0.525e-6, "step": 240e-9}, _video),
     "beyond-roughness": (
         {"short_cutoff": 0.03, "n_surface": 2, "n_front": 3, "strong_line": _SHORT_LINE},
         _roughness,

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import itertools
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from dataclasses import replace
 from functools import partial
 from typing import Any
@@ -51,7 +50,7 @@ def nanodiamond_contact(
     """Approach to the largest force, retraction until contact is lost, and the fits of w_int."""
     scales = parameters.scales
     surface = _Surface(parameters, 0)
-    record = surface.record(_cycle(parameters, surface.recorder, progress))
+    record = surface.record(parameters.cycle(surface.recorder, progress))
     perimeters = surface.perimeters
     if not np.any(record.states.direction < 0):
         raise ValueError(f"the largest force was not reached: {record.status.value}")
@@ -141,42 +140,13 @@ def _instabilities(
     extents, widest = [first.perimeters.extents], [arc.extent]
     for realisation in range(1, parameters.n_surface):
         surface = _Surface(parameters, realisation)
-        surface.record(_approach(parameters, surface.recorder, parameters.shown_force))
+        surface.record(parameters.approach(surface.recorder, parameters.shown_force))
         extents.append(surface.perimeters.extents)
         widest.append(surface.widest(precision).extent)
     for realisation, extent in enumerate(widest):
         text = f"{extent * scales.lateral * _MICRO:.0f} um"
         progress(f"surface {realisation}: widest instability {text}")
     return arc, extents, widest
-
-
-def _approach(
-    parameters: NanodiamondParameters, recorder: Recorder, largest_force: float
-) -> Iterator[Load]:
-    """Penetrations of the approach to a force (N)."""
-    scales = parameters.scales
-    for count in itertools.count():
-        yield Load(count * parameters.step / scales.vertical, 1)
-        if recorder.status is not Status.CONVERGED:
-            return
-        if recorder.states[-1].force * scales.force >= largest_force:
-            return
-
-
-def _cycle(
-    parameters: NanodiamondParameters, recorder: Recorder, progress: Progress
-) -> Iterator[Load]:
-    """Penetrations of the approach to the largest force, and down from there."""
-    scales = parameters.scales
-    yield from _approach(parameters, recorder, parameters.largest_force)
-    if recorder.status is not Status.CONVERGED:
-        return
-    last = recorder.states[-1]
-    penetration = last.penetration
-    progress(f"approach: mean radius {last.mean_radius * scales.lateral:.4g} m at the turn")
-    while True:
-        penetration -= parameters.retraction_step / scales.vertical
-        yield Load(penetration, -1)
 
 
 def _synthetic_points(parameters: NanodiamondParameters, radius: Array) -> ForceRadius:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import itertools
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import Annotated
+from typing import Annotated, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +15,9 @@ from crackfront.analysis.finding import PAPER_FACTOR
 from crackfront.analysis.law_spheres import SphereFactors, sphere_factors
 from crackfront.core import jkr
 from crackfront.core.arrays import Array
+from crackfront.core.cycle.follow import Load
+from crackfront.core.cycle.record import Recorder
+from crackfront.core.outcome import Status
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.units import Scales
 from crackfront.core.variables import variable
@@ -20,7 +25,7 @@ from crackfront.simulate.simulation import Simulation
 from crackfront.simulate.sphere.full_cycle import FullCycle
 from crackfront.sweep.section import section_error
 from crackfront.validation import Count, Positive
-from studies.paper.figure import Integers
+from studies.paper.figure import Integers, Progress
 from studies.paper.film import FilmSection
 from studies.paper.measured import ForceRadius, read_force_radius
 from studies.paper.rough import RoughParameters
@@ -38,35 +43,24 @@ EVERY_WAVELENGTH = 1e-6
 """Short cutoff over roll-off below which nothing adds to the half-derivative, for H > 1/2."""
 
 
-class NanodiamondParameters(RoughParameters, FilmSection):
-    """What Fig. 5b and 5c show, in SI units."""
+class NanodiamondCycle(RoughParameters, FilmSection):
+    """A rubber sphere that is pressed on the film up to a largest force, in SI units."""
 
     radius: Positive  # of the sphere (m)
     work_of_adhesion: Positive  # w_int (J / m^2)
     hurst: Annotated[float, Field(gt=0.5, le=1)]
     largest_force: Positive  # where the approach turns (N)
-    shown_force: Positive  # up to which perimeters are shown (N)
     step: Positive  # penetration between states of the approach (m)
     retraction_step: Positive  # and of the retraction
-    line_step: Positive  # and between the shown perimeters
-    n_surface: Count  # surfaces whose widest instability is measured
-    precision: Positive  # penetration to which it is separated from others (m)
-    factor: Positive = PAPER_FACTOR  # the k with which w_int is found from an approach
 
     @model_validator(mode="after")
-    def _possible(self) -> NanodiamondParameters:
-        if self.shown_force > self.largest_force:
-            raise section_error(
-                f"shown_force {self.shown_force:g} is above largest_force {self.largest_force:g}; "
-                "lower it"
-            )
+    def _conforming(self) -> Self:
         if self.whole_elastic_energy >= self.work_of_adhesion:
             raise section_error(
                 f"energy of full conformity is {self.whole_elastic_energy:.3g} J/m^2, not below "
                 f"work_of_adhesion {self.work_of_adhesion:g}; lower the plateau"
             )
         self.simulation()
-        self.points()
         return self
 
     @property
@@ -95,6 +89,49 @@ class NanodiamondParameters(RoughParameters, FilmSection):
         deepest = float(jkr.equilibrium_penetration(largest, 1 - energy))
         schedule = FullCycle(deepest, self.step / scales.vertical)
         return self.simulation_of(reduced, energy, schedule, realisation)
+
+    def approach(self, recorder: Recorder, largest_force: float) -> Iterator[Load]:
+        """Penetrations of the approach until a recorder has a state of a force (N)."""
+        scales = self.scales
+        for count in itertools.count():
+            yield Load(count * self.step / scales.vertical, 1)
+            if recorder.status is not Status.CONVERGED:
+                return
+            if recorder.states[-1].force * scales.force >= largest_force:
+                return
+
+    def cycle(self, recorder: Recorder, progress: Progress) -> Iterator[Load]:
+        """Penetrations of the approach to the largest force, and down from there."""
+        scales = self.scales
+        yield from self.approach(recorder, self.largest_force)
+        if recorder.status is not Status.CONVERGED:
+            return
+        last = recorder.states[-1]
+        penetration = last.penetration
+        progress(f"approach: mean radius {last.mean_radius * scales.lateral:.4g} m at the turn")
+        while True:
+            penetration -= self.retraction_step / scales.vertical
+            yield Load(penetration, -1)
+
+
+class NanodiamondParameters(NanodiamondCycle):
+    """What Fig. 5b and 5c show."""
+
+    shown_force: Positive  # up to which perimeters are shown (N)
+    line_step: Positive  # penetration between the shown perimeters (m)
+    n_surface: Count  # surfaces whose widest instability is measured
+    precision: Positive  # penetration to which it is separated from others (m)
+    factor: Positive = PAPER_FACTOR  # the k with which w_int is found from an approach
+
+    @model_validator(mode="after")
+    def _shown(self) -> Self:
+        if self.shown_force > self.largest_force:
+            raise section_error(
+                f"shown_force {self.shown_force:g} is above largest_force {self.largest_force:g}; "
+                "lower it"
+            )
+        self.points()
+        return self
 
     def points(self) -> ForceRadius:
         """What was measured."""

@@ -192,10 +192,8 @@ class _Onset(NamedTuple):
 
 def _onsets(fit: SweepFit) -> list[_Onset]:
     """Onsets of hysteresis of all spectra."""
-    onsets = []
-    rows = fit.cells.e_el, fit.cells.factor.value, fit.spectra.factor.value
-    for energies, factors, mean in zip(*rows, strict=True):
-        edges = np.concatenate([[0.0], energies])
+    onsets, edges = [], np.concatenate([[0.0], fit.table.amplitude])
+    for factors, mean in zip(fit.cells.factor.value, fit.spectra.factor.value, strict=True):
         below = np.flatnonzero(factors < mean / 2)
         last = int(below[-1]) + 1 if below.size else 0
         onsets.append(_Onset(float(edges[last]), float(edges[last + 1])))

@@ -13,9 +13,6 @@ from crackfront.analysis.result import HALF_WIDTHS, SweepFit
 from crackfront.analysis.sweep_fit import fit_sweep
 from crackfront.analysis.sweep_law import SweepLaw
 from crackfront.analysis.table import REALISATION, SweepTable
-from crackfront.core import jkr
-from crackfront.core.adhesion import larkin_length
-from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.variables import variables
 
 AMPLITUDES = np.array([0.005, 0.01, 0.02, 0.05, 0.1])
@@ -95,11 +92,6 @@ def test_without_noise_the_fit_returns_the_planted_law_to_round_off(rng):
     assert any("Numerical errors: up to 0.015 of k" in note for note in fit_notes(fit))
 
 
-def test_a_planted_exponent_is_recovered(rng):
-    table = synthetic_table(rng, lambda energy, _: 3 * energy**-0.2, noise=0.0)
-    np.testing.assert_allclose(fit_all(table).spectra.exponent.value, 1.6, rtol=1e-9)
-
-
 def test_planted_trends_with_disorder_and_size_are_recovered(rng):
     table = synthetic_table(
         rng, lambda energy, index: 3 - 0.3 * np.log2(2 * np.sqrt(energy)) - 0.5 * index, noise=0.0
@@ -138,15 +130,6 @@ def test_realisations_are_resampled_with_all_their_amplitudes(rng):
     np.testing.assert_allclose(fit.spectra.factor.standard_error, single.standard_error, rtol=0.06)
     # Resampled apart, the noise would average out over five amplitudes.
     assert np.all(fit.spectra.factor.standard_error > 2 * single.standard_error / np.sqrt(5))
-
-
-def test_a_bootstrap_that_is_drawn_in_parts_is_the_one_that_is_drawn_at_once(rng, monkeypatch):
-    table = synthetic_table(rng, constant)
-    whole = fit_all(table).spectra.factor
-    monkeypatch.setattr("crackfront.analysis.sweep_fit.COUNTS_AT_ONCE", 100)
-    assert fit_all(table).spectra.factor.standard_error == pytest.approx(
-        whole.standard_error, rel=1e-12
-    )
 
 
 def test_intervals_are_those_of_the_seed_and_point_estimates_do_not_depend_on_it_or_the_order(rng):
@@ -279,17 +262,6 @@ def test_a_single_amplitude_and_a_single_spectrum_give_k_but_no_trend(rng):
     assert "its trend with size needs two spectra of one shape" in sentence
 
 
-def test_size_is_compared_only_among_spectra_of_one_shape(rng):
-    table = synthetic_table(rng, lambda energy, index: constant(energy, 0) - index, noise=0.0)
-    wide = replace(table, roll_off=table.roll_off * np.array([1, 1, 16]))
-    np.testing.assert_array_equal(wide.shape == wide.shape[0], [True, True, False])
-    assert fit_all(wide).pooled_size_slope.value == pytest.approx(-1.0)
-    unlike = replace(table, roll_off=table.roll_off * np.array([1, 4, 16]))
-    assert np.isnan(fit_all(unlike).pooled_size_slope.value)
-    # A flat spectrum has a Hurst exponent without effect.
-    assert np.unique(replace(table, hurst=np.array([0.1, 0.5, 1.0])).shape).size == 1
-
-
 def on_springs(table, springs):
     """The spectra of a table, each on springs of so many correlation lengths."""
     number, columns = len(springs), {}
@@ -302,15 +274,6 @@ def on_springs(table, springs):
     return replace(table, **columns | {"spring": spring})
 
 
-@pytest.mark.parametrize("number", [3, 5, 7])
-def test_springs_of_one_spectrum_are_no_trend_with_its_size(rng, number):
-    """The mean of three, five or seven equal logarithms differs from them by a rounding."""
-    one = synthetic_table(rng, constant, lengths=[0.07])
-    fit = fit_all(on_springs(one, np.geomspace(0.3, 30, number)))
-    assert np.isnan(fit.pooled_size_slope.value)
-    assert np.all(np.isnan(fit.size_slope.value))
-
-
 def test_size_is_compared_only_among_equal_springs_in_correlation_lengths(rng):
     table = synthetic_table(rng, lambda energy, index: constant(energy, 0) - index, noise=0.0)
     fronts = on_springs(table, [1.0, 4.0, 16.0])
@@ -321,25 +284,6 @@ def test_size_is_compared_only_among_equal_springs_in_correlation_lengths(rng):
     gaps = np.zeros(fronts.e_el.shape, bool)
     gaps[8] = True
     assert fit_all(with_gaps(fronts, gaps)).pooled_size_slope.value == pytest.approx(-1.0)
-
-
-def test_a_cell_of_one_realisation_narrows_no_interval_of_a_slope(rng):
-    """Two amplitudes, of which one has lost all realisations but one, have no slope."""
-    table = synthetic_table(rng, constant, n_realisation=4, amplitudes=AMPLITUDES[3:])
-    gaps = np.zeros(table.e_el.shape, bool)
-    gaps[:, 1, 1:] = True
-    fit = fit_all(with_gaps(table, gaps))
-    assert np.isnan(fit.pooled.exponent.value)
-    assert np.isnan(fit.pooled.disorder_slope.value)
-    assert covered(fit.pooled.factor, 3.0)
-    assert any("only one realisation has a value at e_el = 0.1" in one for one in fit_notes(fit))
-    three = synthetic_table(rng, constant, n_realisation=4, amplitudes=AMPLITUDES[2:])
-    gaps = np.zeros(three.e_el.shape, bool)
-    gaps[:, 2, 1:] = True
-    known = fit_all(with_gaps(three, gaps)).pooled.disorder_slope
-    gaps[:, 2] = True
-    two = fit_all(with_gaps(three, gaps)).pooled.disorder_slope
-    assert known.value == pytest.approx(float(two.value))
 
 
 def by_the_law(*, straight, spread=0.05):
@@ -379,18 +323,6 @@ def test_a_sweep_by_the_law_departs_from_it_by_nothing_and_extrapolates_to_its_l
     assert np.all(covered(fit.cells.law_factor, k.value))
 
 
-def test_sizes_are_the_springs_over_the_larkin_length():
-    table, _, size = by_the_law(straight=True)
-    spectrum = SelfAffineSpectrum(LENGTHS[1], LENGTHS[1], 0.8)
-    w_rms = 2 * np.sqrt(AMPLITUDES[2])
-    expected = table.spring[1, 2] / larkin_length("roughness", spectrum, w_rms)
-    assert size[1, 2] == pytest.approx(expected)
-    spheres, _, size = by_the_law(straight=False)
-    held = jkr.spring(1.9, 1 - AMPLITUDES[2])
-    assert size[1, 2] == pytest.approx(held / larkin_length("roughness", spectrum, w_rms))
-    assert np.all(np.isnan(spheres.spring))
-
-
 def test_uncorrelated_sites_are_the_limit_of_weak_disorder_at_any_amplitude():
     table, _, size = by_the_law(straight=True)
     fit = fit_all(table, uncorrelated=True)
@@ -400,24 +332,6 @@ def test_uncorrelated_sites_are_the_limit_of_weak_disorder_at_any_amplitude():
     np.testing.assert_allclose(fit.cells.law_factor.value, expected, rtol=1e-6)
     assert fit.k_0.value == pytest.approx(coefficients[0], rel=1e-6)
     assert fit.k_0.low < coefficients[0] < fit.k_0.high
-
-
-def test_a_sweep_without_sizes_has_no_k_by_the_law():
-    table = synthetic_table(np.random.default_rng(1), constant)
-    fit = fit_all(replace(table, contact_radius=np.full(table.e_el.shape, np.nan)))
-    assert np.all(np.isnan(fit.cells.law_factor.value))
-    assert np.isnan(fit.law_departure)
-    assert "this sweep cannot test it" in fit_table(fit)
-    assert "nan" not in fit_table(fit)
-    # At the pull-off of the smooth contact nothing holds the edge either.
-    fit = fit_all(replace(table, contact_radius=np.full(table.e_el.shape, 0.5)))
-    assert np.all(np.isnan(fit.cells.size))
-
-
-def test_the_departure_from_the_law_is_that_of_k():
-    table, _, _ = by_the_law(straight=False)
-    apart = replace(table, w_appr=table.w_appr - 0.1 * (table.w_retr - table.w_appr))
-    assert fit_all(apart).law_departure == pytest.approx(0.1)
 
 
 def test_a_range_below_the_onset_of_hysteresis_is_pointed_out(rng):

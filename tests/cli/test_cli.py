@@ -22,7 +22,6 @@ from click.testing import CliRunner
 import crackfront as cf
 from crackfront.cli import Commands, main
 from crackfront.cli.answers import StoppedError
-from crackfront.core import jkr
 from crackfront.core.outcome import DefectError, Status
 from crackfront.core.solver.relax import named_solver
 from crackfront.core.units import WORK_OF_ADHESION
@@ -35,8 +34,7 @@ from crackfront.sweep.store import Store
 from crackfront.sweep.tasks import BatchWriter
 from tests.commands import refused, run
 from tests.measured.made import DETAIL, measure_surfaces_once
-
-TEST = Path(__file__).parents[2] / "config/test.yaml"
+from tests.places import TEST
 
 
 @pytest.fixture
@@ -66,24 +64,6 @@ def cycle(field, tmp_path, *more, penetration=1, step=0.25):
     )
 
 
-def test_a_cycle_on_a_smooth_tile_is_that_of_jkr(smooth_tile, tmp_path):
-    result = cycle(smooth_tile, tmp_path)
-    assert result.exit_code == 0, result.output
-    dataset = xr.load_dataset(tmp_path / "out.nc")
-    expected = [0, 0.25, 0.5, 0.75, 1, 0.75, 0.5, 0.25, 0, -0.25, -0.5, -0.75]
-    assert np.array_equal(dataset["penetration"], expected)
-    assert np.array_equal(dataset["direction"], [1] * 5 + [-1] * 7)
-    assert dataset["penetration"].dims == ("step",)
-    assert dataset.attrs["status"] == "lost_contact"
-    radii = [jkr.equilibrium_radius(penetration) for penetration in expected]
-    assert dataset["mean_radius"].values == pytest.approx(radii, rel=1e-7)
-    assert dataset["force"].values == pytest.approx(
-        jkr.equilibrium_force(np.array(radii)), abs=1e-7
-    )
-    assert np.all(dataset["residual"] <= 1e-8)
-    assert "radius" not in dataset
-
-
 def test_a_cycle_that_ends_early_is_written_and_has_exit_code_one(
     rough_surface, tmp_path, monkeypatch
 ):
@@ -94,66 +74,6 @@ def test_a_cycle_that_ends_early_is_written_and_has_exit_code_one(
     assert "the solver reached its limit of sweeps" in result.stderr
     assert len(result.stderr.splitlines()) == 1
     assert xr.load_dataset(tmp_path / "out.nc").attrs["status"] == "step_limit"
-
-
-@pytest.mark.parametrize(
-    ("options", "sentence"),
-    [
-        (("--max-penetration", -1), "max penetration -1.0 never makes contact"),
-        (("--step", 0), "step is 0.0; it must be positive"),
-        (("--step", "nan"), "'--step': nan is not a number"),
-        (("--solver", "none"), "solver"),
-        (("--field", "none.nc"), "none.nc does not exist"),
-    ],
-    ids=lambda value: str(value[0]) if isinstance(value, tuple) else "",
-)
-def test_bad_options_of_a_cycle_are_refused(rough_surface, tmp_path, options, sentence):
-    result = cycle(rough_surface, tmp_path, *options)
-    assert result.exit_code == 2
-    assert sentence in result.stderr
-    assert not (tmp_path / "out.nc").exists()
-
-
-@pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf])
-def test_a_tile_with_a_value_that_is_not_finite_is_refused_with_its_place(
-    smooth_tile, tmp_path, value
-):
-    tile = xr.load_dataset(smooth_tile)
-    tile.work_of_adhesion[3, 5] = value
-    tile.to_netcdf(tmp_path / "bad.nc")
-    sentence = refused(
-        "cycle", "--field", tmp_path / "bad.nc", "--max-penetration", 1, "--step", 0.5,
-        "--output", tmp_path / "out.nc",
-    )  # fmt: skip
-    assert f"work_of_adhesion is {value} at x index 3, y index 5 (1 such value)" in sentence
-
-
-def test_a_sweep_runs_from_its_plan_to_its_figures_and_tells_what_a_missing_loop_costs(
-    tmp_path, monkeypatch
-):
-    output = ("--output", tmp_path / "out")
-    plan = run("plan", TEST, *output)
-    assert "8 simulations" in plan.output
-    assert "the fit of k takes those from 0.02 to 0.1" in plan.output
-    assert "0/4" in plan.output
-    simulate = run("simulate", TEST, *output)
-    assert "[8/8]" in simulate.output
-    assert "4/4" in run("plan", TEST, *output).output
-    again = run("simulate", TEST, *output)
-    assert "8 of 8 simulations are stored" in again.output
-    assert "[1/" not in again.output
-    monkeypatch.setattr("crackfront.cli.answers._MOMENT", 0.0)
-    for command in ("aggregate", "fit", "figures"):
-        result = run(command, TEST, *output)
-        assert result.exit_code == 0, result.output
-        assert str(tmp_path / "out") in result.output
-        assert ("of processor time" in result.stderr) == (command == "figures")
-        shutil.rmtree(tmp_path / "out/curves", ignore_errors=True)
-    made = {path.name for path in (tmp_path / "out/figures").iterdir()}
-    assert made == {
-        f"{name}.{suffix}" for name in ("hysteresis", "loop", "factor") for suffix in ("pdf", "png")
-    }
-    assert (tmp_path / "out/fit.md").read_text(encoding="utf-8").startswith("# ")
 
 
 LINES = """seed: 3
@@ -186,12 +106,12 @@ def test_a_sweep_of_straight_fronts_is_fitted_and_drawn(tmp_path, monkeypatch):
     for command in ("simulate", "aggregate", "fit", "figures"):
         result = run(command, configuration, *output)
         assert result.exit_code == 0, result.output
-    found = xr.load_dataset(tmp_path / "out/fit.nc")
-    assert found.cell_size.attrs == {"units": "1", "long_name": found.cell_size.long_name}
+    dataset = xr.load_dataset(tmp_path / "out/fit.nc")
+    assert dataset.cell_size.attrs == {"units": "1", "long_name": dataset.cell_size.long_name}
     # The tiles have an rms of their own.
-    np.testing.assert_allclose(found.cell_size[1], 2 * found.cell_size[0], rtol=0.3)
+    np.testing.assert_allclose(dataset.cell_size[1], 2 * dataset.cell_size[0], rtol=0.3)
     law, weak = (
-        one.sel(bound=["low", "value", "high"]) for one in (found.cell_law_factor, found.k_0)
+        one.sel(bound=["low", "value", "high"]) for one in (dataset.cell_law_factor, dataset.k_0)
     )
     assert np.all(law[..., 0] <= law[..., 1])
     assert weak[0] < weak[1] < weak[2]
@@ -214,18 +134,6 @@ def copy_store(tmp_path_factory):
         shutil.copytree(whole(spectrum), folder, dirs_exist_ok=True)
 
     return copy
-
-
-def test_a_plan_tells_what_is_left_to_run_and_what_it_costs(tmp_path, copy_store):
-    copy_store("rough", tmp_path)
-    result = run("plan", TEST, "--output", tmp_path, "--block", "1")
-    assert result.exit_code == 0, result.output
-    [flat, rough, everything] = result.output.split("to run")[1].splitlines()[1:4]
-    assert flat.split()[:3] == ["flat", "2", "4"]
-    assert rough.split()[:3] == ["rough", "2", "0"]
-    assert everything.split()[:3] == ["all", "4", "4"]
-    assert float(everything.split()[3]) > 0
-    assert float(rough.split()[3]) == 0
 
 
 def test_the_status_counts_what_is_done_failed_and_left(tmp_path, copy_store):
@@ -290,22 +198,6 @@ def test_missing_input_of_the_later_steps_is_refused(tmp_path):
         assert "lacks hysteresis.nc; run crackfront aggregate" in sentence
 
 
-@pytest.mark.parametrize("command", ["plan", "simulate", "aggregate", "fit", "figures"])
-def test_a_bad_configuration_is_refused_by_every_command(tmp_path, command):
-    bad = tmp_path / "bad.yaml"
-    bad.write_text(TEST.read_text().replace("hurst: 0.8", "hurst: 1.8"))
-    assert "spectra[1]: hurst is 1.8" in refused(command, bad, "--output", tmp_path / "out")
-    assert not (tmp_path / "out").exists()
-
-
-def test_a_surface_in_si_units_is_refused_as_a_field(tmp_path):
-    words = "the data are in SI units; in_reduced_units(data, sphere) converts them"
-    surface = cf.random_surface(0.4, 0.05, side=4, error=0.05)
-    cf.in_si_units(surface, cf.Scales(1e-3, 50e-3, 1e6)).to_netcdf(tmp_path / "surface.nc")
-    output = ("--max-penetration", 1, "--output", tmp_path / "out.nc")
-    assert words in refused("cycle", "--field", tmp_path / "surface.nc", *output)
-
-
 def commands_of_help():
     """Every example in the help of a command, continued lines joined, with the command's name."""
     for name, command in main.commands.items():
@@ -331,12 +223,6 @@ def test_the_examples_of_the_help_name_options_that_exist(name, line):
     given = {word for word in words if word.startswith("--")}
     known = {option for item in main.commands[name].params for option in item.opts}
     assert given <= known
-
-
-def test_the_exit_codes_of_the_help_are_those_of_the_commands():
-    text = run("--help").output
-    for code in (0, 1, 2, StoppedError.exit_code):
-        assert re.search(rf"^ +{code} +\w", text, re.MULTILINE)
 
 
 def test_machines_read_the_plan_the_progress_and_the_fit(tmp_path, copy_store):
@@ -471,14 +357,6 @@ def test_a_cycle_overwrites_nothing_that_it_has_not_written(
     named = ("--output", tmp_path / output, "--figure", tmp_path / figure)
     assert sentence in refused(*told, *named)
     assert {path: path.read_bytes() for path in tmp_path.iterdir()} == before
-
-
-def test_a_file_with_heights_and_works_of_adhesion_is_refused(rough_surface, tmp_path):
-    surface = xr.load_dataarray(rough_surface)
-    both = xr.Dataset({"height": surface, "work_of_adhesion": surface + 1})
-    both.to_netcdf(tmp_path / "both.nc")
-    told = ("cycle", "--field", tmp_path / "both.nc", "--max-penetration", 1, "--step", 0.5)
-    assert "has both height and work_of_adhesion" in refused(*told, "--output", tmp_path / "o.nc")
 
 
 def test_loads_in_a_list_may_have_blanks_and_must_be_numbers(rough_surface, tmp_path):
@@ -628,14 +506,6 @@ def test_a_full_disk_is_told_as_that_whatever_netcdf_says(smooth_tile, tmp_path,
     sentence = refused("cycle", *options, "--output", tmp_path / "cycle.nc")
     told = f"{tmp_path / 'cycle.nc'} cannot be written: No space left on device; make room and rep"
     assert told in sentence
-
-
-def test_branches_of_a_straight_front_are_told_as_forward_and_back(smooth_tile, tmp_path):
-    options = ["--spring", "1", "--loads", "0,1,0", "--step", "1", "--watch"]
-    done = run("cycle", "--field", smooth_tile, *options, "--output", tmp_path / "out.nc")
-    assert done.exit_code == 0, done.output
-    told = [line for line in done.stderr.splitlines() if line.startswith("state ")]
-    assert [line.split(":")[0].split(", ")[1] for line in told] == ["forward", "forward", "back"]
 
 
 CYCLES = """

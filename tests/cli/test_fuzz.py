@@ -31,7 +31,7 @@ from tests.commands import curve_paths
 from tests.yaml_texts import to_yaml
 
 SEED = 20261122
-FEW = 12
+FEW = 6
 """Cases of each kind by day; the others are left to the night."""
 ANSWERS = (0, 3)
 """Exit codes of a command that has an answer, without or with reservations."""
@@ -440,17 +440,17 @@ def field_case(rng, folder):
     def wrong(_):
         if told := wrong_curve(xr.load_dataset(output)):
             return told
-        found = xr.load_dataset(output)
-        if same and "penetration" in found and np.all(values == WORK_OF_ADHESION):
-            exact = [jkr.equilibrium_radius(float(one)) for one in found["penetration"]]
-            if not np.allclose(found["mean_radius"], exact, rtol=1e-3):
+        written = xr.load_dataset(output)
+        if same and "penetration" in written and np.all(values == WORK_OF_ADHESION):
+            exact = [jkr.equilibrium_radius(float(one)) for one in written["penetration"]]
+            if not np.allclose(written["mean_radius"], exact, rtol=1e-3):
                 return "wrong: a smooth field that is not that of JKR"
         result = CliRunner().invoke(main, [*arguments, "--solver", "reference"])
         if result.exit_code != 0:
             return f"wrong: the reference says {result.stderr}"
         other, place = xr.load_dataset(output), "mean_radius"
         place = place if place in other else "mean_position"
-        if other.sizes != found.sizes or not np.allclose(other[place], found[place], atol=1e-4):
+        if other.sizes != written.sizes or not np.allclose(other[place], written[place], atol=1e-4):
             return "wrong: the reference finds other states"
         return ""
 

@@ -42,61 +42,41 @@ def test_a_front_has_the_k_of_the_law_in_both_branches():
 
 def test_an_infinite_front_is_json_that_is_read_everywhere():
     text = run(FRONT, "--json").stdout
-    found = json.loads(text, parse_constant=lambda name: pytest.fail(f"{name} is no JSON"))
-    assert found["g"] == "inf"
-    assert found["k"] == cf.pinning_factor(0.4, math.inf).factor.value
-    assert found["k"] > answer(FRONT | {"--g": "10"})["k"]
+    content = json.loads(text, parse_constant=lambda name: pytest.fail(f"{name} is no JSON"))
+    assert content["g"] == "inf"
+    assert content["k"] == cf.pinning_factor(0.4, math.inf).factor.value
+    assert content["k"] > answer(FRONT | {"--g": "10"})["k"]
 
 
 @pytest.mark.parametrize("field", ["roughness", "chemical"])
 def test_a_sphere_has_its_lengths_and_the_k_of_its_branches(field):
-    found = answer(SPHERE, "--field", field)
+    content = answer(SPHERE, "--field", field)
     law = sphere_factors(field, SelfAffineSpectrum(0.005, 0.1, 0.3), 0.05, 1.9)
-    assert (found["k"], found["k_low"], found["k_high"]) == pytest.approx(
+    assert (content["k"], content["k_low"], content["k_high"]) == pytest.approx(
         (law.both.value, law.both.low, law.both.high)
     )
-    assert found["k_appr"] == law.approach.factor.value > found["k_retr"]
-    assert found["l_kappa"] == law.spring
-    assert found["g"] == pytest.approx(found["l_kappa"] / found["larkin_length"])
-    assert found["w_rms"] == pytest.approx(2 * math.sqrt(0.05))
-
-
-def test_what_makes_w_loc_vary_decides_how_much_of_it_is_negative():
-    strong = FRONT | {"--w-rms": "0.8"}
-    rough, chemical = (answer(strong, "--field", field) for field in ("roughness", "chemical"))
-    assert rough["k"] == chemical["k"]
-    # One standard deviation and 1 / 0.8 of them: tables of the normal distribution.
-    assert rough["negative_share"] == pytest.approx(0.5 * math.erfc(1.05 / math.sqrt(2)))
-    assert chemical["negative_share"] == pytest.approx(0.5 * math.erfc(1.25 / math.sqrt(2)))
-
-
-def test_how_far_measured_fronts_of_that_size_lie_above_the_law_is_stated():
-    near = run(FRONT | {"--g": "1.5"}).output
-    assert near.count("measured k     above the law") == 2
-    one = run(FRONT | {"--g": "1.5", "--breadth": "0.92"}).output
-    assert one.count("measured k     above the law") == 1
-    assert "g 1 to 2" in one
+    assert content["k_appr"] == law.approach.factor.value > content["k_retr"]
+    assert content["l_kappa"] == law.spring
+    assert content["g"] == pytest.approx(content["l_kappa"] / content["larkin_length"])
+    assert content["w_rms"] == pytest.approx(2 * math.sqrt(0.05))
 
 
 def test_what_was_not_measured_is_told():
     assert answer(FRONT)["measured"]["g"] == list(shipped_law().size)
     result = run(FRONT | {"--w-rms": "1.9"})
     assert "beyond what was measured: w_rms 1.9 w_int is above" in result.output
-    found = answer(FRONT | {"--g": "0.1"})
-    assert "hysteresis begins" in found["warning"]
-    assert found["k_low"] == 0
+    content = answer(FRONT | {"--g": "0.1"})
+    assert "hysteresis begins" in content["warning"]
+    assert content["k_low"] == 0
 
 
 @pytest.mark.parametrize(
     ("options", "sentence"),
     [
         ({}, "the options are incomplete; name --w-rms and --g, or else --spectrum"),
-        ({"--w-rms": "0.4"}, "the options are incomplete"),
         (SPHERE | {"--g": "3"}, "are mixed; name either of them"),
         (FRONT | {"--w-rms": "2"}, "w_rms is 2 w_int; it must lie between 0 and 2"),
-        (FRONT | {"--w-rms": "-0.1"}, "w_rms is -0.1 w_int; it must lie between 0 and 2"),
         (FRONT | {"--g": "0"}, "size g is 0; it must be positive, or inf"),
-        (FRONT | {"--g": "nan"}, "size g is nan; it must be positive, or inf"),
         (SPHERE | {"--spectrum": "0.005,0.1"}, "--spectrum is '0.005,0.1'; write short cutoff"),
         (SPHERE | {"--spectrum": "0.1,0.005,1"}, "roll_off 0.005 is shorter than short_cutoff"),
         (SPHERE | {"--elastic-energy": "1"}, "is 1 w_int; the factors k need one between 0 and 1"),
@@ -104,7 +84,6 @@ def test_what_was_not_measured_is_told():
             SPHERE | {"--contact-radius": "0.4"},
             "contact radius 0.4 is at or below pull-off",
         ),
-        (SPHERE | {"--contact-radius": "-1"}, "contact radius is -1; it must lie"),
     ],
 )
 def test_what_cannot_be_answered_is_refused_with_a_sentence(options, sentence):
@@ -121,13 +100,6 @@ def test_a_breadth_is_that_of_the_law_and_narrows_the_interval():
     anybody = answer(FRONT)
     assert found["k_high"] - found["k_low"] < anybody["k_high"] - anybody["k_low"]
     assert "breadth 0.92" in run(FRONT, "--breadth", "0.92").stdout
-
-
-@pytest.mark.parametrize("breadth", ["0", "-1", "0.1", "nan", "inf"])
-def test_a_breadth_that_no_spectrum_has_is_refused(breadth):
-    result = run(FRONT, "--breadth", breadth)
-    assert result.exit_code == 2
-    assert f"breadth is {breadth}; it must be finite and at least 0.25" in result.stderr
 
 
 def test_a_flat_spectrum_is_named_by_its_cutoff():

@@ -1,7 +1,6 @@
 """The command of measured loops."""
 
 import json
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -9,6 +8,7 @@ from click.testing import CliRunner
 
 from crackfront.cli import main
 from tests.measured.loops.made import W_APPR, W_RETR, loop
+from tests.places import ROOT
 
 
 @pytest.fixture
@@ -21,7 +21,6 @@ def table(tmp_path):
     return path
 
 
-ROOT = Path(__file__).parents[2]
 SCAN = ROOT / "examples/scans/nanodiamond-detail.al3d"
 ON_SCAN = ("--radius", "1.25mm", "--scans", SCAN)
 
@@ -34,9 +33,9 @@ def test_a_table_becomes_works_of_adhesion_and_a_figure(table, tmp_path):
     sphere = ("--radius", "1.25mm", "--modulus", "0.7MPa")
     done = run(table, *sphere, "--figure", tmp_path / "loop.png", "--json")
     assert done.exit_code == 0, done.output
-    found = json.loads(done.stdout)
+    content = json.loads(done.stdout)
     for name, truth in (("w_appr", W_APPR), ("w_retr", W_RETR)):
-        assert found[name]["low"] < truth < found[name]["high"]
+        assert content[name]["low"] < truth < content[name]["high"]
     assert (tmp_path / "loop.png").stat().st_size > 1e4
     done = run(table, *sphere)
     assert done.stdout.startswith("hysteresis")
@@ -76,21 +75,12 @@ def test_what_cannot_be_used_is_refused_with_what_to_do(table, options, sentence
 def test_a_scan_beside_the_loop_gives_their_ratio(table):
     done = run(table, *ON_SCAN, "--work-of-adhesion", "63mJ/m2", "--json")
     assert done.exit_code == 0, done.output
-    found = json.loads(done.stdout)
-    assert found["predicted"]["outcome"] == "applies with reservations"
-    ratio = found["ratio"]
-    expected = found["hysteresis"]["value"] / found["predicted"]["hysteresis"]["value"]
+    content = json.loads(done.stdout)
+    assert content["predicted"]["outcome"] == "applies with reservations"
+    ratio = content["ratio"]
+    expected = content["hysteresis"]["value"] / content["predicted"]["hysteresis"]["value"]
     assert np.isclose(ratio["value"], expected)
     assert ratio["low"] < ratio["value"] < ratio["high"]
-
-
-def test_options_of_reading_apply_to_the_scans(table):
-    adhesion = ("--work-of-adhesion", "63mJ/m2", "--json")
-    fine, coarse = (
-        json.loads(run(table, *ON_SCAN, *adhesion, "--tip-radius", radius).stdout)["predicted"]
-        for radius in ("1nm", f"{SCAN.name}=200nm")
-    )
-    assert coarse["hysteresis"]["high"] > fine["hysteresis"]["high"]
 
 
 def test_a_loop_whose_prediction_is_refused_is_kept(table, tmp_path):
@@ -98,7 +88,7 @@ def test_a_loop_whose_prediction_is_refused_is_kept(table, tmp_path):
     done = run(table, *ON_SCAN, "--work-of-adhesion", "1uJ/m2", "--json", "--figure", figure)
     assert done.exit_code == 2
     assert "the theory does not apply" in done.stderr
-    found = json.loads(done.stdout)
-    assert found["w_appr"]["low"] < W_APPR < found["w_appr"]["high"]
-    assert "predicted" not in found
+    content = json.loads(done.stdout)
+    assert content["w_appr"]["low"] < W_APPR < content["w_appr"]["high"]
+    assert "predicted" not in content
     assert figure.is_file()

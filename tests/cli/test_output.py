@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 from tests.commands import slow, stored
+from tests.places import ROOT
 
-ROOT = Path(__file__).parents[2]
 TEST = str(ROOT / "config/test.yaml")
 
 

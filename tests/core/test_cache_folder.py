@@ -61,8 +61,7 @@ def permissions(folder):
     }
 
 
-@pytest.mark.parametrize("depth", [0, 2])
-@pytest.mark.parametrize("harm", [loosen, give_away, link_to_loose])
+@pytest.mark.parametrize(("harm", "depth"), [(loosen, 2), (give_away, 0), (link_to_loose, 2)])
 @pytest.mark.usefixtures("fresh_cache")
 def test_a_folder_below_one_that_others_can_change_is_neither_used_nor_touched(
     tmp_path, monkeypatch, harm, depth

@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 
 from crackfront.core import cache_folder, compiled
-from tests.commands import slow
 
 
 def quotient(a, b):
@@ -102,25 +101,13 @@ def answer(process):
     return printed.strip(), said
 
 
+@pytest.mark.slow
 def test_a_second_process_compiles_nothing_unless_a_callee_in_another_file_changes(package):
     assert answer(started(package)) == ("30 True ''", "")
     assert answer(started(package)) == ("30 False ''", "")
     callee = package / "crackfront/core/inner.py"
     callee.write_text(callee.read_text().replace("a + 1", "a + 2"))
     assert answer(started(package)) == ("40 True ''", "")
-    assert answer(started(package, NUMBA_DISABLE_JIT="1")) == ("40 False ''", "")
-
-
-def test_kernels_of_a_geometry_outside_of_the_core_are_compiled_by_each_process(package):
-    pair = "from typing import NamedTuple\n\n\nclass Pair(NamedTuple):\n    value: float\n"
-    kernel = "from crackfront.core.compiled import jit\n\n\n@jit\ndef outer(a):\n    return a[0]\n"
-    (package / "crackfront/core/outer.py").write_text(kernel)
-    for place, kept in (("crackfront/core/pair.py", True), ("pair.py", False)):
-        (package / place).write_text(pair)
-        module = place.removesuffix(".py").replace("/", ".")
-        code = f"from {module} import Pair\n" + ASKED.replace("outer(2)", "outer(Pair(3.0))")
-        answer(started(package, code))
-        assert answer(started(package, code)) == (f"3.0 {not kept} ''", "")
 
 
 @pytest.mark.slow
@@ -130,7 +117,8 @@ def test_processes_that_compile_at_once_agree_and_leave_a_whole_cache(package):
     assert answer(started(package)) == ("30 False ''", "")
 
 
-@pytest.mark.parametrize("place", ["nowhere", slow("unwritable")])
+@pytest.mark.slow
+@pytest.mark.parametrize("place", ["nowhere", "unwritable"])
 def test_without_a_usable_folder_nothing_is_kept_not_even_next_to_the_sources(package, place):
     if place == "unwritable":
         # numba then turns to other folders on its own.

@@ -70,6 +70,7 @@ def output(program):
     return done.stdout
 
 
+@pytest.mark.slow
 def test_what_is_blocked_cannot_be_imported():
     done = subprocess.run(
         [sys.executable, "-c", f"{ALONE}import xarray"], capture_output=True, text=True
@@ -89,6 +90,7 @@ assert settings() == before, (settings(), before)
 """
 
 
+@pytest.mark.slow
 def test_the_core_runs_without_any_other_library_and_its_import_changes_nothing():
     found = output(f"{ALONE}{UNCHANGED}{IMPORTS}{CYCLE}")
     assert found == f"{cycle()}\n"

@@ -85,13 +85,13 @@ def _difference(golden: Array | None, computed: Array | None) -> float:
     """Largest difference, relative to the largest golden entry; infinite for other shapes."""
     if golden is None or computed is None or golden.shape != computed.shape:
         return math.inf
-    known = np.isfinite(golden)
-    if not np.array_equal(known, np.isfinite(computed)):
+    is_finite = np.isfinite(golden)
+    if not np.array_equal(is_finite, np.isfinite(computed)):
         return math.inf
-    if not np.any(known):
+    if not np.any(is_finite):
         return 0.0
-    scale = max(float(np.max(np.abs(golden[known]))), _SMALLEST_SCALE)
-    return float(np.max(np.abs(computed[known] - golden[known]))) / scale
+    scale = max(float(np.max(np.abs(golden[is_finite]))), _SMALLEST_SCALE)
+    return float(np.max(np.abs(computed[is_finite] - golden[is_finite]))) / scale
 
 
 def advice(moved: list[Movement], version: str, most: int = 8) -> str:

@@ -46,5 +46,6 @@ def prediction(surface):
 
 @pytest.fixture
 def few_draws(monkeypatch):
-    """One batch of draws, where their number is not what is tested."""
+    """One small batch of draws, where their number is not what is tested."""
     monkeypatch.setattr(draws, "BATCHES", (1,))
+    monkeypatch.setattr(draws, "BATCH", 2**10)

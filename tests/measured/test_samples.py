@@ -1,15 +1,12 @@
 """Series of samples: what a row of a table or of YAML says, and what comes of it."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 
 from crackfront.measured.samples.sample import read_samples
 from crackfront.measured.samples.sample_results import predicted_samples
 from tests.measured.made import SCENE
-
-ROOT = Path(__file__).parents[2]
+from tests.places import ROOT
 
 SPHERE = {
     "modulus": "0.7MPa",
@@ -80,110 +77,12 @@ def test_a_sample_may_have_several_scans_psds_and_units(tmp_path):
     assert (three.psd, three.density.psd_sides) == (tmp_path / "psd.csv", "one")
 
 
-def test_headings_and_cells_in_quotes_may_have_several_lines(tmp_path):
-    for name in ("a.txt", "b.txt"):
-        (tmp_path / name).write_text("1 2\n")
-    path = tmp_path / "samples.csv"
-    path.write_text('sample,scans,"radius\n(mm)"\nA,"a.txt\nb.txt",2\n')
-    [sample] = read_samples(path, SPHERE)
-    assert sample.scans == (tmp_path / "a.txt", tmp_path / "b.txt")
-    assert sample.scales.radius == pytest.approx(2e-3)
-
-
-@pytest.mark.parametrize("row", ['A,"a.txt,2\n', 'A,a.txt,"2\n'])
-def test_a_quote_that_is_not_closed_is_refused(tmp_path, row):
-    path = tmp_path / "samples.csv"
-    path.write_text("sample,scans,radius (mm)\n" + row + "B,b.txt,2\n" * 20_000)
-    with pytest.raises(ValueError, match=r"samples.csv, line \d+: .*close the quote"):
-        read_samples(path, SPHERE)
-
-
-def test_a_pattern_of_a_psd_stands_for_one_file(tmp_path):
-    path = tmp_path / "samples.csv"
-    path.write_text("sample,psd\nA,psd-*.csv\n")
-    (tmp_path / "psd-1.csv").write_text("1 2\n")
-    [found] = read_samples(path, SPHERE)
-    assert found.psd == tmp_path / "psd-1.csv"
-    (tmp_path / "psd-2.csv").write_text("1 3\n")
-    several = r"line 2: psd-\*.csv stands for 2 files, psd-1.csv, psd-2.csv; name one of them"
-    with pytest.raises(ValueError, match=several):
-        read_samples(path, SPHERE)
-
-
-def test_a_mask_of_a_row_is_relative_to_the_table_and_one_of_the_command_is_not(
-    tmp_path, monkeypatch
-):
-    folder = tmp_path / "films"
-    folder.mkdir()
-    monkeypatch.chdir(tmp_path)
-    for name in ("a.txt", "mask.txt"):
-        (folder / name).write_text("1 2\n")
-    table, listed = folder / "samples.csv", folder / "samples.yaml"
-    table.write_text('sample,scans,mask\nA,a.txt,mask.txt\nB,a.txt,"0:1um,0:1um"\n')
-    one, two = read_samples(table, SPHERE)
-    assert one.reading[0].mask == (folder / "mask.txt",)
-    assert two.reading[0].mask == (((0, 1e-6), (0, 1e-6)),)
-    listed.write_text("samples:\n - {sample: A, scans: a.txt, mask: [mask.txt, '0:1um,0:1um']}\n")
-    [three] = read_samples(listed, SPHERE)
-    assert three.reading[0].mask == (folder / "mask.txt", *two.reading[0].mask)
-    table.write_text("sample,scans\nA,a.txt\n")
-    [four] = read_samples(table, SPHERE | {"mask": ("mask.txt",)})
-    assert four.reading[0].mask == (Path("mask.txt"),)
-    table.write_text("sample,scans,mask\nA,a.txt,absent.txt\n")
-    with pytest.raises(ValueError, match=r"line 2: .*absent.txt does not exist; correct its"):
-        read_samples(table, SPHERE)
-
-
 def test_the_page_shows_the_table_of_the_example_and_its_scans_are_there():
     path = ROOT / "examples/samples.csv"
     assert path.read_text("utf-8") in (ROOT / "docs/surfaces.md").read_text("utf-8")
     first, second = read_samples(path, SPHERE)
     assert [len(one.scans) for one in (first, second)] == [2, 1]
     assert first.measured["hysteresis"].value == pytest.approx(27e-3)
-
-
-@pytest.mark.parametrize("unit", ["(1)", "[1]", "(-)", "()", "[ ]"])
-@pytest.mark.parametrize("name", ["samples.csv", "excel.csv", "samples.yaml"])
-def test_a_pure_number_in_the_unit_of_a_head_is_no_unit(tmp_path, name, unit):
-    path = tmp_path / name
-    text = TABLES[name].replace("hurst: 0.8", f"'hurst {unit}': 0.8")
-    path.write_text(text.replace("hurst;", f"hurst {unit};").replace("hurst,", f"hurst {unit},"))
-    assert [one.numbers.hurst for one in read_samples(path, SPHERE)] == [0.8, 0.8]
-
-
-@pytest.mark.parametrize("name", ["samples.csv", "excel.csv", "samples.yaml"])
-def test_a_unit_that_begins_with_a_number_is_refused(tmp_path, name):
-    path = tmp_path / name
-    path.write_text(TABLES[name].replace("rms (nm)", "rms (10^1 nm)"))
-    with pytest.raises(ValueError, match=r"'rms' is '10\^1 nm', which begins with a number; write"):
-        read_samples(path, SPHERE)
-
-
-def test_two_sides_between_semicolons_are_no_number_with_a_decimal_comma(tmp_path):
-    path, head = tmp_path / "samples.csv", "sample;scans;unit;tip radius (nm);size\n"
-    (tmp_path / "a.txt").write_text("1 2\n")
-    for size, expected in (("50, 25", (50, 25)), ("50.5", (50.5,)), ("50", (50,))):
-        path.write_text(f"{head}A;a.txt;um;20,5;{size}\n")
-        [found] = read_samples(path, SPHERE)
-        assert found.reading[0].size == expected
-    path.write_text(f"{head}A;a.txt;um;20,5;50,25\n")
-    with pytest.raises(ValueError, match=r"line 2: size is '50,25', one side or two; write '50, 2"):
-        read_samples(path, SPHERE)
-
-
-def test_a_name_may_look_like_a_number_with_a_decimal_comma(tmp_path):
-    path = tmp_path / "samples.csv"
-    path.write_text(CSV.replace(",", ";").replace(".", ",").replace("\nA;", "\n1,5;"))
-    assert "1,5" in [one.name for one in read_samples(path, SPHERE)]
-
-
-@pytest.mark.parametrize("between", [";", "\t"])
-def test_numbers_with_both_decimal_signs_are_refused(tmp_path, between):
-    path = tmp_path / "samples.csv"
-    text = CSV.replace(",", between).replace(".", ",")
-    path.write_text(text.replace(f"{between}40{between}", f"{between}40.000{between}"))
-    with pytest.raises(ValueError, match=r"line 4: .* numbers with decimal points and"):
-        read_samples(path, SPHERE)
 
 
 @pytest.mark.parametrize("between", [";", "\t"])
@@ -209,30 +108,6 @@ def test_a_comma_that_may_separate_thousands_is_refused_unless_another_number_se
     assert found.scales.radius == pytest.approx(1.25e-3)
     with pytest.raises(ValueError, match=r"line 2: .* numbers with decimal points and"):
         write("1,250", "20.5")
-
-
-@pytest.mark.parametrize(
-    ("row", "common", "sentence"),
-    [
-        ("C,,psd.csv,,1,", {}, "shortest is an option of scans, and the sample has none; leave"),
-        ("C,,,20,1,", {}, "shortest is an option of scans, and the sample has none; leave it out"),
-        ("C,,psd.csv,,,", {"shortest": "1um"}, "has none; write it in a column, for rows"),
-        ("C,,,20,,", {"mask": ("mask.txt",)}, "mask is an option of scans, and the sample has"),
-        ("C,a.txt,,,,one", {}, "psd_sides is an option of psd, and the sample has none; leave it"),
-        ("C,,,20,,one", {}, "psd_sides is an option of psd, and the sample has none; leave it out"),
-    ],
-)
-def test_an_option_without_effect_on_a_sample_is_refused(tmp_path, row, common, sentence):
-    for name in ("a.txt", "psd.csv"):
-        (tmp_path / name).write_text("1 2\n")
-    path, head = tmp_path / "samples.csv", "sample,scans,psd,rms (nm),shortest (um),psd_sides"
-    numbers = "2um,0.8,20nm" if ",20," in row else ",,"
-    path.write_text(f"{head},roll_off,hurst,short_cutoff\n{row},{numbers}\n")
-    with pytest.raises(ValueError, match=rf"line 2: .*{sentence}"):
-        read_samples(path, SPHERE | common)
-    path.write_text("sample,psd\nC,psd.csv\n")
-    [found] = read_samples(path, SPHERE | {"detrend": "curvature", "mask": ()})
-    assert found.psd == tmp_path / "psd.csv"
 
 
 @pytest.mark.parametrize(

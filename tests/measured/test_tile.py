@@ -74,36 +74,12 @@ def test_the_tile_of_a_map_is_its_mirror_images_around_it(scan):
     assert along_front == pytest.approx(np.roll(along_front[::-1], 128), rel=1e-9)
 
 
-def test_the_apex_is_above_the_centre_of_the_scan(scan):
-    [measurement] = read_measurements([scan])
-    places = np.arange(128) - 64
-    bump = 1e-9 * np.exp(-(places[:, None] ** 2 + places**2) / 50)
-    adhesion = measured_adhesion(replace(measurement, heights=bump), SCENE)
-    deviation = np.abs(adhesion.work_of_adhesion - np.mean(adhesion.work_of_adhesion))
-    x, y = np.unravel_index(np.argmax(deviation), deviation.shape)
-    assert abs(int(x) - 128) <= 8
-    assert abs(int(y) - 128) <= 1
-
-
 def test_a_periodic_map_is_a_tile_as_it_stands(rng):
     heights = gaussian_field(SPECTRUM, 128, SIDE, rng)
     adhesion = measured_adhesion(periodic_measurement(heights), SCENE)
     expected = rough_adhesion(heights / SCENE.vertical, SIDE / 128 / SCENE.lateral)
     assert adhesion.pixel == pytest.approx(expected.pixel)
     assert adhesion.work_of_adhesion == pytest.approx(expected.work_of_adhesion, rel=1e-9)
-
-
-def test_a_map_of_odd_and_unequal_sides_has_a_tile(tmp_path, rng):
-    heights = map_heights(rng)[:100, :71]
-    content = scans.al3d(heights, SIDE / 128, "unequal")
-    (tmp_path / "scan.al3d").write_bytes(content)
-    [measurement] = read_measurements([tmp_path / "scan.al3d"])
-    assert measurement.size == pytest.approx((100 * SIDE / 128, 71 * SIDE / 128))
-    adhesion = measured_adhesion(measurement, SCENE)
-    assert adhesion.work_of_adhesion.shape == (200, 142)
-    found = adhesion.e_el * SCENE.work_of_adhesion
-    measured = SCENE.contact_modulus / 4 * measured_mean_square(analysed_scan(measurement), 0.5)
-    assert found == pytest.approx(measured, rel=0.4)
 
 
 def test_a_map_too_rough_for_full_conformity_is_no_field(tmp_path, heights):

@@ -12,7 +12,7 @@ from crackfront.core.geometry.line import LineState
 from crackfront.core.geometry.sphere import contact_field
 from crackfront.core.solver.relax import Newton
 from crackfront.core.units import WORK_OF_ADHESION
-from crackfront.plots.loop_figures import draw_loop, draw_pinning, steady_loop_figure
+from crackfront.plots.loop_figures import draw_loop, draw_pinning
 from crackfront.plots.style import COLUMN, blank_figure, house_style
 
 
@@ -77,39 +77,3 @@ def test_the_loop_lies_between_its_curves(record):
         np.testing.assert_allclose(force, jkr.equilibrium_force(radius, adhesion))
     places = line_labelled(axes, "approach").get_xdata()
     np.testing.assert_array_equal(places, record.states.mean_radius[record.states.direction > 0])
-
-
-@pytest.mark.parametrize("energy", [0.002, 0.01, 0.1])
-def test_the_arrows_of_a_loop_lie_beside_all_curves_and_in_the_direction_of_motion(record, energy):
-    works = measured(steady_adhesion(record, correlation_length=0.1))
-    axes = drawn(draw_loop, record.states, *works, elastic_energy=energy)
-    to_axes = axes.transData + axes.transAxes.inverted()
-    curves = np.concatenate([to_axes.transform(line.get_xydata()) for line in axes.get_lines()])
-    arrows = [(np.array(text.xyann), np.array(text.xy)) for text in axes.texts]
-    assert len(arrows) == 2
-    for tail, head in arrows:
-        points = np.linspace(tail, head, 20)
-        assert np.hypot(*(points[:, None] - curves).T).min() > 0.015
-    assert [np.sign(head[0] - tail[0]) for tail, head in arrows] == [1, -1]
-
-
-def test_steady_parts_are_drawn_on_the_loop_that_they_stand_for(record):
-    steady = steady_adhesion(record, 0.1)
-    works, window = measured(steady)
-    figure = steady_loop_figure(record.states, works, window, elastic_energy=0.01, title="steady")
-    left, right = figure.axes[:2]
-    # From no contact to the turn and back, through the pull-off force of w_retr.
-    curves = [line.get_xydata() for line in left.get_lines()]
-    assert min(points[:, 0].min() for points in curves) == 0
-    smooth = [points[:, 1].min() for points in curves if len(points) == 300]
-    assert min(smooth) == pytest.approx(jkr.pull_off_force(works[1]), abs=1e-3)
-    assert left.get_ylim()[0] < jkr.pull_off_force(works[1])
-    assert figure.legends[0].get_title().get_text() == "steady"
-    assert right.get_legend() is None
-    assert left.figure.legends[0].get_texts()
-
-
-def test_a_loop_without_steady_states_is_drawn_without_curves(record):
-    steady = steady_adhesion(record, correlation_length=10.0)
-    axes = drawn(draw_loop, record.states, *measured(steady))
-    assert not [line for line in axes.get_lines() if "JKR" in str(line.get_label())]

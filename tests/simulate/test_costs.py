@@ -3,7 +3,6 @@
 import subprocess
 import sys
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -17,8 +16,8 @@ from crackfront.simulate.sphere.full_cycle import FullCycle
 from crackfront.simulate.sphere.steady_branches import integral_breadth
 from crackfront.sweep.parameters import load_sweep
 from studies.law.front_sweeps import front_sweeps
+from tests.places import ROOT
 
-ROOT = Path(__file__).parents[2]
 SWEEP = load_sweep(ROOT / "config/test.yaml")
 ONE = SWEEP.simulation(SWEEP.spectra[0], 0.1, 0)
 
@@ -26,53 +25,21 @@ ONE = SWEEP.simulation(SWEEP.spectra[0], 0.1, 0)
 # default sweep, of two of line-quick, and single runs of the others.
 MEASURED = [
     ("default", "flat", 0.002, 1.59),
-    ("default", "flat", 0.02, 1.1),
-    ("default", "flat", 0.15, 2.95),
     ("default", "flat-coarse", 0.002, 0.436),
-    ("default", "flat-coarse", 0.02, 0.359),
-    ("default", "flat-coarse", 0.15, 0.421),
     ("default", "h08", 0.002, 1.9),
-    ("default", "h08", 0.02, 2.02),
-    ("default", "h08", 0.15, 2.63),
     ("default", "h03-wide", 0.002, 1.35),
-    ("default", "h03-wide", 0.02, 1.8),
-    ("default", "h03-wide", 0.15, 1.81),
     ("default", "h03", 0.002, 0.724),
-    ("default", "h03", 0.02, 0.827),
-    ("default", "h03", 0.15, 1.52),
     ("line-quick", "flat-L3", 0.01, 0.125),
-    ("line-quick", "flat-L3", 0.1764, 0.168),
-    ("line-quick", "flat-L10", 0.01, 0.343),
     ("line-quick", "flat-L10", 0.1764, 0.485),
-    ("line-quick", "flat-L30", 0.01, 0.963),
-    ("line-quick", "flat-L30", 0.1764, 1.54),
     ("test", "flat", 0.1, 0.0253),
-    ("test", "rough", 0.02, 0.0195),
-    ("test", "flat", 0.02, 0.0268),
     ("test", "rough", 0.1, 0.0226),
-    ("line", "flat-L10", 0.01, 0.448),
-    ("line", "flat-L30", 0.04, 1.28),
     ("line", "h03-L30", 0.0025, 5.3),
-    ("line", "h08-L3", 0.01, 0.0898),
-    ("line", "ring-L3", 0.01, 0.106),
     ("line", "two-reversed-L3", 0.04, 0.156),
-    ("line", "two-slopes-L10", 0.04, 0.824),
-    ("line-strong", "flat-L0p5", 0.09, 0.119),
     ("line-strong", "h03-L0p5", 0.36, 0.913),
-    ("line-strong", "h08-L15", 0.09, 3.88),
-    ("line-strong", "ring-L1p5", 0.36, 0.195),
     ("line-strong", "two-reversed-L5", 0.36, 0.761),
-    ("line-chemical", "flat-L10", 0.01, 0.386),
-    ("line-chemical", "flat-L30", 0.04, 1.74),
     ("line-chemical", "gaussian-L3", 0.0025, 0.0586),
-    ("line-chemical-strong", "flat-L0p5", 0.09, 0.125),
-    ("line-chemical-strong", "flat-L45", 0.09, 6.59),
     ("line-chemical-strong", "gaussian-L0p5", 0.1764, 0.0996),
-    ("line-chemical-strong", "gaussian-L1p5", 0.36, 0.135),
-    ("line-weak", "flat-L0p3", 0.0225, 0.185),
     ("line-weak", "ring-L0p3", 0.0225, 0.179),
-    ("line-weak", "two-reversed-L0p3", 0.0225, 0.278),
-    ("line-long", "flat-L90", 0.0025, 6.52),
     ("line-long", "two-reversed-L90", 0.0025, 15.6),
 ]
 
@@ -111,11 +78,6 @@ def test_more_sites_cost_more_time_and_more_points_and_fronts_more_memory():
     assert longer.seconds > 10 * base.seconds
     assert larger.memory > base.memory
     assert expected_cost(replace(ONE, record_fronts=True)).memory > base.memory
-
-
-def test_a_state_takes_time_however_near_the_last_one_is():
-    near, nearer = (replace(ONE, schedule=FullCycle(1.0, step)) for step in (1e-6, 1e-7))
-    assert expected_cost(nearer).seconds == pytest.approx(10 * expected_cost(near).seconds, rel=0.1)
 
 
 @pytest.mark.slow

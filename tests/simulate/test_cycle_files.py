@@ -7,8 +7,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-import xarray as xr
 
+from crackfront.core.versions import PHYSICS_VERSION
 from crackfront.simulate.cycle_files import CycleCheckpoint, read_checkpoint, write_checkpoint
 from crackfront.simulate.provenance import provenance
 from crackfront.simulate.run_simulation import run_simulation
@@ -54,27 +54,6 @@ def test_a_run_goes_on_from_any_state_to_the_same_bits(tmp_path, simulation):
         assert result.measures.cpu_seconds > partial.cpu_seconds
 
 
-@pytest.mark.parametrize(("simulation", "sites"), [(CYCLE, "angle"), (LINE, "y")])
-def test_fronts_of_a_checkpoint_have_the_sites_of_their_geometry(tmp_path, simulation, sites):
-    _, found = checkpoints(simulation)
-    path = write_checkpoint(tmp_path, "checkpoint", found[0], provenance())
-    with xr.open_dataset(path) as dataset:
-        assert dataset["last_front"].dims == dataset["turning_front"].dims == (sites,)
-        assert dataset["last_front"].attrs["long_name"] == "front of the last state"
-
-
-def test_a_record_without_fronts_and_energies_goes_on_too(tmp_path):
-    simulation = replace(CYCLE, record_fronts=False, record_energy=False)
-    undisturbed, found = checkpoints(simulation)
-    path = write_checkpoint(tmp_path, "checkpoint", found[5], provenance())
-    resumed = read_checkpoint(path, simulation)
-    record = run_simulation(simulation, resume=resumed).record
-    assert record.fronts is None
-    assert record.dissipated_energy is None
-    assert np.array_equal(record.states.force, undisturbed.record.states.force)
-    assert np.array_equal(record.states.iterations, undisturbed.record.states.iterations)
-
-
 def test_a_checkpoint_of_another_load_is_refused():
     _, found = checkpoints(CYCLE)
     with pytest.raises(ValueError, match="it belongs to other loads"):
@@ -88,6 +67,14 @@ def test_a_truncated_checkpoint_and_that_of_another_simulation_are_refused(tmp_p
         read_checkpoint(path, STEADY)
     path.write_bytes(path.read_bytes()[:3000])
     with pytest.raises(UnreadableFileError, match="is not a complete netCDF file"):
+        read_checkpoint(path, CYCLE)
+
+
+def test_a_checkpoint_of_another_version_of_the_physics_is_refused(tmp_path, monkeypatch):
+    _, partial_runs = checkpoints(CYCLE)
+    path = write_checkpoint(tmp_path, "checkpoint", partial_runs[2], provenance())
+    monkeypatch.setattr("crackfront.simulate.cycle_files.PHYSICS_VERSION", PHYSICS_VERSION + 1)
+    with pytest.raises(UnreadableFileError, match="is not a checkpoint of"):
         read_checkpoint(path, CYCLE)
 
 

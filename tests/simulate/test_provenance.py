@@ -2,7 +2,6 @@
 
 import subprocess
 import sys
-from unittest.mock import Mock
 
 import pytest
 
@@ -32,12 +31,6 @@ def test_the_origin_names_version_sources_and_configuration():
     assert origin.crackfront_version == __version__
     assert (origin.physics_version, origin.rows_version) == (PHYSICS_VERSION, ROWS_VERSION)
     assert origin.configuration == "seed: 1\n"
-
-
-@pytest.mark.parametrize("error", [FileNotFoundError("git"), subprocess.TimeoutExpired("git", 10)])
-def test_without_git_the_commit_is_unknown(monkeypatch, error):
-    monkeypatch.setattr(subprocess, "run", Mock(side_effect=error))
-    assert git_commit() == "unknown"
 
 
 def test_outside_of_a_repository_the_commit_is_unknown(monkeypatch, tmp_path):

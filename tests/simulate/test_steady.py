@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 from crackfront.analysis.steady_adhesion import steady_adhesion
-from crackfront.core import jkr
 from crackfront.core.adhesion import correlation_length
 from crackfront.core.cycle.follow import Load
 from crackfront.core.cycle.record import Recorder
@@ -21,10 +20,8 @@ from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.simulate.contact import Problem
 from crackfront.simulate.run_simulation import run_simulation
 from crackfront.simulate.simulation import Simulation, simulation_adhesion
-from crackfront.simulate.sphere.full_cycle import FullCycle
 from crackfront.simulate.sphere.steady_branches import (
     SteadySchedule,
-    forward_circle,
     own_part,
     standard_error,
 )
@@ -106,8 +103,8 @@ def test_the_approach_ends_when_k_has_the_requested_error():
         shared = np.mean(circles, axis=1) / WORK_OF_ADHESION
 
         def error_of_k(n, values=values, shared=shared, radius=radius, roughness=roughness):
-            own = own_part(values[:n], shared[:n])
-            both = math.sqrt(2) * standard_error(own, radius[:n], roughness[:n], LENGTH)
+            parts = own_part(values[:n], shared[:n])
+            both = math.sqrt(2) * standard_error(parts, radius[:n], roughness[:n], LENGTH)
             return both / (2 * 0.04)
 
         found[error] = values.size
@@ -117,17 +114,7 @@ def test_the_approach_ends_when_k_has_the_requested_error():
     assert 8 == found[1.0] < found[0.25] < found[1e-6]
 
 
-def test_what_follows_the_circles_is_no_part_of_a_branch_alone():
-    rng = np.random.default_rng(0)
-    shared, own = rng.normal(size=(2, 40))
-    found = own_part(3 + 0.7 * shared + 0.1 * own, 5 + shared)
-    assert np.mean(found) == pytest.approx(np.mean(3 + 0.7 * shared + 0.1 * own))
-    assert np.std(found) == pytest.approx(0.1 * np.std(own), rel=0.03)
-    # It leaves nothing that follows them, and nothing is taken where they are all alike.
-    assert np.corrcoef(found, shared)[0, 1] == pytest.approx(0, abs=1e-12)
-    assert np.array_equal(own_part(own, np.full(40, 2.0)), own)
-
-
+@pytest.mark.slow
 def test_at_weak_disorder_k_scatters_by_the_error_that_was_asked_for():
     asked, factors, stated, apart = 0.1, [], [], []
     spectrum = SelfAffineSpectrum(short_cutoff=0.025, roll_off=0.025, hurst=1.0)
@@ -148,45 +135,6 @@ def test_at_weak_disorder_k_scatters_by_the_error_that_was_asked_for():
     assert 0.6 * asked < scatter < 1.7 * asked
     # The errors of both branches by themselves would say far more, as they share most of it.
     assert 0.6 < np.mean(stated) / scatter < 1.7 < np.mean(apart) / scatter
-
-
-def test_the_hysteresis_agrees_with_that_of_the_full_cycle_at_a_part_of_the_work():
-    differences, work = [], []
-    for realisation in range(6):
-        one = simulation(realisation=realisation)
-        steady = run_simulation(one).record
-        cycle = run_simulation(replace(one, schedule=FullCycle(1.6, 0.05))).record
-        differences.append(
-            steady_adhesion(steady, LENGTH).hysteresis - steady_adhesion(cycle, LENGTH).hysteresis
-        )
-        work.append(steady.states.iterations.sum() / cycle.states.iterations.sum())
-    error = np.std(differences, ddof=1) / math.sqrt(len(differences))
-    assert abs(np.mean(differences)) < 4 * error
-    assert np.mean(work) < 0.75
-
-
-def test_the_circle_of_the_start_moves_forward():
-    field = field_of(simulation(0.01))
-    for penetration in (0.0, 0.3, 1.0):
-        for direction, nearby in ((1, 0.5), (-1, 1.5)):
-            smooth = jkr.equilibrium_radius(penetration)
-            circle = forward_circle(field, penetration, direction, smooth, LENGTH)
-            assert np.ptp(circle) == 0
-            release = jkr.energy_release_rate(circle, penetration)
-            drive = direction * (front_adhesion(circle, field) - release)
-            assert np.mean(drive > 0) > 0.9
-            nearest = jkr.equilibrium_radius(penetration, nearby)
-            assert np.all(direction * (circle - nearest) > 0)
-
-
-def test_where_the_surface_repels_the_start_is_the_edge_in_compression():
-    radii = 0.05 * np.arange(1, 61)
-    adhesion = np.full((60, 8), WORK_OF_ADHESION)
-    adhesion[:, 3:6] = -0.1
-    field = polar_field(radii, adhesion)
-    assert np.allclose(forward_circle(field, 0.81, 1, 1.7, LENGTH), 0.9)
-    assert np.all(forward_circle(field, 0.0, 1, 1.4, LENGTH) == 0.05)
-    assert np.all(forward_circle(polar_field(radii, 40 * adhesion), 0.0, -1, 1.4, LENGTH) == 3.0)
 
 
 def test_contact_that_is_lost_on_the_way_back_is_told():
@@ -217,8 +165,8 @@ def test_a_rough_front_has_to_pass_three_times_its_depth():
     values = np.array([1.0, 2.0, 3.0, 2.0, 1.0, 2.0])
     spread = np.std(values, ddof=1)
     radius, rough = np.linspace(1.0, 2.0, 6), np.linspace(0.1, 0.3, 6)
-    found = standard_error(values, radius, rough, 0.1)
-    assert found == pytest.approx(spread / math.sqrt(1 + 1 / 0.6))
+    error = standard_error(values, radius, rough, 0.1)
+    assert error == pytest.approx(spread / math.sqrt(1 + 1 / 0.6))
 
 
 @pytest.mark.parametrize(

@@ -1,17 +1,14 @@
 """Canaries: a number that moved by more than a tenth of its error is reported."""
 
-import math
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
 from click.testing import CliRunner
 
 from studies.__main__ import main
-from studies.canaries import STUDIES, Comparison, canaries
+from studies.canaries import STUDIES, canaries
 from studies.numbers import STORED, Number, store, stored
-
-ROOT = Path(__file__).parents[2]
+from tests.places import ROOT
 
 
 @pytest.fixture
@@ -51,27 +48,6 @@ def test_a_stored_number_that_was_changed_is_reported_in_units_of_its_error(tmp_
     assert CliRunner().invoke(main, ["canaries", study]).exit_code == 0
 
 
-@pytest.mark.parametrize(
-    ("before", "now", "in_errors"),
-    [
-        (2.0, 2.01, 0.05),
-        (2.0, 2.1, 0.5),
-        (2.0, 2.4, 2.0),
-        (0.0, 0.0, 0.0),
-        (2.0, math.nan, math.nan),
-    ],
-)
-def test_a_number_moves_in_units_of_its_stored_error(before, now, in_errors):
-    found = Comparison("k", Number(before, 0.2), Number(now, 0.9))
-    assert found.in_errors == pytest.approx(in_errors, nan_ok=True)
-    assert found.has_moved == (not in_errors <= 0.1)
-
-
-def test_without_an_error_any_change_is_one():
-    assert Comparison("n", Number(3.0), Number(3.1)).has_moved
-    assert not Comparison("n", Number(3.0), Number(3.0)).has_moved
-
-
 def test_every_canary_is_stored_with_errors_and_no_other_number(monkeypatch):
     monkeypatch.chdir(ROOT)
     known = {study: stored(study).canaries for study in STUDIES}
@@ -88,9 +64,3 @@ def test_a_canary_that_was_never_stored_says_what_to_run(tmp_path, monkeypatch):
     )
     done = CliRunner().invoke(main, ["canaries"])
     assert "'fit, k' of law is not stored; run python -m studies canaries --keep" in done.output
-
-
-def test_a_study_without_canaries_is_refused():
-    done = CliRunner().invoke(main, ["canaries", "speed"])
-    assert done.exit_code == 2
-    assert "speed does not have canaries; the studies with canaries are law" in done.output

@@ -9,8 +9,8 @@ from studies.__main__ import STUDIES, main
 from studies.numbers import Number, Stored, Table, store, stored
 from studies.quotes import QUOTED, Quote
 from studies.table_pages import GALLERY, TABLES, written_pages
+from tests.places import ROOT
 
-ROOT = Path(__file__).parents[2]
 FIGURE = """\
 ## Fig. 1d: a sphere
 
@@ -106,10 +106,10 @@ def test_what_is_stored_is_read_again_and_leaves_the_rest(tmp_path, monkeypatch)
     origin = {"command": "a", "git_commit": "b", "processor": "EPYC", "date": "2026-11-28"}
     store("law", numbers={"k": Number(3.7, 0.1)}, tables={"limit": "| 3 |"}, data=origin)
     store("law", numbers={"k": Number(3.8, 0.1)}, canaries={"fit, k": Number(3.7, 0.1)})
-    found = stored("law")
-    assert (found.numbers["k"].value, found.canaries["fit, k"].value) == (3.8, 3.7)
-    assert (found.tables["limit"].text, found.tables["limit"].commit) == ("| 3 |", "b")
-    assert found.numbers["k"].date[:2] == "20"
+    study = stored("law")
+    assert (study.numbers["k"].value, study.canaries["fit, k"].value) == (3.8, 3.7)
+    assert (study.tables["limit"].text, study.tables["limit"].commit) == ("| 3 |", "b")
+    assert study.numbers["k"].date[:2] == "20"
 
 
 def test_the_written_pages_show_what_is_stored(monkeypatch):

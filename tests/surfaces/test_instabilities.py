@@ -63,21 +63,6 @@ def test_rings_jump_where_their_running_minimum_does():
     np.testing.assert_allclose([jump.end for jump in jumps], expected, atol=1e-5)
 
 
-def test_weak_rings_do_not_jump():
-    assert not any(motion.unstable for motion in retraction(ring_field(0.005)))
-
-
-def test_a_finer_precision_finds_the_same_instabilities():
-    coarse, fine = (
-        [motion for motion in retraction(rough_field(), precision=value) if motion.unstable]
-        for value in (1e-5, 1e-7)
-    )
-    assert len(coarse) == len(fine) > 5
-    np.testing.assert_allclose(
-        [motion.end for motion in coarse], [motion.end for motion in fine], atol=1e-5
-    )
-
-
 def energies(motions, field, *, unstable):
     chosen = [one for one in motions if one.unstable == unstable]
     return np.array([dissipated_energy(one.before, one.after, one.end, field) for one in chosen])
@@ -90,11 +75,6 @@ def test_instabilities_dissipate_and_smooth_steps_ever_less_the_finer_they_are()
     lost = np.sum(energies(fine, field, unstable=True))
     assert np.sum(energies(coarse, field, unstable=False)) < 0.1 * lost
     assert np.sum(energies(fine, field, unstable=False)) < 0.02 * lost
-
-
-def test_motion_ends_where_contact_is_lost():
-    motions = retraction(ring_field(0.005), stop=-2.0)
-    assert motions[-1].end > -1.0
 
 
 def test_a_front_that_leaves_the_field_says_so():
@@ -113,12 +93,6 @@ def test_patches_are_told_apart_across_the_ends_of_the_array():
     assert [round(item.depth, 9) for item in clusters] == [0.1, 0.2]
     assert clusters[0].area == pytest.approx(3 * arc * (4 - 1.9**2) / 2)
     assert clusters[1].extent == pytest.approx(arc * 1.9)
-
-
-def test_nothing_moved_is_no_patch_and_everything_one():
-    front = np.full(12, 2.0)
-    assert swept_clusters(front, front, 0.01, sphere(12)) == []
-    assert len(swept_clusters(front, front - 0.1, 0.01, sphere(12))) == 1
 
 
 def test_a_straight_front_on_a_wave_jumps_once_a_period_from_where_its_load_turns():

@@ -106,16 +106,6 @@ def test_too_few_sites_say_that_the_hysteresis_is_too_large_and_how_many_are_eno
     assert "sites" not in cf.run_loop(plain, loads=[0, 1], sites=8).attrs["result"]
 
 
-def test_a_site_a_pixel_is_too_few_for_a_surface_that_changes_from_pixel_to_pixel(rng):
-    values = 1 + 0.3 * rng.standard_normal((96, 96))
-    surface = cf.surface(values / values.mean(), side=96.0, kind="chemical", units="w_int")
-    front = cf.straight_front(surface, 9.0)
-    usual = cf.run_loop(front, loads=[0, 2], step=1.0).attrs["result"]
-    assert re.search(r"the front has 96 sites, 2\.\d per correlation length of w_loc", usual)
-    fine = cf.run_loop(front, loads=[0, 2], step=1.0, sites=192).attrs["result"]
-    assert "sites" not in fine
-
-
 @pytest.mark.parametrize("mean", [0.6, 1.0, 1.6])
 def test_a_mean_that_is_not_w_int_is_told_since_the_line_has_the_stiffness_of_w_int(patches, mean):
     surface = patches.copy(data=mean * patches.values)
@@ -126,40 +116,11 @@ def test_a_mean_that_is_not_w_int_is_told_since_the_line_has_the_stiffness_of_w_
         assert loop.attrs["kind"] == "chemical"
 
 
-def test_a_rough_surface_is_told_from_its_works_of_adhesion(patches):
-    heights = cf.random_surface(short_cutoff=0.4, elastic_energy=0.05, side=4, error=0.3, seed=3)
-    works = surface_adhesion(heights).work_of_adhesion / WORK_OF_ADHESION
-    works = heights.copy(data=works).rename("work_of_adhesion").assign_attrs(units="w_int")
-    for surface in (heights, works):
-        loop = cf.run_loop(surface, loads=[0, 0.5])
-        assert loop.attrs["kind"] == "roughness"
-        assert "mean work" not in loop.attrs["result"]
-    assert cf.run_loop(0.9 * patches, loads=[0, 0.5]).attrs["kind"] == "chemical"
-
-
-def test_a_load_that_dissipates_nothing_has_no_share_of_steps(patches):
-    found = cf.run_loop(cf.straight_front(patches, 0.2), loads=[0], energy=True)
-    assert "nan" not in found.dissipated_energy.attrs.get("comment", "")
-
-
-def test_given_sites_overrule_the_spectrum_that_a_surface_states():
-    surface = cf.random_surface(short_cutoff=0.4, elastic_energy=0.05, side=4, error=0.3, seed=3)
-    loop = cf.run_loop(surface, step=0.5, sites=40)
-    assert loop.sizes["angle"] == 40
-    assert np.isnan(loop.w_appr_numerical_error)
-
-
 @pytest.mark.parametrize(("spring", "first"), [(1e-9, 0.0), (1e-15, 0.0), (0.2, 2e6), (0.2, -2e6)])
 def test_places_whose_digits_do_not_hold_the_forces_are_refused(patches, spring, first):
     front = cf.straight_front(patches, spring)
     with pytest.raises(ValueError, match=r"round-off of places .* by periods of the tile, 2, to"):
         cf.run_loop(front, loads=[first, first + 1], step=0.1)
-
-
-def test_far_from_0_fronts_are_those_of_a_tile_whose_periods_lie_behind(patches):
-    front = cf.straight_front(patches, 0.2)
-    near, far = (cf.run_loop(front, loads=[x, x + 1], step=0.1) for x in (0.0, 2e4))
-    np.testing.assert_allclose(far.position - 2e4, near.position, atol=1e-8)
 
 
 def test_samples_that_miss_the_waves_of_a_surface_are_refused_and_as_many_as_it_says_are_not(

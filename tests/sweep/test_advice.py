@@ -1,16 +1,12 @@
 """What a plan says before the run: where loads leave no steady part, and how deep they must go."""
 
-import copy
-import json
 import re
-from dataclasses import asdict, replace
-from pathlib import Path
+from dataclasses import replace
 
 import pytest
 
 from crackfront.analysis.steady_adhesion import steady_adhesion
 from crackfront.core.spectrum import SelfAffineSpectrum
-from crackfront.core.units import Scales
 from crackfront.simulate.numerics import Numerics
 from crackfront.simulate.run_simulation import run_simulation
 from crackfront.simulate.settings import Settings
@@ -18,8 +14,6 @@ from crackfront.simulate.simulation import simulation_of
 from crackfront.simulate.sphere.full_cycle import FullCycle
 from crackfront.simulate.sphere.steady_branches import SteadySchedule
 from crackfront.sweep.advice import expectation
-from tests.commands import run
-from tests.yaml_texts import from_yaml, to_yaml
 
 NUMERICS = Numerics(Settings(None, 4, 4, "cubic", 4, 1e-5), tile_roll_offs=4, tile_cutoffs=40)
 SHALLOW = (FullCycle(0.1, 0.02), SteadySchedule(0.0, 0.1, 0.5, 0.05))
@@ -38,8 +32,8 @@ def test_a_load_that_is_too_shallow_is_found_and_at_the_named_depth_there_is_a_s
     for depth in (schedule.max_penetration, deeper):
         load = replace(schedule, max_penetration=depth)
         one = simulation_of("roughness", flat, energy, load, NUMERICS, seed=1)
-        found = steady_adhesion(run_simulation(one).record, one.correlation_length)
-        steady.append(not found.sentence)
+        works = steady_adhesion(run_simulation(one).record, one.correlation_length)
+        steady.append(not works.sentence)
         assert (expectation(one).needed_penetration is None) == steady[-1]
     assert steady == [False, True]
 
@@ -90,37 +84,3 @@ def test_a_steady_load_that_failed_names_keys_that_it_has():
     assert "step" in cycle
     assert "step" not in steady
     assert {"max_penetration", "start", "travel"} <= set(re.findall(r"\w+", steady))
-
-
-def test_a_plan_tells_lengths_in_the_units_of_its_configuration(tmp_path):
-    content = from_yaml((Path(__file__).parents[2] / "config/test.yaml").read_text("utf-8"))
-    content["load"] = {"max_penetration": 0.1, "step": 0.05}
-    scales = Scales(radius=1e-3, work_of_adhesion=0.05, contact_modulus=1e6)
-    path, found = tmp_path / "sweep.yaml", []
-    for lateral, vertical in ((1.0, 1.0), (scales.lateral, scales.vertical)):
-        changed = copy.deepcopy(content) | ({} if lateral == 1 else {"scales": asdict(scales)})
-        for spectrum in changed["spectra"]:
-            for name in {"short_cutoff", "roll_off"} & set(spectrum):
-                spectrum[name] *= lateral
-        for name in ("max_penetration", "step"):
-            changed["load"][name] *= vertical
-        path.write_text(to_yaml(changed))
-        plans = [
-            run("plan", path, "--output", tmp_path / "out", *more) for more in ((), ("--json",))
-        ]
-        found.append((plans[0].stdout.splitlines(), json.loads(plans[1].stdout)))
-    (plain, reduced), (shown, metres) = found
-    needed = [
-        [one["needed_penetration"] for cells in plan["expected"].values() for one in cells]
-        for plan in (reduced, metres)
-    ]
-    assert None not in needed[0]
-    assert needed[1] == pytest.approx([scales.vertical * one for one in needed[0]], rel=1e-9)
-    assert (reduced["unit_of_lengths"], metres["unit_of_lengths"]) == ("reduced", "m")
-    assert shown[0].split()[1:5] == ["lambda_s", "(m)", "lambda_r", "(m)"]
-    name = content["spectra"][0]["name"]
-    cutoffs = [
-        float(next(line for line in lines if line.startswith(name)).split()[1])
-        for lines in (plain, shown)
-    ]
-    assert cutoffs[1] == pytest.approx(scales.lateral * cutoffs[0], rel=1e-3)

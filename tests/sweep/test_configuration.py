@@ -18,7 +18,6 @@ from crackfront.measured.options import ReadingOptions
 from crackfront.measured.scan.reading import read_measurements
 from crackfront.measured.spectrum.measured_surface import measured_surface
 from crackfront.simulate.provenance import provenance
-from crackfront.simulate.settings import Settings
 from crackfront.simulate.sphere.steady_branches import SteadySchedule
 from crackfront.simulate.storage import write_derived
 from crackfront.sweep.configuration import load_configuration
@@ -28,9 +27,8 @@ from crackfront.sweep.rows import failed_row
 from crackfront.sweep.section import ConfigurationError, movable_text, yaml_mapping
 from crackfront.sweep.table_file import read_table
 from tests.commands import dataset_of_rows
+from tests.places import ROOT
 from tests.yaml_texts import from_yaml, to_yaml
-
-ROOT = Path(__file__).parents[2]
 
 GOOD = """
 seed: 1
@@ -81,25 +79,6 @@ def refusal(tmp_path, text):
 def test_the_configurations_of_the_project_are_valid(name):
     sweep = load_sweep(ROOT / "config" / f"{name}.yaml")
     assert len({item.name for item in sweep.spectra}) == len(sweep.spectra)
-
-
-def test_the_paper_configuration_has_the_spectra_of_the_paper():
-    sweep = load_sweep(ROOT / "config/paper.yaml")
-    shapes = [
-        (item.spectrum.short_cutoff, item.spectrum.roll_off, item.spectrum.hurst)
-        for item in sweep.spectra
-    ]
-    assert shapes[0][:2] == (0.005, 0.005)
-    assert shapes[1:] == [(0.000625, 0.01, 0.8), (0.000625, 0.1, 0.3), (0.005, 0.1, 0.3)]
-
-
-def test_a_roll_off_that_is_not_given_makes_a_flat_spectrum(tmp_path):
-    flat = load_sweep(written(tmp_path, GOOD)).named("flat").spectrum
-    assert flat.roll_off == flat.short_cutoff == 0.1
-
-
-def test_numbers_with_an_exponent_but_no_point_are_numbers(tmp_path):
-    assert load_sweep(written(tmp_path, GOOD)).numerics.settings.tolerance == 1e-6
 
 
 def test_an_rms_is_converted_to_the_energy_of_full_conformity(tmp_path):
@@ -177,19 +156,6 @@ def test_an_error_below_that_of_the_finest_numerics_is_refused(tmp_path):
     assert "for flat at e_el 0.02; allow that, or give the settings" in sentence
 
 
-def test_given_numerics_serve_every_amplitude(tmp_path):
-    sweep = load_sweep(written(tmp_path, GOOD))
-    assert isinstance(sweep.numerics.settings, Settings)
-    assert settings_of(sweep, sweep.named("rough"), 0.1) is sweep.numerics.settings
-
-
-def test_an_error_beside_what_it_decides_is_refused(tmp_path):
-    text = asking(0.03).replace("  error:", "  tolerance: 1e-6\n  angles: 64\n  error:")
-    assert "numerics: error already decides angles, tolerance; remove one" in refusal(
-        tmp_path, text
-    )
-
-
 def test_settings_that_are_missing_without_an_error_are_named(tmp_path):
     text = asking(0.03).replace("  error: 0.03\n", "  angles: 64\n  interpolation: cubic\n")
     assert (
@@ -224,17 +190,9 @@ BAD = {
         ("seed: 1", "seed: 18446744073709551616"),
         "seed is 18446744073709551616; it must lie between 0 and 9.22337e+18",
     ),
-    "bootstrap of one sample": (
-        ("bootstrap: 500", "bootstrap: 1"),
-        "fit.bootstrap is 1; it must lie between 100 and 1e+07",
-    ),
     "realisations without end": (
         ("realisations: 2", "realisations: 1000000000"),
         "realisations: 4e+09 simulations would need 2 TB of memory; here are",
-    ),
-    "cutoff of nothing": (
-        ("{name: flat, short_cutoff: 0.1", "{name: flat, short_cutoff: 1e-300"),
-        "spectra[0].short_cutoff is 1e-300; it must lie between 1e-15 and 1e+15",
     ),
     "cutoff below an atom": (
         ("{name: flat, short_cutoff: 0.1", "{name: flat, short_cutoff: 1e-12"),
@@ -248,14 +206,9 @@ BAD = {
         ("angles_per_cutoff: 2", "angles: 1000000000000"),
         "fronts of 1e+12 sites would need 512 TB of memory; here are",
     ),
-    "load without end": (("step: 0.1", "step: 1e-14"), "of memory; here are"),
     "unknown key": (
         ("realisations: 2", "realisation: 2\nrealisations: 2"),
         "unknown key realisation; did you mean realisations?",
-    ),
-    "unknown key in a list": (
-        ("roll_off: 0.2", "rolloff: 0.2"),
-        "unknown key spectra[1].rolloff; did you mean roll_off?",
     ),
     "unknown key deep down": (
         ("cutoffs: 20", "cutoffs: 20, sides: 3"),
@@ -266,15 +219,10 @@ BAD = {
         ("seed: 1", "seed: 1\nseed: 2"),
         "is not valid YAML in line 3: key 'seed' stands",
     ),
-    "roll-off below the cutoff without hurst": (
-        ("roll_off: 0.2, hurst: 0.8", "roll_off: 0.05"),
-        "spectra[1]: roll_off 0.05 is shorter than short_cutoff 0.1; lower the cutoff",
-    ),
     "hurst above one": (
         ("hurst: 0.8", "hurst: 1.2"),
         "spectra[1]: hurst is 1.2; it must lie in (0, 1]",
     ),
-    "hurst zero": (("hurst: 0.8", "hurst: 0"), "spectra[1]: hurst is 0.0; it must lie in (0, 1]"),
     "roll-off below the cutoff": (
         ("roll_off: 0.2", "roll_off: 0.05"),
         "spectra[1]: roll_off 0.05 is shorter than short_cutoff 0.1; lower the cutoff",
@@ -292,10 +240,6 @@ BAD = {
         "amplitudes.elastic_energy is []; it must have at least one entry",
     ),
     "amplitude twice": (("[0.02, 0.1]", "[0.1, 0.1]"), "amplitude 0.1 stands twice"),
-    "amplitudes of equal names": (
-        ("[0.02, 0.1]", "[0.1, 0.1000001]"),
-        "amplitude 0.1 stands twice",
-    ),
     "no measure of amplitude": (
         ("amplitudes: {elastic_energy: [0.02, 0.1]}", "amplitudes: {}"),
         "amplitudes need exactly one of elastic_energy, work_of_adhesion_rms and measured; give",
@@ -312,16 +256,7 @@ BAD = {
         ("field: roughness", "field: rough"),
         "field is 'rough'; it must be 'roughness' or 'chemical'",
     ),
-    "no realisation": (
-        ("realisations: 2", "realisations: 0"),
-        "realisations is 0; it must be greater than or equal to 1",
-    ),
-    "truth for a number": (("seed: 1", "seed: true"), "seed is True; it must be a valid integer"),
     "not a number": (("step: 0.1", "step: .nan"), "load.step is nan; it must be"),
-    "infinity": (
-        ("max_penetration: 1.0", "max_penetration: .inf"),
-        "load.max_penetration is inf; it must be finite",
-    ),
     "no contact": (
         ("max_penetration: 1.0", "max_penetration: -0.5"),
         "load: max penetration -0.5 never makes contact; the sphere touches at 0",
@@ -330,22 +265,12 @@ BAD = {
         ("step: 0.1}", "step: 0.1, steady: {start: 0.5, travel: 2, error: 0.1}}"),
         "exactly one of step (full cycles) and steady (parts of them); remove one",
     ),
-    "no load": (("step: 0.1}", "}"), "and steady (parts of them); give one"),
     "steady start too deep": (
         ("step: 0.1}", "steady: {start: 1.0, travel: 2, error: 0.1}}"),
         "load: steady start is 1.0; it must be 0 or more, and below the largest penetration 1.0",
     ),
-    "steady states that are all alike": (
-        ("step: 0.1}", "steady: {start: 0.5, travel: 1e-6, error: 0.1}}"),
-        "load.steady.travel is 1e-06; it must be greater than or equal to 0.01",
-    ),
-    "steady without error": (
-        ("step: 0.1}", "steady: {start: 0.5, travel: 2}}"),
-        "key load.steady.error is missing; add it",
-    ),
     "step zero": (("step: 0.1", "step: 0"), "load.step is 0; it must be greater than 0"),
     "name twice": (("name: rough", "name: flat"), "spectrum name 'flat' stands twice"),
-    "name too long": (("name: rough", f"name: {101 * 'a'}"), "it must have at most 100 characters"),
     "name of a path": (
         ("name: rough", "name: a/b"),
         "spectra[1].name is 'a/b'; it must consist of letters, digits, _ and -",
@@ -360,7 +285,7 @@ BAD = {
     ),
     "unknown solver": (
         ("solver: reference", "solver: none-such"),
-        "numerics: solver is 'none-such'; choose one of",
+        "numerics.solver is 'none-such'; it must be one of",
     ),
     "angles twice": (
         ("angles_per_cutoff: 2", "angles_per_cutoff: 2\n  angles: 128"),
@@ -371,25 +296,17 @@ BAD = {
         "per short cutoff of flat, with which k comes out too large; use 225 or more, as "
         "angles_per_cutoff: 2 does",
     ),
+    "too few points": (
+        (
+            "pixels_per_cutoff: 4\n  tile: {roll_offs: 10, cutoffs: 20}",
+            "pixels_per_cutoff: 2\n  tile: {roll_offs: 0, cutoffs: 1}",
+        ),
+        "tiles of flat have 2 points a side; use at least 4",
+    ),
     "too few cubic samples": (
         ("samples_per_cutoff: 4", "samples_per_cutoff: 1.9"),
         "numerics: samples_per_cutoff is 1.9, with which cubic pieces miss waves of flat and k "
         "comes out too small; use 2 or more",
-    ),
-    "too few linear samples": (
-        (
-            "samples_per_cutoff: 4\n  interpolation: cubic",
-            "samples_per_cutoff: 2\n  interpolation: linear",
-        ),
-        "with which linear pieces miss waves of flat and k comes out too small; use 3 or more",
-    ),
-    "three angles": (
-        ("angles_per_cutoff: 2", "angles: 3"),
-        "numerics.angles is 3; it must lie between 4 and 1e+15",
-    ),
-    "unknown record": (
-        ("realisations: 2", "realisations: 2\nrecord: [front]"),
-        "record[0] is 'front'; it must be 'fronts' or 'energy'",
     ),
     "fit upside down": (
         ("lowest_elastic_energy: 0.01", "lowest_elastic_energy: 0.5"),
@@ -437,13 +354,6 @@ def test_every_error_has_its_own_sentence(tmp_path):
 )
 def test_a_file_that_is_no_mapping_is_refused(tmp_path, text, sentence):
     assert sentence in refusal(tmp_path, text)
-
-
-def test_a_file_that_is_no_text_is_refused(tmp_path):
-    path = tmp_path / "sweep.yaml"
-    path.write_bytes(b"\xff\xfe\x00seed")
-    with pytest.raises(ConfigurationError, match="is not a text in UTF-8"):
-        load_sweep(path)
 
 
 def test_a_file_that_does_not_exist_is_refused(tmp_path):
@@ -572,13 +482,13 @@ def test_reading_a_configuration_opens_no_scan_and_chooses_no_settings(tmp_path)
         configured_sweep(configuration)
 
 
-@pytest.mark.parametrize("name", ["default", "test"])
-def test_a_sweep_without_a_measured_surface_imports_nothing_that_reads_scans(tmp_path, name):
+@pytest.mark.slow
+def test_a_sweep_without_a_measured_surface_imports_nothing_that_reads_scans(tmp_path):
     code = (
         "import sys\n"
         "from pathlib import Path\n"
         "from crackfront.sweep.run_sweep import opened\n"
-        f"sweep, *_ = opened(Path({str(ROOT / 'config' / name) + '.yaml'!r}), Path('out'))\n"
+        f"sweep, *_ = opened(Path({str(ROOT / 'config/default.yaml')!r}), Path('out'))\n"
         "assert sweep.series(sweep.spectra[0])\n"
         "print([name for name in sys.modules if name.startswith('crackfront.measured')])\n"
     )
@@ -589,7 +499,7 @@ def test_a_sweep_without_a_measured_surface_imports_nothing_that_reads_scans(tmp
 
 
 def test_the_table_of_a_sweep_keeps_measured_spectra(film, tmp_path):
-    rows = [failed_row(one, "refused", "a test") for one in film.simulations()]
+    rows = [failed_row(simulation, "refused", "a test") for simulation in film.simulations()]
     dataset = dataset_of_rows(film, rows)
     write_derived(tmp_path / "hysteresis.nc", dataset, provenance("text"))
     table = read_table(tmp_path / "hysteresis.nc")
@@ -608,25 +518,15 @@ def test_the_table_of_a_sweep_in_metres_is_converted_for_the_sphere_that_it_stat
     content["spectra"] = [{"name": "flat", "short_cutoff": 6e-6}]
     content["load"] = {"max_penetration": 3e-6, "step": 1e-6}
     sweep = load_sweep(written(tmp_path, to_yaml(content)))
-    rows = [failed_row(one, "refused", "a test") for one in sweep.simulations()]
+    rows = [failed_row(simulation, "refused", "a test") for simulation in sweep.simulations()]
     table = dataset_of_rows(sweep, rows)
-    found = cf.in_si_units(table)
-    assert found.short_cutoff.values == pytest.approx(6e-6, rel=1e-12)
-    assert found.short_cutoff.attrs["units"] == "m"
-    assert found.identical(cf.in_si_units(table, cf.Scales(**scales)))
-    again = cf.in_reduced_units(found, cf.Scales(**scales))
-    assert found.tile_side.dims == found.n_point.dims == ("spectrum", "amplitude")
+    converted = cf.in_si_units(table)
+    assert converted.short_cutoff.values == pytest.approx(6e-6, rel=1e-12)
+    assert converted.short_cutoff.attrs["units"] == "m"
+    assert converted.identical(cf.in_si_units(table, cf.Scales(**scales)))
+    again = cf.in_reduced_units(converted, cf.Scales(**scales))
+    assert converted.tile_side.dims == converted.n_point.dims == ("spectrum", "amplitude")
     assert again.tile_side.values == pytest.approx(table.tile_side.values, rel=1e-12)
-
-
-def test_a_range_of_the_fit_may_end_at_an_amplitude_but_for_round_off(tmp_path):
-    amplitudes = "{work_of_adhesion_rms: [0.2]}"
-    text = changed("{elastic_energy: [0.02, 0.1]}", amplitudes)
-    ends = "lowest_elastic_energy: 0.01, highest_elastic_energy: 0.01"
-    text = text.replace("lowest_elastic_energy: 0.01, highest_elastic_energy: 0.1", ends)
-    [energy] = load_sweep(written(tmp_path, text)).elastic_energies
-    assert energy != 0.01
-    assert energy == pytest.approx(0.01)
 
 
 def test_an_error_chooses_no_pixels_of_uncorrelated_sites(tmp_path):
@@ -636,13 +536,6 @@ def test_an_error_chooses_no_pixels_of_uncorrelated_sites(tmp_path):
     text = text.replace("step: 0.5", "step: 0.5, uncorrelated: true")
     with pytest.raises(ConfigurationError, match=r"numerics\.error is 0\.03, which chooses other"):
         load_sweep(written(tmp_path, text))
-
-
-def test_a_table_without_a_sphere_is_not_converted_without_one(tmp_path):
-    sweep = load_sweep(written(tmp_path, GOOD))
-    rows = [failed_row(one, "refused", "a test") for one in sweep.simulations()]
-    with pytest.raises(ValueError, match="the data do not state a sphere"):
-        cf.in_si_units(dataset_of_rows(sweep, rows))
 
 
 def test_a_flat_spectrum_needs_no_hurst_exponent_and_a_longer_roll_off_does(tmp_path):
@@ -662,11 +555,11 @@ def test_shards_of_a_measured_spectrum_change_with_the_file(tmp_path):
     for comment in (b"SYNTHETIC", b"Synthetic"):
         scan.write_bytes(content.replace(b"SYNTHETIC", comment))
         sweep = load_sweep(written(tmp_path, with_surface(spectra)))
-        stems.append([one.stem for one in sweep.simulations()])
+        stems.append([simulation.stem for simulation in sweep.simulations()])
     assert not set(stems[0]) & set(stems[1])
     scan.write_bytes(content)
     again = load_sweep(written(tmp_path, with_surface(spectra)))
-    assert [one.stem for one in again.simulations()] == stems[0]
+    assert [simulation.stem for simulation in again.simulations()] == stems[0]
 
 
 @pytest.mark.parametrize(
@@ -694,38 +587,11 @@ def test_shards_of_a_measured_spectrum_change_with_the_file(tmp_path):
             "spectra[0].surface: /nowhere.al3d cannot be read: No such file or directory",
         ),
         (
-            with_surface(f"spectra:\n  - {{name: film, surface: {{file: {ROOT}/README.md}}}}\n"),
-            f"spectra[0].surface: {ROOT}/README.md is in no format that SurfaceTopography reads",
-        ),
-        (
-            with_surface("spectra:\n  - {name: film, surface: {file: a.al3d, detrend: all}}\n"),
-            "spectra[0].surface: detrend is 'all'; choose one of center, height, slope,",
-        ),
-        (
-            with_surface("spectra:\n  - {name: film, surface: {file: []}}\n"),
-            "spectra[0].surface.file is []; it must have at least one entry",
-        ),
-        (
-            with_surface("spectra:\n  - {name: film, surface: {file: [a.al3d, 3]}}\n"),
-            "spectra[0].surface.file[1] is 3; it must be the name of a file",
-        ),
-        (
-            with_surface("spectra:\n  - {name: film, surface: {file: 3}}\n"),
-            "spectra[0].surface.file[0] is 3; it must be the name of a file",
-        ),
-        (
             changed(
                 "{name: flat, short_cutoff: 0.1, hurst: 1.0}",
                 "{name: table, table: {wavelengths: [1, 2], densities: [1, 1]}}",
             ),
             "spectra[0].table: the wavelengths of a table must fall",
-        ),
-        (
-            changed(
-                "{name: flat, short_cutoff: 0.1, hurst: 1.0}",
-                "{name: table, table: {wavelengths: [1], densities: [1]}}",
-            ),
-            "spectra[0].table.wavelengths is [1]; it must have at least 2 entries",
         ),
         (
             changed("{name: flat, short_cutoff: 0.1, hurst: 1.0}", "{name: flat, hurst: 1.0}"),
@@ -745,14 +611,11 @@ HARSH = {
     "depth": ("x: " + "[" * 700 + "]" * 700, "more than 200000 values, or nested without end"),
     "size": ("#" * 10**6, "has 1 MB; more than 0.5 MB are not read"),
     "a date": ("x: 2026-99-99\n", "is not valid YAML: month must be in 1..12"),
-    "digits": ("x: " + "9" * 5000 + "\n", "is not valid YAML: Exceeds the limit"),
-    "a tag that is not met": ("x: !!bool maybe\n", "is not valid YAML: 'maybe'"),
     "a key twice as number and text": ("1: a\n'1': b\n", "line 2: key '1' stands twice"),
     "an octal number of old": (
         "a:\n  b: 010\n",
         "in line 2: 010 begins with 0, as octal numbers do elsewhere; remove the 0",
     ),
-    "a negative one": ("a: -0_7\n", "in line 1: -0_7 begins with 0"),
     "another version": (
         "%YAML 1.1\n---\na: yes\n",
         "it is read as YAML 1.2; remove the line %YAML",
@@ -777,14 +640,6 @@ def test_numbers_and_words_are_those_of_yaml_1_2(tmp_path):
     found = yaml_mapping(path)["a"]
     assert found == (0.001, 0.5, 100.0, 8, 16, "1:30", "on", "No", "yes", 0, 0.1, True)
     assert [type(one) for one in found[:4]] == [float, float, float, int]
-
-
-def test_an_anchor_may_be_used_as_often_as_it_is_useful(tmp_path):
-    text = changed("angles_per_cutoff: 2", "angles_per_cutoff: &two 2").replace(
-        "realisations: 2", "realisations: 3"
-    )
-    text = text.replace("samples_per_cutoff: 4", "samples_per_cutoff: *two")
-    assert load_sweep(written(tmp_path, text)).numerics.settings.samples_per_cutoff == 2
 
 
 def test_many_realisations_are_no_reason_to_refuse_but_samples_that_no_memory_holds(

@@ -14,12 +14,12 @@ import pytest
 import xarray as xr
 
 from crackfront.sweep import parallel
-from tests.commands import run, slow, stored
+from tests.commands import run, stored
+from tests.places import ROOT
 
-ROOT = Path(__file__).parents[2]
 MPIEXEC = Path(sys.executable).with_name("mpiexec")
 COSTS = ["seconds", "cpu_seconds", "peak_memory"]
-N_SIMULATION = 80
+N_SIMULATION = 40
 
 
 def launched(n_rank, *arguments):
@@ -93,42 +93,42 @@ def test_any_number_of_ranks_gives_the_table_of_one_process(
 
 
 @pytest.mark.mpi
-@pytest.mark.parametrize(
-    ("told", "victim"),
-    [
-        (signal.SIGTERM, "rank"),
-        slow(signal.SIGINT, "manager"),
-        slow(signal.SIGTERM, "launcher"),
-    ],
-)
-def test_ranks_that_are_told_to_end_and_then_killed_lose_nothing_that_they_stored(
-    configuration, undisturbed, tmp_path, told, victim
+def test_ranks_that_are_told_to_end_go_on_to_the_table_of_one_process(
+    configuration, undisturbed, tmp_path
 ):
     with started(configuration, tmp_path, n_rank=2) as process:
-        process.send_signal(told)
+        process.send_signal(signal.SIGTERM)
         output, _ = process.communicate(timeout=20)
     assert process.returncode == 75
     assert "run the same command to continue" in output
-    first = stored(tmp_path)
-    assert 10 <= len(first) < N_SIMULATION
+    kept = stored(tmp_path)
+    assert 10 <= len(kept) < N_SIMULATION
+    assert table(configuration, tmp_path).equals(undisturbed)
+    assert kept.items() <= stored(tmp_path).items()
 
+
+@pytest.mark.slow
+@pytest.mark.mpi
+@pytest.mark.parametrize("victim", ["rank", "manager", "launcher"])
+def test_ranks_that_are_killed_lose_nothing_that_they_stored(
+    configuration, undisturbed, tmp_path, victim
+):
     with started(configuration, tmp_path) as process:
-        found = processes(tmp_path)
-        ranks = sorted(number for number, name in found.items() if name == sys.executable)
+        running = processes(tmp_path)
+        ranks = sorted(number for number, name in running.items() if name == sys.executable)
         assert len(ranks) == 3
         victims = {"rank": ranks[-1], "manager": ranks[0], "launcher": process.pid}
         os.kill(victims[victim], signal.SIGKILL)
         process.communicate(timeout=20)
         assert process.returncode != 0
     assert not left_running(tmp_path)
-    second = stored(tmp_path)
-    assert first.items() < second.items()
-    assert len(second) < N_SIMULATION
-
+    kept = stored(tmp_path)
+    assert 10 <= len(kept) < N_SIMULATION
     assert table(configuration, tmp_path).equals(undisturbed)
-    assert second.items() <= stored(tmp_path).items()
+    assert kept.items() <= stored(tmp_path).items()
 
 
+@pytest.mark.slow
 @pytest.mark.mpi
 def test_an_exception_of_a_task_ends_all_ranks_with_its_traceback(tmp_path):
     script = tmp_path / "tasks.py"
@@ -150,6 +150,7 @@ def test_an_exception_of_a_task_ends_all_ranks_with_its_traceback(tmp_path):
     assert "ZeroDivisionError" in ended.stderr
 
 
+@pytest.mark.slow
 @pytest.mark.mpi
 def test_bad_input_is_one_sentence_of_all_ranks(tmp_path):
     command = ["-m", "crackfront", "simulate", tmp_path / "absent.yaml"]

@@ -1,5 +1,6 @@
 """The store: what belongs stays, what is missing, older or damaged is made again, and no more."""
 
+import json
 import os
 import re
 import shutil
@@ -34,8 +35,8 @@ from crackfront.sweep.rows import sweep_row
 from crackfront.sweep.run_sweep import run_sweep
 from crackfront.sweep.store import Store
 from tests.commands import done, refused, run, simulated, slow, stored, table
+from tests.places import TEST
 
-TEST = Path(__file__).parents[2] / "config/test.yaml"
 LINE = Path(__file__).parents[1] / "line-test.yaml"
 SWEEP = load_sweep(TEST)
 ALL = {one.label for one in SWEEP.simulations()}
@@ -79,7 +80,9 @@ def aggregated(configuration, folder):
 def in_batches(configuration, folder):
     """Store simulations in a batch each, as a process leaves them that is killed in the end."""
     sweep, store = load_sweep(configuration), Store(folder)
-    shards = [(one, [*sweep.simulations(one.item, one.realisations)]) for one in sweep.shards()]
+    shards = [
+        (shard, [*sweep.simulations(shard.item, shard.realisations)]) for shard in sweep.shards()
+    ]
     for _ in tasks.run_and_store(store, shards, provenance("text"), 0.01):
         pass
     return sweep, store
@@ -171,6 +174,8 @@ def test_a_higher_limit_of_sweeps_runs_again_what_reached_the_lower_one(
     stopped = set(re.findall(r"\] (.+?): step_limit", output))
     assert 0 < len(stopped) < 8
     change(configuration, "max_sweeps: 10", "max_sweeps: 100000")
+    plan = json.loads(done("plan", configuration, "--output", folder, "--json").stdout)
+    assert plan["missing"] == len(stopped)
     assert simulate(configuration, folder) == stopped
     found, expected = aggregated(configuration, folder), table(made.hysteresis)
     assert found.drop_vars("max_sweeps").identical(expected.drop_vars("max_sweeps"))
@@ -322,15 +327,6 @@ def test_plan_and_status_open_shards_and_no_curves_of_finished_ones(configuratio
     assert damaged_curves.exists()
 
 
-def test_a_part_of_a_shard_has_its_part_of_the_processor_time(made):
-    whole, half = (
-        made.progress(sweep, SWEEP.spectra[0]) for sweep in (SWEEP, replace(SWEEP, n_realisation=1))
-    )
-    assert (whole.done, half.done) == (4, 2)
-    for name in ("cpu_seconds", "expected_seconds"):
-        assert getattr(half, name) == pytest.approx(getattr(whole, name) / 2)
-
-
 SECTOR = 512
 
 
@@ -404,7 +400,7 @@ def test_a_damaged_batch_costs_its_own_simulations(configuration, made, tmp_path
 
 
 @pytest.mark.parametrize(
-    ("command", "how"), [*zip(["plan", "status", "simulate", "aggregate"], HARM, strict=True)]
+    ("command", "how"), [("status", "a zeroed sector"), ("aggregate", "a flipped bit")]
 )
 def test_a_damaged_shard_is_set_aside_and_derived_again_without_simulating(
     configuration, folder, command, how
@@ -421,9 +417,7 @@ def test_a_damaged_shard_is_set_aside_and_derived_again_without_simulating(
     assert aggregated(configuration, folder).identical(first)
 
 
-@pytest.mark.parametrize(
-    ("command", "how"), [*zip(["plan", "fit", "figures", "summary"], HARM, strict=True)]
-)
+@pytest.mark.parametrize(("command", "how"), [("plan", "truncated"), ("fit", "emptied")])
 def test_a_damaged_table_is_set_aside_and_aggregated_again(configuration, folder, command, how):
     path = folder / "hysteresis.nc"
     first = table(path)
@@ -584,6 +578,7 @@ def test_recorded_fronts_and_energies_survive_batches_and_merging_to_the_last_bi
         assert simulate(configuration, folder) == set()
 
 
+@pytest.mark.slow
 def test_batches_that_a_kill_left_beside_the_merged_file_are_removed(configuration, tmp_path):
     folder = tmp_path / "sweep"
     change(configuration, "realisations: 2", "realisations: 1")
@@ -605,39 +600,11 @@ def test_batches_that_a_kill_left_beside_the_merged_file_are_removed(configurati
 def same(record, other):
     """Whether two records, or parts of them, agree in every bit."""
     if is_dataclass(record):
-        names = [one.name for one in fields(record)]
+        names = [field.name for field in fields(record)]
         return all(same(getattr(record, name), getattr(other, name)) for name in names)
     if isinstance(record, np.ndarray):
         return record.dtype == other.dtype and record.tobytes() == other.tobytes()
     return record == other
-
-
-@pytest.mark.parametrize("original", [TEST, slow(LINE)])
-def test_every_file_opens_without_arguments_and_says_what_its_variables_are(tmp_path, original):
-    configuration, folder = shutil.copy(original, tmp_path / "sweep.yaml"), tmp_path / "sweep"
-    change(configuration, *RECORDED)
-    sweep, store = in_batches(configuration, folder)
-    kept, simulation = [], next(sweep.simulations())
-    run_simulation(simulation, keep=lambda make: kept.append(make()))
-    shard = sweep.shards()[0]
-    write_checkpoint(store.curve_folder(shard), "checkpoint-of-it", kept[3], provenance())
-    assert_described(folder, 2 if original == LINE else 3)
-    for command in ("simulate", "aggregate", "fit"):
-        done(command, configuration, "--output", folder)
-    assert_described(folder, 5)
-
-
-def assert_described(folder, least):
-    """Every file of a folder is netCDF whose variables have units and names, or text."""
-    paths = [path for path in folder.rglob("*") if path.is_file()]
-    files = [path for path in paths if path.suffix == ".nc"]
-    assert len(files) >= least
-    for path in {*paths} - {*files}:
-        path.read_text(encoding="utf-8")
-    for path in files:
-        with xr.open_dataset(path) as dataset:
-            for name, values in dataset.variables.items():
-                assert values.attrs.keys() >= {"units", "long_name"}, (path, name)
 
 
 def test_the_longest_simulations_start_first(tmp_path, monkeypatch):
@@ -650,52 +617,6 @@ def test_the_longest_simulations_start_first(tmp_path, monkeypatch):
     ended = tasks.run_and_store(Store(tmp_path), [(shard, runs)], provenance("text"))
     costs = [expected_cost(simulation).seconds for simulation, _ in ended]
     assert costs == sorted(costs, reverse=True)
-
-
-def test_spectra_of_one_shape_and_two_names_have_results_of_their_own(configuration, tmp_path):
-    change(configuration, "name: rough", "name: twin", "roll_off: 0.2, hurst: 0.8", "hurst: 1.0")
-    change(configuration, "realisations: 2", "realisations: 1")
-    folder = tmp_path / "sweep"
-    assert len(simulate(configuration, folder)) == 4
-    found = aggregated(configuration, folder)
-    assert np.array_equal(found["w_retr"][0], found["w_retr"][1])
-
-
-@pytest.mark.slow
-def test_a_table_is_written_in_less_memory_than_its_rows_take(tmp_path):
-    script = """
-import resource, sys
-from dataclasses import fields, is_dataclass, replace
-from pathlib import Path
-import netCDF4, numpy as np
-from crackfront.analysis.table import SweepRow
-from crackfront.simulate.provenance import provenance
-from crackfront.sweep.parameters import load_sweep
-from crackfront.sweep.table_file import write_hysteresis
-
-KINDS = {"float": float, "int": np.int64, "str": "S40"}
-
-def write(n_realisation):
-    sweep = replace(load_sweep(Path(sys.argv[1])), n_realisation=n_realisation)
-    shape = 1, len(sweep.elastic_energies), n_realisation
-    kinds = {one.name: KINDS[one.type] for one in fields(SweepRow)} | {"status": np.int8}
-    parts = [[{name: np.zeros(shape, kind) for name, kind in kinds.items()}] for _ in sweep.spectra]
-    for [columns] in parts:
-        for values in columns.values():
-            values.fill(1)
-    size = sum(one.nbytes for [columns] in parts for one in columns.values())
-    before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-    write_hysteresis(Path(sys.argv[2]), sweep, parts, provenance())
-    return 1024 * (resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before) / size
-
-cache = netCDF4.get_chunk_cache()
-write(10)
-print(write(50_000))
-assert netCDF4.get_chunk_cache() == cache
-"""
-    command = [sys.executable, "-c", script, str(TEST), str(tmp_path / "hysteresis.nc")]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=600, check=True)
-    assert float(done.stdout) < 1  # beside the rows themselves
 
 
 _STARTS = """

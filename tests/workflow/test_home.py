@@ -3,13 +3,10 @@
 import os
 import subprocess
 import sys
-from pathlib import Path
 
 import pytest
 
-from tests.commands import slow
-
-ROOT = Path(__file__).parents[2]
+from tests.places import ROOT
 
 
 def plan(folder, **environment):
@@ -31,7 +28,8 @@ def plan(folder, **environment):
     )
 
 
-@pytest.mark.parametrize("variable", ["HOME", slow("XDG_CACHE_HOME")])
+@pytest.mark.slow
+@pytest.mark.parametrize("variable", ["HOME", "XDG_CACHE_HOME"])
 def test_a_home_that_cannot_be_written_is_replaced_by_a_private_temporary_folder(
     tmp_path, variable
 ):

@@ -21,9 +21,9 @@ import xarray as xr
 
 import crackfront as cf
 from crackfront.simulate.checksums import DAMAGED_SUFFIX
-from tests.commands import done, simulated, slow
+from tests.commands import done, simulated
+from tests.places import ROOT
 
-ROOT = Path(__file__).parents[2]
 COSTS = {"seconds", "cpu_seconds", "peak_memory"}
 RULES = {"request", "simulate", "aggregate", "fit", "summary", "sweep_figures", "checksums"}
 
@@ -77,20 +77,19 @@ def copied_sweep(folder):
     return Path(shutil.copy(ROOT / "config/test.yaml", folder))
 
 
-@pytest.fixture(scope="module")
-def whole_on_terminal(tmp_path_factory):
-    """Folder of a whole run without MPI, and what its terminal of 24 by 100 letters showed."""
-    folder = tmp_path_factory.mktemp("whole")
+def run_on_terminal(folder, sweep, *targets):
+    """What a terminal of 24 by 100 letters shows of a run without MPI."""
     terminal, side = pty.openpty()
     termios.tcsetwinsize(side, (24, 100))
     with os.fdopen(terminal, encoding="utf-8", errors="replace", newline="") as shown:
         read = ThreadPoolExecutor().submit(_everything, shown)
         with os.fdopen(side, "wb") as errors:
-            ended = snakemake(folder, sweep=copied_sweep(folder), ranks=1, errors=errors)
+            settings = ("--", *targets) if targets else ()
+            ended = snakemake(folder, *settings, sweep=sweep, ranks=1, errors=errors)
         text = read.result()
     assert ended.returncode == 0, text
-    assert str(Path("results/test/fit.md")) in ended.stdout
-    return folder, text
+    assert str(Path("results", sweep.stem, "fit.md")) in ended.stdout
+    return text
 
 
 def _everything(terminal):
@@ -103,20 +102,31 @@ def _everything(terminal):
 
 
 @pytest.fixture(scope="module")
-def whole(whole_on_terminal):
+def whole(tmp_path_factory):
     """Folder of a whole run without MPI."""
-    return whole_on_terminal[0]
+    folder = tmp_path_factory.mktemp("whole")
+    run_on_terminal(folder, copied_sweep(folder))
+    return folder
 
 
-def test_a_terminal_shows_one_bar_of_the_whole_sweep_and_logs_have_lines(whole_on_terminal):
-    folder, shown = whole_on_terminal
-    assert re.search(r"\r +0%\|.*\| 0/8 ", shown)
-    assert re.search(r"\r100%\|.*\| 8/8 ", shown)
-    for shard in ("flat", "rough"):
-        log = (folder / f"results/test/logs/simulate-{shard}.log").read_bytes()
-        assert b"\r" not in log
-        assert log.count(b"/4] ") == 4
+def test_a_run_fits_a_sweep_and_shows_one_bar_and_the_next_plan_is_what_a_change_concerns(
+    tmp_path,
+):
+    sweep, results = flat_sweep(tmp_path), tmp_path / "results/sweep"
+    shown = run_on_terminal(tmp_path, sweep, "results/sweep/fit.md")
+    assert re.search(r"\r +0%\|.*\| 0/4 ", shown)
+    assert re.search(r"\r100%\|.*\| 4/4 ", shown)
+    log = (results / "logs/simulate-flat.log").read_bytes()
+    assert b"\r" not in log
+    assert log.count(b"/4] ") == 4
     assert "/4] " not in shown
+    sweep.write_text(sweep.read_text().replace("realisations: 2", "realisations: 3"))
+    date(2001, sweep)  # no date matters
+    for name in ("shards/flat.nc", "hysteresis.nc"):
+        zero_sector(results / name)
+    before = contents(results)
+    assert planned_rules(tmp_path, sweep) == RULES | {"all"}
+    assert contents(results) == before
 
 
 def zero_sector(path):
@@ -249,17 +259,10 @@ def sweep(tmp_path, whole):
     return copied_sweep(tmp_path)
 
 
-def test_a_plan_is_what_a_change_concerns_and_changes_nothing_even_where_files_are_damaged(
-    tmp_path, sweep
-):
-    results = tmp_path / "results/test"
+@pytest.mark.slow
+def test_a_whole_run_makes_all_results_and_of_what_is_finished_nothing_is_planned(tmp_path, sweep):
+    assert made(tmp_path / "results/test", {}) >= FITTED | TABLE | SHARDS
     assert planned_rules(tmp_path, sweep) == set()
-    sweep.write_text(sweep.read_text().replace("realisations: 2", "realisations: 3"))
-    date(2001, sweep)  # no date matters
-    harm(results)
-    before = contents(results)
-    assert planned_rules(tmp_path, sweep) == RULES | {"all"}
-    assert contents(results) == before
 
 
 def stated_factor(results):
@@ -394,8 +397,8 @@ def test_forcing_rewrites_from_stored_rows_and_without_curves_simulates(tmp_path
     shutil.rmtree(results / "curves/flat")
     printed = finished(tmp_path, "--forcerun", "simulate", sweep=sweep, ranks=1)
     assert {label.split()[0] for label in simulated(printed)} == {"flat"}
-    found = xr.load_dataset(results / "hysteresis.nc")
-    assert found.drop_vars(COSTS).equals(expected.drop_vars(COSTS))
+    dataset = xr.load_dataset(results / "hysteresis.nc")
+    assert dataset.drop_vars(COSTS).equals(expected.drop_vars(COSTS))
 
 
 @pytest.mark.slow
@@ -469,13 +472,14 @@ def test_a_configuration_that_snakemake_reads_as_no_text_is_refused(tmp_path, gi
     assert "Traceback" not in done.stderr
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "hurst", "settings", "sentence"),
     [
         ("sweep", 1.8, (), "spectra[1]: hurst is 1.8; it must"),
-        slow("sweep", 0.8, ("rank=2",), "--config knows no rank; its keys are sweep (a file)"),
-        slow("a; rm -rf b", 0.8, (), "the results are named after 'a; rm -rf b.yaml'"),
-        slow("sweep", 0.8, ("scale=coarse",), "scale is 'coarse'; choose one of quick, paper"),
+        ("sweep", 0.8, ("rank=2",), "--config knows no rank; its keys are sweep (a file)"),
+        ("a; rm -rf b", 0.8, (), "the results are named after 'a; rm -rf b.yaml'"),
+        ("sweep", 0.8, ("scale=coarse",), "scale is 'coarse'; choose one of quick, paper"),
     ],
 )
 def test_the_workflow_refuses_what_is_wrong_before_it_starts(

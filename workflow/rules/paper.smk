@@ -2,7 +2,7 @@
 # the data of a figure, another draws them, so that a change of the drawing computes nothing again.
 PAPER = f"results/figures/{SCALE}"
 # Names, as reading this must not import what computes the figures.
-ANIMATED = ["beyond-animation"]
+ANIMATED = ["beyond-animation", "beyond-video"]
 # Those that take longest go first: one that began last would leave the other cores waiting.
 LONGEST = [
     "main-3ab",

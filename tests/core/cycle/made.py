@@ -3,17 +3,13 @@
 import functools
 
 import numpy as np
-import pytest
 from scipy.ndimage import gaussian_filter
 
 from crackfront.core.cycle.load_schedule import LoadSchedule
 from crackfront.core.cycle.record import Recorder
 from crackfront.core.cycle.run import run_cycle
 from crackfront.core.geometry.sphere import polar_field
-from crackfront.core.solver.relax import SOLVERS
 from crackfront.core.units import WORK_OF_ADHESION
-
-every_solver = pytest.mark.parametrize("solver", sorted(SOLVERS))
 
 
 def noisy_field(seed, n_angle=24, amplitude=0.3, spacing=0.06, largest=2.8):

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import quad
 
@@ -15,14 +15,14 @@ from crackfront.core.field.fields import first_place
 from crackfront.core.field.rays import front_adhesion, swept_adhesion
 from crackfront.core.geometry.sphere import line_energy
 from crackfront.core.solver.relax import SOLVERS, front_force, relax
-from crackfront.core.units import CONTACT_MODULUS, WORK_OF_ADHESION
+from crackfront.core.units import CONTACT_MODULUS
 from tests.core.cycle.made import (
     branch,
     cycles_of_few_sites,
-    every_solver,
     noisy_field,
     smooth_field,
 )
+from tests.core.solvers import every_solver
 
 
 def energy(front, penetration, field, origin):
@@ -38,13 +38,6 @@ def test_dissipated_energy_is_the_fall_of_the_total_energy(rng):
     for one, other in ((before, after), (after, before)):
         fall = energy(one, 0.4, field, origin) - energy(other, 0.4, field, origin)
         assert dissipated_energy(one, other, 0.4, field) == pytest.approx(fall, rel=1e-12)
-
-
-def test_an_edge_in_compression_advances_without_storing_or_releasing_elastic_energy():
-    # Up to a = sqrt(b) the sphere itself closes the gap; only adhesion is gained.
-    field, before, after = smooth_field(), np.full(24, 0.3), np.full(24, 0.8)
-    gained = WORK_OF_ADHESION * np.pi * (0.8**2 - 0.3**2)
-    assert dissipated_energy(before, after, 0.64, field) == pytest.approx(gained, rel=1e-12)
 
 
 def test_the_force_on_a_site_is_the_derivative_of_the_dissipated_energy(rng):
@@ -73,7 +66,6 @@ def test_the_force_on_the_sphere_is_the_derivative_of_the_energy_in_penetration(
 
 
 @every_solver
-@settings(max_examples=20)
 @given(seed=st.integers(0, 2**32 - 1), amplitude=st.sampled_from([0.0, 0.1, 0.4]))
 def test_no_load_step_creates_energy(solver, seed, amplitude):
     record = run_cycle(
@@ -84,29 +76,6 @@ def test_no_load_step_creates_energy(solver, seed, amplitude):
     )
     assert record.dissipated_energy.shape == record.states.penetration.shape
     assert np.all(record.dissipated_energy >= -1e-11)
-
-
-@every_solver
-def test_each_load_step_works_exactly_what_it_stores_and_dissipates(solver):
-    # At a fixed front the force is linear in penetration, so this balance has no step error.
-    field = noisy_field(13)
-    record = run_cycle(
-        field, LoadSchedule(0.8, 0.1), SOLVERS[solver](1e-12), Recorder(fronts=True, energy=True)
-    )
-    origin = np.full(24, 0.06)
-    stored = [
-        energy(front, load, field, origin)
-        for front, load in zip(record.fronts, record.states.penetration, strict=True)
-    ]
-    for k in range(1, len(stored)):
-        before, load, last = (
-            record.fronts[k - 1],
-            record.states.penetration[k],
-            record.states.penetration[k - 1],
-        )
-        work = (jkr.force(before, load) + jkr.force(before, last)).mean() / 2 * (load - last)
-        balance = stored[k] - stored[k - 1] + record.dissipated_energy[k]
-        assert work == pytest.approx(balance, abs=1e-12)
 
 
 @every_solver
@@ -179,6 +148,7 @@ def test_energy_is_gained_only_where_an_edge_in_compression_is_closed_over_repel
     assert paid < 20 * -gained
 
 
+@pytest.mark.slow
 def test_making_contact_gains_no_more_than_the_first_circle_costs():
     least = 0.0
     for field, record in cycles_of_few_sites("cubic"):
@@ -190,14 +160,15 @@ def test_making_contact_gains_no_more_than_the_first_circle_costs():
     assert -0.1 < least < -0.01
 
 
+@pytest.mark.slow
 def test_losing_contact_gains_no_more_than_what_adheres_when_one_site_has_passed_the_apex():
     least = 0.0
     for field, record in cycles_of_few_sites("cubic"):
         assert record.dissipated_energy.sum() + record.pull_off_energy > 0
         if record.pull_off_energy >= 0:
             continue
-        found = relax(record.fronts[-1], record.end_load, -1, field)
-        left = np.maximum(found.front, first_place(field))
+        outcome = relax(record.fronts[-1], record.end_load, -1, field)
+        left = np.maximum(outcome.front, first_place(field))
         assert record.pull_off_energy > contact_energy(left, record.end_load, field) - 1e-6
         least = min(least, record.pull_off_energy)
     assert -1.5 < least < -0.3

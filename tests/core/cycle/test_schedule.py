@@ -36,12 +36,6 @@ def test_round_off_of_the_step_adds_no_penetration_and_leaves_none_out(step):
     assert loads[-1] == pytest.approx(1.0)
 
 
-def test_a_schedule_to_zero_penetration_only_touches():
-    schedule = LoadSchedule(0.0, 0.25)
-    assert list(schedule.approach()) == [0.0]
-    assert list(itertools.islice(schedule.retraction(), 3)) == [-0.25, -0.5, -0.75]
-
-
 @pytest.mark.parametrize("step", [0.0, -0.1, float("nan"), float("inf")])
 def test_a_load_step_that_is_not_positive_is_refused(step):
     with pytest.raises(ValueError, match=f"step is {step}; it must be positive"):

@@ -1,5 +1,3 @@
-import tracemalloc
-
 import numpy as np
 import pytest
 from hypothesis import given
@@ -48,24 +46,6 @@ def test_radius_times_adhesion_is_linear_between_the_samples_of_a_ray():
     assert np.allclose(front * front_adhesion(front, field), products, rtol=1e-13)
 
 
-def test_samples_are_met_exactly_also_at_both_ends():
-    radii, adhesion = noisy_polar()
-    field = polar_field(radii, adhesion)
-    for sample in (0, 1, 17, radii.size - 1):
-        front = np.full(8, radii[sample])
-        assert np.allclose(front_adhesion(front, field), adhesion[sample], rtol=1e-13)
-
-
-def test_a_leading_zero_radius_changes_nothing():
-    radii, adhesion = noisy_polar()
-    field = polar_field(radii, adhesion)
-    padded = polar_field(
-        np.concatenate([[0.0], radii]), np.concatenate([np.ones((1, 8)), adhesion])
-    )
-    assert np.array_equal(padded.places, field.places)
-    assert np.array_equal(padded.products, field.products)
-
-
 def test_a_field_keeps_its_values_when_the_arrays_it_was_made_of_change():
     radii, adhesion = noisy_polar()
     field = polar_field(radii, adhesion)
@@ -94,43 +74,7 @@ def test_radii_that_do_not_increase_are_refused(radii):
         polar_field(np.array(radii), np.ones((3, 8)))
 
 
-def test_a_cubic_field_on_rays_takes_hardly_more_memory_to_make_than_to_hold():
-    radii, adhesion = 0.001 * np.arange(1, 2001), np.ones((2000, 64))
-    polar_field(radii[:2], adhesion[:2], "cubic")  # imports what it needs
-    tracemalloc.start()
-    try:
-        field = polar_field(radii, adhesion, "cubic")
-        _, peak = tracemalloc.get_traced_memory()
-    finally:
-        tracemalloc.stop()
-    assert peak < 1.3 * (field.products.nbytes + field.slopes.nbytes)
-
-
-def test_a_value_on_rings_that_is_not_finite_is_named_by_its_radius():
-    with pytest.raises(ValueError, match=r"is nan at radius index 2; replace it"):
-        polar_field(np.array([0.1, 0.2, 0.3]), np.array([1.0, 1.0, np.nan]))
-
-
-@pytest.mark.parametrize("shape", [(4, 8), (8, 3), (4,), (3, 8, 1), ()])
-def test_a_field_of_another_shape_is_refused(shape):
-    with pytest.raises(ValueError, match=r"has shape .* for 3 radii; it must be \(radius, angle\)"):
-        polar_field(np.array([0.1, 0.2, 0.3]), np.ones(shape))
-
-
-@pytest.mark.parametrize(("n_sample", "n_angle"), [(1, 8), (4, 2), (4, 3), (1, 1)])
-def test_a_field_with_too_few_samples_or_angles_is_refused(n_sample, n_angle):
-    sentence = "at least 2 radii and 4 angles are needed, or 1 angle for rings"
-    with pytest.raises(ValueError, match=sentence):
-        polar_field(0.1 * np.arange(1, n_sample + 1), np.ones((n_sample, n_angle)))
-
-
 # --- periodic tiles
-
-
-@pytest.mark.parametrize("shape", [(4,), (4, 4, 4)])
-def test_a_tile_without_values_and_of_another_shape_is_refused_by_its_shape(shape):
-    with pytest.raises(ValueError, match=r"a tile must be \(x, y\)"):
-        tile_field(tile(np.full(shape, np.nan)), sphere(8), 0.05, 1.0)
 
 
 def test_a_tile_is_met_at_its_own_points_along_both_axes(rng):
@@ -184,12 +128,6 @@ def test_a_tile_may_have_sides_of_different_length(rng):
         assert evaluate(field, 1, step)[0] == pytest.approx(radius * along_y)
 
 
-def test_a_constant_tile_is_constant_everywhere():
-    field = tile_field(tile(np.full((5, 5), 0.7)), sphere(7), 0.013, 3.0)
-    front = np.linspace(0.02, 2.9, 7)
-    assert np.allclose(front_adhesion(front, field), 0.7, rtol=1e-14)
-
-
 @pytest.mark.parametrize("interpolation", ["linear", "cubic"])
 def test_the_rays_of_a_tile_sampled_beforehand_are_the_same_field(rng, interpolation):
     values = 1 + 0.3 * rng.standard_normal((16, 16))
@@ -199,18 +137,6 @@ def test_the_rays_of_a_tile_sampled_beforehand_are_the_same_field(rng, interpola
     assert np.allclose(front_adhesion(front, polar), front_adhesion(front, field), rtol=1e-13)
     assert last_place(polar) == last_place(field) >= 1.5
     assert first_place(polar) == first_place(field) == 0.04
-
-
-def test_straight_pieces_of_a_tile_join_its_samples(rng):
-    values = 1 + 0.3 * rng.standard_normal((16, 16))
-    field = tile_field(tile(values), sphere(12), 0.04, 1.5, "linear")
-    radii = 0.04 * np.arange(1, 39)
-    front = rng.uniform(0.05, 1.45, 12)
-    for ray in range(12):
-        samples = [evaluate(field, ray, k)[0] for k in range(38)]
-        expected = np.interp(front[ray], radii, samples)
-        found = front[ray] * front_adhesion(front, field)[ray]
-        assert found == pytest.approx(expected, rel=1e-13)
 
 
 @pytest.mark.parametrize(("interpolation", "order"), [("linear", 2), ("cubic", 4)])
@@ -258,22 +184,12 @@ def test_cubic_pieces_have_one_slope_where_they_meet(rng, kind):
         assert np.allclose((outer - inner) / (2 * step), slopes, rtol=0, atol=1e-3)
 
 
-def test_an_unknown_interpolation_is_refused():
-    with pytest.raises(ValueError, match="interpolation is 'quintic'; choose one of cubic, linear"):
-        tile_field(tile(np.ones((8, 8))), sphere(8), 0.1, 1.0, "quintic")
-
-
 @pytest.mark.parametrize("value", [np.nan, np.inf])
 def test_a_tile_with_a_value_that_is_not_finite_is_refused_with_its_place(value):
     values = np.ones((8, 8))
     values[2, 5] = value
     with pytest.raises(ValueError, match=f"work of adhesion is {value} at x index 2, y index 5"):
         tile_field(tile(values), sphere(8), 0.1, 1.0)
-
-
-def test_a_tile_for_fewer_than_four_angles_is_refused():
-    with pytest.raises(ValueError, match="the front has 3 sites; give at least 4"):
-        tile_field(tile(np.ones((8, 8))), sphere(3), 0.1, 1.0)
 
 
 @pytest.mark.parametrize("spacing", [0.0, -0.1, 0.5, float("nan")])
@@ -283,23 +199,6 @@ def test_a_sample_spacing_that_cannot_resolve_the_ray_is_refused(spacing):
 
 
 # --- swept adhesion
-
-
-@given(fronts_in_pairs())
-def test_a_constant_field_gives_its_value_times_the_swept_area(pair):
-    before, after = pair
-    radii = np.linspace(0.05, 1.3, 23)
-    field = polar_field(radii, np.full((23, 8), 0.4))
-    area = np.pi * np.mean(after**2 - before**2)
-    assert swept_adhesion(before, after, field) == pytest.approx(0.4 * area, rel=1e-11, abs=1e-12)
-
-
-@given(fronts_in_pairs())
-def test_swept_adhesion_is_antisymmetric(pair):
-    before, after = pair
-    field = polar_field(*noisy_polar())
-    there, back = swept_adhesion(before, after, field), swept_adhesion(after, before, field)
-    assert there == pytest.approx(-back, rel=1e-12, abs=1e-14)
 
 
 @given(fronts_in_pairs(), fronts_in_pairs())

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from crackfront.cli import main
 from crackfront.core.adhesion import AdhesionMap
-from crackfront.core.cycle.follow import Load, follow, front_at
+from crackfront.core.cycle.follow import Load, follow
 from crackfront.core.cycle.load_schedule import protocol
 from crackfront.core.cycle.record import Recorder
 from crackfront.core.field.rays import front_adhesion
@@ -19,8 +19,7 @@ from crackfront.core.solver.forces import line_force
 from crackfront.core.solver.relax import SOLVERS, Newton, Reference, front_force
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.plots.figures import plot_fronts, plot_loop
-
-every_solver = pytest.mark.parametrize("solver", sorted(SOLVERS))
+from tests.core.solvers import every_solver
 
 
 def tile(values, pixel=1.0, corner=(0.0, 0.0)):
@@ -80,12 +79,6 @@ def first_stops(wave, spring, loads, start):
         here = nodes[k - 1] + part
         places.append(here)
     return np.array(places)
-
-
-def test_messages_name_the_load_of_a_line():
-    field = line_field(tile(np.ones((8, 16))), 5.0, (0.0, 20.0))
-    with pytest.raises(ValueError, match="load is nan; it must be finite"):
-        front_at(field, np.full(16, 4.0), Load(np.nan, 1))
 
 
 @every_solver
@@ -189,12 +182,6 @@ def test_no_passing_holds_for_a_straight_front():
     assert np.all(one <= other + 1e-9)
 
 
-def test_a_front_that_is_not_found_is_named_by_its_load():
-    field = line_field(noisy(8), 20.0, (50.0, 90.0))
-    with pytest.raises(ValueError, match=r"^at load 70: "):
-        front_at(field, np.full(32, 10.0), Load(70.0, 1), Newton(1e-12, max_sweeps=1))
-
-
 @pytest.fixture
 def command(tmp_path):
     """Result of `crackfront cycle` on a noisy tile as a straight front."""
@@ -222,33 +209,33 @@ def command(tmp_path):
 def test_the_command_writes_a_cycle_of_the_line(command):
     result = command()
     assert result.exit_code == 0, result.output
-    found = xr.load_dataset(command.output)
+    dataset = xr.load_dataset(command.output)
     loads = [*range(300, 361, 10), *range(350, 299, -10)]
-    assert found["spring_position"].values == pytest.approx(loads)
-    assert found.direction.values.tolist() == [1] * 7 + [-1] * 6
-    assert found.attrs["status"] == "converged"
-    assert found.position.dims == ("step", "y")
-    assert found.y.values == pytest.approx(np.arange(32))
-    mean = found.position.mean("y")
-    assert found.mean_position.values == pytest.approx(mean.values, rel=1e-14)
-    stretched = found.spring_position - mean
-    assert found.pinning_force.values == pytest.approx((stretched / 32).values)
-    assert np.all(found.residual <= 1e-8)
-    assert np.all(found.iterations > 0)
+    assert dataset["spring_position"].values == pytest.approx(loads)
+    assert dataset.direction.values.tolist() == [1] * 7 + [-1] * 6
+    assert dataset.attrs["status"] == "converged"
+    assert dataset.position.dims == ("step", "y")
+    assert dataset.y.values == pytest.approx(np.arange(32))
+    mean = dataset.position.mean("y")
+    assert dataset.mean_position.values == pytest.approx(mean.values, rel=1e-14)
+    stretched = dataset.spring_position - mean
+    assert dataset.pinning_force.values == pytest.approx((stretched / 32).values)
+    assert np.all(dataset.residual <= 1e-8)
+    assert np.all(dataset.iterations > 0)
     expected, _ = run(
         noisy(3), 32.0, [*protocol([300.0, 360.0, 300.0], 10.0)], Newton(1e-8), "cubic"
     )
-    assert np.array_equal(found.position, expected.fronts)
-    most, least = float(found.pinning_force.max()), float(found.pinning_force.min())
+    assert np.array_equal(dataset.position, expected.fronts)
+    most, least = float(dataset.pinning_force.max()), float(dataset.pinning_force.min())
     told = f"pinning force up to {most:.4g} forward and {least:.4g} back (w_int)"
     said = result.stdout.splitlines()[-1]
     assert "hysteresis 0.051 ± 0.025 (w_int); the front is 1 L_kappa long, below" in said
     assert said.endswith(told)
-    loop, fronts = (draw(found, axes=Figure().add_subplot()) for draw in (plot_loop, plot_fronts))
+    loop, fronts = (draw(dataset, axes=Figure().add_subplot()) for draw in (plot_loop, plot_fronts))
     np.testing.assert_array_equal(loop.get_lines()[0].get_xdata(), loads[:7])
-    np.testing.assert_array_equal(fronts.get_lines()[0].get_xdata(), found.position[6])
+    np.testing.assert_array_equal(fronts.get_lines()[0].get_xdata(), dataset.position[6])
     with pytest.raises(ValueError, match="straight fronts are drawn without a surface"):
-        plot_fronts(found, surface=found.position)
+        plot_fronts(dataset, surface=dataset.position)
 
 
 @pytest.mark.parametrize(

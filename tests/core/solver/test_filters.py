@@ -33,10 +33,10 @@ def test_a_large_front_of_an_odd_number_of_sites_comes_to_rest():
     field = polar_field(np.linspace(0.2, 2.6, 40), adhesion, "cubic")
     front = np.full(16385, 1.2)
     for load, direction in ((0.0, 1), (-0.1, -1)):
-        found = relax(front, load, direction, field, Newton(1e-6))
-        assert found.status is Status.CONVERGED
-        assert np.max(np.abs(found.front - front)) > 0.01
+        outcome = relax(front, load, direction, field, Newton(1e-6))
+        assert outcome.status is Status.CONVERGED
+        assert np.max(np.abs(outcome.front - front)) > 0.01
         # By the forces of the reference.
-        again = relax(found.front, load, direction, field, Reference(1.1e-6))
+        again = relax(outcome.front, load, direction, field, Reference(1.1e-6))
         assert (again.status, again.sweeps) == (Status.CONVERGED, 1)
-        front = found.front
+        front = outcome.front

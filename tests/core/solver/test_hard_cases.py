@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from crackfront.core import jkr
-from crackfront.core.adhesion import AdhesionMap, chemical_adhesion, rough_adhesion
+from crackfront.core.adhesion import AdhesionMap, chemical_adhesion
 from crackfront.core.cycle.load_schedule import LoadSchedule
 from crackfront.core.cycle.record import Recorder
 from crackfront.core.cycle.run import run_cycle
@@ -17,12 +17,11 @@ from crackfront.core.outcome import Status
 from crackfront.core.solver.relax import SOLVERS, front_force, relax
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.synthesis import gaussian_field
-from crackfront.core.units import WORK_OF_ADHESION, Scales
+from crackfront.core.units import CONTACT_MODULUS, WORK_OF_ADHESION, Scales
 from crackfront.simulate.run_simulation import run_simulation
 from crackfront.sweep.parameters import load_sweep
+from tests.core.solvers import every_solver
 from tests.yaml_texts import from_yaml, to_yaml
-
-every_solver = pytest.mark.parametrize("solver", sorted(SOLVERS))
 
 
 def tight(front, penetration, direction, field, solver, tolerance=1e-12):
@@ -109,19 +108,6 @@ def test_hysteresis_and_bending_grow_from_nothing_as_the_line_turns_from_stiff_t
     assert bent[0] < 0.02
     assert bent[1] / bent[0] == pytest.approx(5, rel=0.02)
     assert bent[3] > 0.5
-
-
-@every_solver
-def test_patches_as_wide_as_the_contact_pin_less_than_many_small_ones(solver):
-    hysteresis = []
-    for cutoff, n_angle in ((0.8, 32), (0.4, 64), (0.1, 256)):
-        record = run_cycle(
-            chemical_tile(0.3, cutoff, 3, n_angle), LoadSchedule(1.0, 0.05), SOLVERS[solver](1e-9)
-        )
-        up, down = branches(record)
-        apparent = record.states.apparent_work_of_adhesion
-        hysteresis.append(np.mean((apparent[down] - apparent[up])[up > 5]))
-    assert -1e-7 < hysteresis[0] < hysteresis[1] < hysteresis[2] / 2
 
 
 # --- obstacles
@@ -271,66 +257,7 @@ def test_a_front_on_a_field_of_n_fold_symmetry_keeps_the_symmetry(solver, fold, 
         assert np.ptp(copies[0]) > 0.02
 
 
-@every_solver
-def test_equal_obstacles_give_way_at_the_same_load(solver):
-    adhesion = np.full((60, 60), WORK_OF_ADHESION)
-    adhesion[25:29, ::10] *= -1.0
-    field = polar_field(0.05 * np.arange(1, 61), adhesion)
-    front, held = np.full(60, 0.1), []
-    for load in np.linspace(-0.2, 2.4, 261):
-        front = tight(front, load, 1, field, solver)
-        held.append(np.count_nonzero(front[::10] < 1.5))
-    assert set(held) == {0, 6}
-
-
 # --- spectra
-
-
-@pytest.mark.parametrize("hurst", [0.1, 0.5, 1.0])
-def test_self_affine_surfaces_of_any_hurst_exponent_run_through_a_cycle(hurst):
-    spectrum = SelfAffineSpectrum(0.1, 0.4, hurst).with_elastic_energy(0.05)
-    heights = gaussian_field(spectrum, 128, 3.2, np.random.default_rng(8))
-    adhesion = rough_adhesion(heights, 0.025)
-    assert adhesion.e_el == pytest.approx(0.05, rel=0.15)
-    field = contact_field(adhesion, 0.8, 240, 0.02, band_limited=True)
-    reference, newton = (
-        run_cycle(field, LoadSchedule(0.8, 0.1), SOLVERS[solver](1e-9), Recorder(fronts=True))
-        for solver in ("reference", "newton")
-    )
-    assert newton.status is reference.status is Status.LOST_CONTACT
-    assert np.max(np.abs(reference.fronts - newton.fronts)) < 1e-7
-    up, down = branches(newton)
-    apparent = newton.states.apparent_work_of_adhesion
-    assert 0.03 < np.mean((apparent[down] - apparent[up])[2:]) < 2 * 4 * adhesion.e_el
-
-
-def test_a_roll_off_at_the_cutoff_is_the_limit_of_a_narrow_self_affine_range():
-    flat = gaussian_field(SelfAffineSpectrum(0.2, 0.2, 0.8), 64, 3.2, np.random.default_rng(1))
-    differences = []
-    for excess in (1e-2, 1e-4, 1e-12):
-        narrow = SelfAffineSpectrum(0.2, 0.2 * (1 + excess), 0.8)
-        other = gaussian_field(narrow, 64, 3.2, np.random.default_rng(1))
-        differences.append(np.max(np.abs(other - flat)) / np.std(flat))
-    # Only modes between roll-off and cutoff differ, and by their share of the exponent.
-    assert differences[0] < 0.01
-    assert differences[0] / differences[1] == pytest.approx(100, rel=0.05)
-    assert differences[2] < 1e-11
-
-
-def test_a_cutoff_of_exactly_two_pixels_gives_the_fronts_of_finer_pixels():
-    # The finest grid and the coarse one share all modes but those on the Nyquist wavevector.
-    spectrum = SelfAffineSpectrum(0.2, 0.2, 1.0).with_elastic_energy(0.002)
-    fronts = []
-    for n_point in (32, 64, 128):
-        heights = gaussian_field(spectrum, n_point, 3.2, np.random.default_rng(9))
-        field = contact_field(
-            rough_adhesion(heights, 3.2 / n_point), 0.5, 128, 0.02, band_limited=True
-        )
-        fronts.append(tight(np.full(128, 0.02), 0.5, 1, field, "newton"))
-    assert np.std(fronts[2]) > 0.005
-    coarse, fine = (np.std(front - fronts[2]) / np.std(fronts[2]) for front in fronts[:2])
-    assert fine < 0.01
-    assert coarse < 0.3
 
 
 # --- sizes
@@ -372,20 +299,6 @@ def test_any_factorisation_of_the_number_of_sites_gives_the_same_front_of_a_smoo
     assert abs(modes[0][2]) > 1e-3
     for other in modes[:-1]:
         assert np.max(np.abs(other - modes[-1])) < 1e-9
-
-
-@every_solver
-def test_eight_sites_hold_a_cycle(solver):
-    field = chemical_tile(0.5, 0.8, 5, 8)
-    record = run_cycle(field, LoadSchedule(1.0, 0.1), SOLVERS[solver](1e-12), Recorder(fronts=True))
-    assert record.status is Status.LOST_CONTACT
-    for front, load, direction in zip(
-        record.fronts, record.states.penetration, record.states.direction, strict=True
-    ):
-        force = direction * front_force(front, load, field) / (front * WORK_OF_ADHESION)
-        free = front > np.sqrt(max(load, 0.0)) * (1 + 1e-12)
-        assert np.count_nonzero(free) >= 6
-        assert np.max(force[free]) <= 1e-12
 
 
 # --- single sites and the centre
@@ -439,6 +352,17 @@ def test_zero_adhesion_at_places_is_physical_and_is_accepted(solver):
         assert record.status is Status.LOST_CONTACT
         assert np.all(record.states.residual <= 1e-8)
         assert np.all(record.dissipated_energy > 0)
+
+
+@every_solver
+def test_a_field_of_zeros_gives_the_contact_of_hertz(solver):
+    field = polar_field(0.06 * np.arange(1, 51), np.zeros((50, 32)))
+    states = run_cycle(field, LoadSchedule(0.6, 0.2), SOLVERS[solver]()).states
+    pressed = (states.penetration > 0) & (states.direction > 0)
+    radius = np.sqrt(states.penetration[pressed])
+    assert np.count_nonzero(pressed) == 3
+    assert states.mean_radius[pressed] == pytest.approx(radius, rel=1e-12)
+    assert states.force[pressed] == pytest.approx(4 / 3 * CONTACT_MODULUS * radius**3, rel=1e-12)
 
 
 # --- units

@@ -23,12 +23,12 @@ from crackfront.core.outcome import Status
 from crackfront.core.solver.relax import SOLVERS, front_force, relax
 from crackfront.core.units import WORK_OF_ADHESION
 from tests.commands import slow
+from tests.core.solvers import every_solver
 
 TIGHT = 1e-12
 """Tolerance at which fronts are compared; they then agree to SAME."""
 SAME = 1e-8
 
-every_solver = pytest.mark.parametrize("solver", sorted(SOLVERS))
 fast_solver = pytest.mark.parametrize("solver", ["newton", slow("reference")])
 
 
@@ -70,16 +70,16 @@ def extent(front, penetration, direction, field, solver):
 
 def held(front, penetration, direction, field, solver):
     """Tight front; examples in which contact is lost are passed over."""
-    found = extent(front, penetration, direction, field, solver)
-    assume(found[0] > 0)
-    return found
+    radii = extent(front, penetration, direction, field, solver)
+    assume(radii[0] > 0)
+    return radii
 
 
 def tight(front, penetration, direction, field, solver):
     """Tight front where contact is never lost."""
-    found = extent(front, penetration, direction, field, solver)
-    assert found[0] > 0
-    return found
+    radii = extent(front, penetration, direction, field, solver)
+    assert radii[0] > 0
+    return radii
 
 
 # --- no passing and what follows, on every kind of field
@@ -136,9 +136,9 @@ def test_any_order_of_forward_moves_ends_in_the_same_front_on_cubic_pieces(
         front += direction * np.where(moving, drive / bound, 0.0)
     assume(np.min(front) >= 0.25)
     for solver in SOLVERS:
-        found = held(start, load, direction, field, solver)
-        assert np.abs(found - start).max() > 0.05
-        assert np.allclose(found, front, rtol=0, atol=1e-7), solver
+        radii = held(start, load, direction, field, solver)
+        assert np.abs(radii - start).max() > 0.05
+        assert np.allclose(radii, front, rtol=0, atol=1e-7), solver
 
 
 @every_solver
@@ -167,40 +167,6 @@ def test_nested_minor_loops_close_one_after_the_other(solver, field, shares, ski
 
 
 # --- steps of the load: large, tiny, none
-
-
-@every_solver
-@pytest.mark.parametrize("tile", [False, True])
-def test_one_step_from_first_contact_to_the_largest_load_loses_nothing(solver, tile):
-    field = random_field(1, 48, tile=tile, interpolation="cubic")
-    records = [
-        run_cycle(field, LoadSchedule(1.2, step), SOLVERS[solver](TIGHT), Recorder(fronts=True))
-        for step in (1.2, 0.05)
-    ]
-    tops = [record.fronts[record.states.direction > 0][-1] for record in records]
-    assert [record.states.penetration.max() for record in records] == pytest.approx([1.2, 1.2])
-    assert np.count_nonzero(records[0].states.direction > 0) == 2
-    assert np.allclose(*tops, rtol=0, atol=SAME)
-
-
-@every_solver
-@pytest.mark.parametrize("direction", [1, -1])
-def test_fifty_steps_of_a_millionth_are_one_of_fifty_millionths(solver, direction):
-    field = random_field(2, 48, interpolation="cubic")
-    turn = tight(circle(field), 0.8, 1, field, solver)
-    start = turn if direction > 0 else tight(turn, 0.3, -1, field, solver)
-    begin = 0.8 if direction > 0 else 0.3
-    at_once = tight(start, begin + direction * 5e-5, direction, field, solver)
-    front, sweeps = start, 0
-    for k in range(1, 51):
-        outcome = relax(
-            front, begin + direction * 1e-6 * k, direction, field, SOLVERS[solver](TIGHT)
-        )
-        assert np.all(direction * (outcome.front - front) >= 0)
-        front, sweeps = outcome.front, sweeps + outcome.sweeps
-    assert np.max(np.abs(front - start)) > 1e-6
-    assert np.allclose(front, at_once, rtol=0, atol=1e-10)
-    assert sweeps < 50 * 2000
 
 
 @every_solver

@@ -176,16 +176,6 @@ def test_over_a_dense_schedule_the_solvers_differ_by_the_tolerance_alone():
     assert differences[1] < differences[0] / 20
 
 
-def test_the_fast_solver_stops_at_an_edge_in_compression():
-    # Adhesion that repels: the front recedes until its edge would be in compression.
-    radii = np.linspace(0.2, 3.0, 60)
-    field = polar_field(radii, np.full((60, 32), -0.5))
-    expected, found = outcomes(np.full(32, 2.0), 1.0, -1, field)
-    assert np.allclose(found.front, 1.0, rtol=0, atol=1e-12)
-    assert np.array_equal(found.front, expected.front)
-    assert found.status is expected.status
-
-
 @pytest.mark.slow
 def test_the_number_of_threads_has_no_say():
     # Libraries of linear algebra share vectors of more than 10000 numbers among threads.
@@ -269,18 +259,6 @@ def test_no_small_cycle_on_straight_pieces_needs_more_transforms_than_the_refere
 @pytest.mark.slow
 def test_none_of_two_thousand_small_cycles_needs_more_transforms_than_the_reference_sweeps():
     assert_no_small_cycle_needs_more_transforms(range(2000))
-
-
-@pytest.mark.parametrize("n_angle", [32, 131, 300])
-@pytest.mark.parametrize("n_ring", [10, 40])
-@pytest.mark.parametrize("grown", [False, True])
-def test_uniform_adhesion_on_few_rings_takes_fewer_transforms_than_sweeps(n_angle, n_ring, grown):
-    radii = (np.geomspace if grown else np.linspace)(0.02, 3.4, n_ring)
-    field = polar_field(radii, np.full((n_ring, n_angle), 1 / np.pi))
-    loads = [(0.0, 1), (1.0, 1), (0.0, -1), (-0.8, -1), (-1.2, -1)]
-    for expected, found in compared(field, np.full(n_angle, 0.02), loads):
-        assert found.status is expected.status
-        assert found.sweeps <= expected.sweeps
 
 
 @pytest.mark.parametrize(

@@ -10,17 +10,16 @@ from crackfront.core import jkr
 from crackfront.core.adhesion import AdhesionMap
 from crackfront.core.cycle.follow import Load, front_at
 from crackfront.core.field.fields import tile_field
-from crackfront.core.field.rays import front_adhesion, sampled_on_rays
+from crackfront.core.field.rays import front_adhesion
 from crackfront.core.geometry.sphere import polar_field, sphere
 from crackfront.core.outcome import Status
-from crackfront.core.solver.relax import SOLVERS, front_force, named_solver, relax
+from crackfront.core.solver.relax import SOLVERS, front_force, relax
 from crackfront.core.units import WORK_OF_ADHESION, Scales
+from tests.core.solvers import every_solver
 
 TIGHT = 1e-13
 """Tolerance at which two fronts are compared; the fronts then agree to SAME."""
 SAME = 1e-8
-
-every_solver = pytest.mark.parametrize("solver", sorted(SOLVERS))
 
 
 class Rays:
@@ -117,68 +116,7 @@ def test_a_smooth_sphere_has_the_jkr_radius_for_any_number_of_sites(solver, n_an
         assert np.allclose(outcome.front, radius, rtol=0, atol=2e-12)
 
 
-@every_solver
-@pytest.mark.parametrize("adhesion", [0.5, 0.9, 1.7])
-def test_a_uniform_field_scales_the_contact_by_the_power_of_its_adhesion(solver, adhesion):
-    field = polar_field(0.05 * np.arange(1, 61), np.full((60, 8), adhesion * WORK_OF_ADHESION))
-    outcome = relax(np.full(8, 0.05), 0.0, 1, field, SOLVERS[solver](1e-14))
-    assert np.allclose(outcome.front, (8 * adhesion / 3) ** (1 / 3), rtol=0, atol=2e-12)
-
-
-@every_solver
-@pytest.mark.parametrize("n_angle", [8, 9, 24, 25])
-def test_a_distorted_front_on_a_uniform_field_becomes_a_circle(solver, n_angle):
-    field = polar_field(0.05 * np.arange(1, 51), np.full((50, n_angle), WORK_OF_ADHESION))
-    wave = 0.5 + 0.2 * np.cos(2 * np.pi * np.arange(n_angle) / n_angle)
-    outcome = tight(wave, 0.3, 1, field, solver)
-    assert np.allclose(outcome.front, jkr.equilibrium_radius(0.3), atol=1e-11)
-
-
 # --- exact answers: axisymmetric disorder, a scalar equation
-
-
-def first_stop(radii, products, start, penetration, direction):
-    """First root of product - a G along the motion, segment by segment, by bisection."""
-
-    def force(a):
-        return np.interp(a, radii, products) - 3 / (8 * np.pi) * max(a * a - penetration, 0) ** 2
-
-    knots = np.concatenate([[start], radii[direction * (radii - start) > 0][::direction]])
-    for near, far in itertools.pairwise(knots):
-        # Fine pieces: a receding front may stop between two samples that both drive it.
-        places = np.linspace(near, far, 60)
-        stopped = np.flatnonzero([direction * force(a) <= 0 for a in places])
-        if stopped.size == 0:
-            continue
-        if stopped[0] == 0:
-            return places[0]
-        moving, resting = places[stopped[0] - 1], places[stopped[0]]
-        for _ in range(80):
-            middle = 0.5 * (moving + resting)
-            if direction * force(middle) > 0:
-                moving = middle
-            else:
-                resting = middle
-        return 0.5 * (moving + resting)
-    raise AssertionError("no stopping point")
-
-
-@every_solver
-@pytest.mark.parametrize("n_angle", [1, 8, 33])
-@pytest.mark.parametrize("direction", [1, -1])
-def test_rings_stop_the_front_at_the_first_root_of_the_scalar_equation(solver, direction, n_angle):
-    radii = 0.02 * np.arange(1, 126)
-    ring = WORK_OF_ADHESION * (1 + 0.2 * np.sin(2 * np.pi * radii / 0.17))
-    field = polar_field(radii, np.repeat(ring[:, None], n_angle, axis=1))
-    loads = np.linspace(-0.4, 1.0, 15)[::direction]
-    position = 0.3 if direction > 0 else 2.4
-    front = np.full(n_angle, position)
-    for load in loads:
-        outcome = tight(front, load, direction, field, solver)
-        position = first_stop(radii, radii * ring, position, load, direction)
-        assert outcome.status is Status.CONVERGED
-        assert np.allclose(outcome.front, position, rtol=0, atol=1e-11)
-        front = outcome.front
 
 
 # --- no passing, and what follows from it
@@ -201,9 +139,9 @@ def test_any_start_between_the_first_circle_and_the_front_ends_in_the_same_front
 def test_a_circle_on_the_first_sample_that_nothing_drives_inward_rests_there(solver, penetration):
     # At 0.3 its edge is in compression, at 0.005 it would rather advance.
     case = Rays(0, start=0.1)
-    found = relax(case.circle(), penetration, -1, case.field, SOLVERS[solver](TIGHT))
-    assert found.status is Status.CONVERGED
-    assert np.array_equal(found.front, case.circle())
+    outcome = relax(case.circle(), penetration, -1, case.field, SOLVERS[solver](TIGHT))
+    assert outcome.status is Status.CONVERGED
+    assert np.array_equal(outcome.front, case.circle())
 
 
 @every_solver
@@ -211,29 +149,18 @@ def test_a_circle_on_the_first_sample_that_nothing_drives_inward_rests_there(sol
 def test_sites_at_rest_on_the_first_sample_do_not_end_the_retraction_of_the_others(solver, n_angle):
     case = Rays(0, n_angle, amplitude=0.1, start=0.1)
     start = np.where(np.arange(n_angle) < n_angle // 2, case.radii[0], case.radii[-1])
-    found = relax(start, 0.5, -1, case.field, SOLVERS[solver](TIGHT))
-    assert found.status is Status.CONVERGED
-    assert np.array_equal(found.front[: n_angle // 2], start[: n_angle // 2])
-    assert np.all(found.front[n_angle // 2 :] < 2.0)
-    assert case.residual(found.front, 0.5, -1) < 1e-12
+    outcome = relax(start, 0.5, -1, case.field, SOLVERS[solver](TIGHT))
+    assert outcome.status is Status.CONVERGED
+    assert np.array_equal(outcome.front[: n_angle // 2], start[: n_angle // 2])
+    assert np.all(outcome.front[n_angle // 2 :] < 2.0)
+    assert case.residual(outcome.front, 0.5, -1) < 1e-12
 
 
 @every_solver
 def test_a_circle_on_the_first_sample_that_is_driven_inward_leaves(solver):
     case = Rays(0, start=0.1)
-    found = relax(case.circle(), -1.0, -1, case.field, SOLVERS[solver](TIGHT))
-    assert found.status is Status.LOST_CONTACT
-
-
-@every_solver
-@given(case=rays(), direction=st.sampled_from([1, -1]))
-def test_a_front_in_equilibrium_stays_where_it_is(solver, case, direction):
-    front = tight(
-        case.circle() if direction > 0 else case.circle() + 2.2, 0.4, direction, case.field, solver
-    )
-    if front.status is Status.CONVERGED:
-        again = tight(front.front, 0.4, direction, case.field, solver)
-        assert np.allclose(again.front, front.front, rtol=0, atol=SAME)
+    outcome = relax(case.circle(), -1.0, -1, case.field, SOLVERS[solver](TIGHT))
+    assert outcome.status is Status.LOST_CONTACT
 
 
 def slow_front(case, start, penetration, direction, rng):
@@ -274,18 +201,6 @@ def test_any_order_of_single_forward_moves_ends_in_the_same_front(direction, see
         assert np.allclose(fast.front, slow, rtol=0, atol=SAME), solver
 
 
-@pytest.mark.parametrize("solver", sorted(set(SOLVERS) - {"reference"}))
-@given(case=rays())
-def test_every_other_solver_ends_in_the_front_of_the_reference(solver, case):
-    loads = [0.0, 0.4, 0.8]
-    for direction, start in ((1, case.circle()), (-1, case.circle() + 2.2)):
-        found = along(start, loads[::direction], direction, case.field, solver)
-        expected = along(start, loads[::direction], direction, case.field, "reference")
-        assert len(found) == len(expected)
-        for one, other in zip(found, expected, strict=True):
-            assert np.allclose(one, other, rtol=0, atol=SAME)
-
-
 # --- what a state is
 
 
@@ -320,21 +235,6 @@ def test_no_site_moves_against_the_direction_of_motion(solver, case, direction, 
 
 
 @every_solver
-@given(case=rays(), direction=st.sampled_from([1, -1]), penetration=st.floats(-0.3, 1.0))
-def test_a_front_on_which_every_site_is_driven_ends_with_no_site_pushed_back(
-    solver, case, direction, penetration
-):
-    # An edge in compression is held open by the sphere itself, so start outside of that.
-    inner = max(case.radii[0], np.sqrt(max(penetration, 0.0)) + 1e-9)
-    start = np.full(case.n_angle, inner if direction > 0 else 2.2)
-    drive = direction * case.force(start, penetration)
-    outcome = tight(start, penetration, direction, case.field, solver)
-    if np.all(drive > 0) and outcome.status is Status.CONVERGED:
-        left = direction * case.force(outcome.front, penetration)
-        assert np.all(left > -1e-12)
-
-
-@every_solver
 def test_the_same_call_gives_the_same_bits_and_leaves_its_front_as_it_was(solver):
     case = Rays(4, n_angle=24)
     start = case.circle()
@@ -342,18 +242,6 @@ def test_the_same_call_gives_the_same_bits_and_leaves_its_front_as_it_was(solver
     assert np.array_equal(start, case.circle())
     assert np.array_equal(first.front, again.front)
     assert (first.sweeps, first.residual) == (again.sweeps, again.residual)
-
-
-@every_solver
-def test_a_looser_tolerance_stops_behind_a_tighter_one(solver):
-    case = Rays(6, n_angle=16)
-    fronts = [
-        relax(case.circle(), 0.6, 1, case.field, SOLVERS[solver](tolerance)).front
-        for tolerance in (1e-2, 1e-5, 1e-8, 1e-12)
-    ]
-    for looser, tighter in itertools.pairwise(fronts):
-        assert np.all(looser <= tighter + 1e-11)
-    assert np.allclose(fronts[2], fronts[3], atol=1e-5)
 
 
 # --- symmetries and units
@@ -385,57 +273,6 @@ def test_turning_or_mirroring_the_tile_turns_or_mirrors_the_front(solver, n_angl
     assert np.ptp(plain.front) > 0.05
     assert np.allclose(turned.front, np.roll(plain.front, n_angle // 4), rtol=0, atol=SAME)
     assert np.allclose(mirrored.front, np.roll(plain.front[::-1], 1), rtol=0, atol=SAME)
-
-
-@every_solver
-def test_a_tile_and_its_samples_on_the_rays_give_the_same_front(solver):
-    field = tile_field(noisy_tile(5), sphere(20), 0.04, 2.6)
-    polar = sampled_on_rays(field)
-    front = other = np.full(20, 0.04)
-    for penetration, direction in [(0.2, 1), (0.8, 1), (0.5, -1), (-0.2, -1), (0.4, 1)]:
-        one = tight(front, penetration, direction, field, solver)
-        two = tight(other, penetration, direction, polar, solver)
-        front, other = one.front, two.front
-        assert one.status is two.status is Status.CONVERGED
-        assert np.allclose(front, other, rtol=0, atol=SAME)
-
-
-@every_solver
-def test_finer_samples_of_a_smooth_tile_converge_to_one_front(solver):
-    n_point = 96
-    x = np.arange(n_point) / n_point
-    wave = np.cos(2 * np.pi * (2 * x[:, None] + x[None, :])) + np.cos(4 * np.pi * x[None, :])
-    adhesion = AdhesionMap(WORK_OF_ADHESION * (1 + 0.1 * wave), 1 / n_point, 0.0, 0.0)
-
-    def front(spacing, interpolation):
-        field = tile_field(adhesion, sphere(32), spacing, 2.6, interpolation)
-        return tight(np.full(32, 0.5), 0.5, 1, field, solver).front
-
-    spacings = np.array([0.02, 0.01, 0.005])
-    exact = front(0.00125, "cubic")
-    for interpolation, order, largest in [("linear", 2, 1e-3), ("cubic", 4, 1e-5)]:
-        errors = [np.abs(front(spacing, interpolation) - exact).max() for spacing in spacings]
-        observed = np.polyfit(np.log(spacings), np.log(errors), 1)[0]
-        assert observed == pytest.approx(order, abs=0.5)
-        assert errors[-1] < largest
-
-
-@every_solver
-def test_more_sites_on_a_smooth_weak_tile_converge_to_one_front(solver):
-    n_point = 24
-    x = 2.4 * np.arange(n_point) / n_point
-    wave = np.cos(2 * np.pi * (x[:, None] + x[None, :]) / 2.4) + np.sin(np.pi * x[None, :] / 0.6)
-    adhesion = AdhesionMap(WORK_OF_ADHESION * (1 + 0.05 * wave), 0.1, 0.0, 0.0)
-    fronts = []
-    for n_angle in (16, 32, 64):
-        field = tile_field(adhesion, sphere(n_angle), 0.01, 2.6)
-        front = relax(np.full(n_angle, 0.5), 0.5, 1, field, SOLVERS[solver](1e-11)).front
-        fronts.append(front[:: n_angle // 16])
-    assert np.ptp(fronts[0]) > 0.02
-    coarse, fine = (np.abs(front - fronts[-1]).max() for front in fronts[:-1])
-    # The front is smooth, so its Fourier series converges fast.
-    assert fine < coarse / 10
-    assert fine < 1e-4
 
 
 @every_solver
@@ -477,17 +314,6 @@ def test_a_front_stops_at_a_barrier_however_narrow_and_stays_there(solver):
     outcome = tight(np.full(24, 0.1), 0.0, 1, field, solver)
     assert outcome.status is Status.CONVERGED
     assert np.all((outcome.front > 1.199) & (outcome.front < 1.2))
-
-
-@every_solver
-def test_one_weak_site_holds_back_its_neighbours(solver):
-    adhesion = np.full((50, 16), WORK_OF_ADHESION)
-    adhesion[:, 5] *= 0.4
-    field = polar_field(0.05 * np.arange(1, 51), adhesion)
-    front = tight(np.full(16, 0.05), 0.3, 1, field, solver).front
-    assert np.argmin(front) == 5
-    assert np.all(front < jkr.equilibrium_radius(0.3))
-    assert np.allclose(front[4::-1], np.roll(front, -6)[:5], atol=SAME)
 
 
 @every_solver
@@ -533,36 +359,6 @@ def test_sites_that_come_to_rest_in_compression_do_not_let_their_neighbours_over
     assert np.allclose(front.front, expected.front, rtol=0, atol=SAME)
 
 
-@every_solver
-@pytest.mark.parametrize("direction", [1, -1])
-def test_uneven_radii_are_as_good_as_even_ones(solver, direction, rng):
-    # The product of the coarse samples is linear, so extra samples on it change nothing.
-    case = Rays(9, n_angle=24)
-    extra = np.sort(np.concatenate([case.radii, rng.uniform(case.radii[0], case.radii[-1], 90)]))
-    products = np.array(
-        [np.interp(extra, case.radii, case.radii * ray) for ray in case.adhesion.T]
-    ).T
-    refined = polar_field(extra, products / extra[:, None])
-    start = np.full(24, 0.5 if direction > 0 else 2.4)
-    front = tight(start, 0.3, direction, case.field, solver).front
-    same = tight(start, 0.3, direction, refined, solver).front
-    assert np.allclose(front, same, rtol=0, atol=SAME)
-
-
-@every_solver
-def test_a_front_may_start_exactly_on_the_samples(solver):
-    case = Rays(10, n_angle=24)
-    for sample in (0, 3, 20):
-        start = np.full(24, case.radii[sample])
-        up = tight(start, 0.7, 1, case.field, solver)
-        nudged = tight(start + 1e-12, 0.7, 1, case.field, solver)
-        assert np.allclose(up.front, nudged.front, rtol=0, atol=SAME)
-    start = np.full(24, case.radii[-1])
-    down = tight(start, 0.2, -1, case.field, solver)
-    nudged = tight(start - 1e-12, 0.2, -1, case.field, solver)
-    assert np.allclose(down.front, nudged.front, rtol=0, atol=SAME)
-
-
 # --- how a relaxation ends
 
 
@@ -601,24 +397,11 @@ def test_the_step_limit_is_an_outcome_that_says_what_to_do(solver):
 
 
 @every_solver
-@pytest.mark.parametrize("n_angle", [23, 25])
-def test_a_front_of_another_number_of_sites_is_refused(solver, n_angle):
-    case = Rays(15, n_angle=24)
-    with pytest.raises(ValueError, match=rf"front has shape \({n_angle},\); the field has 24 rays"):
-        front_at(case.field, np.full(n_angle, 0.5), Load(0.0, 1), SOLVERS[solver]())
-
-
-@every_solver
 @pytest.mark.parametrize("tolerance", [0.0, -1e-8, float("nan"), 1e-16])
 def test_a_tolerance_that_round_off_cannot_reach_is_refused(solver, tolerance):
     case = Rays(15)
     with pytest.raises(ValueError, match=rf"tolerance {tolerance} is below the round-off"):
         front_at(case.field, case.circle(), Load(0.0, 1), SOLVERS[solver](tolerance))
-
-
-def test_an_unknown_solver_is_refused_with_the_known_ones():
-    with pytest.raises(ValueError, match=r"solver is 'fastest'; choose one of .*reference"):
-        named_solver("fastest", 1e-8)
 
 
 @every_solver

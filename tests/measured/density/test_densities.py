@@ -27,17 +27,6 @@ def test_our_density_of_profiles_is_the_librarys(rng):
     assert ours == pytest.approx(density[1:], rel=1e-9, abs=1e-9 * ours.max())
 
 
-@pytest.mark.parametrize("side", [10e-6, 20e-6, 30e-6, 40e-6, 43.2e-6, 100e-6])
-def test_a_wave_at_an_end_of_a_band_belongs_to_it_whatever_the_round_off(rng, side):
-    """Half of a side, down to which a scan is trusted, is a wave of it."""
-    heights = map_heights(rng)
-    known = set()
-    for unit in (1.0, 1 + 1e-15, 1 - 1e-15):
-        density = periodogram(periodic_measurement(heights, unit * side)).density()
-        known.add(density.within(side / 32, unit * side / 2).value.size)
-    assert len(known) == 1
-
-
 @pytest.mark.parametrize("is_line", [False, True])
 def test_densities_scatter_about_the_spectrum_as_their_modes_say(rng, is_line):
     levels = []

@@ -16,12 +16,12 @@ from tests.measured.loops.made import MODULUS, RADIUS, TRUTH, W_APPR, W_RETR, in
 def test_a_bent_drift_widens_the_intervals():
     whole, time = loop(0), np.linspace(-1, 1, 320)
     bent = whole.force + 0.05 * np.max(whole.force) * time**2
-    found = analyse_loop(replace(whole, force=bent), Rig(RADIUS, MODULUS))
+    result = analyse_loop(replace(whole, force=bent), Rig(RADIUS, MODULUS))
     for name, truth in TRUTH.items():
-        estimate = getattr(found, name)
+        estimate = getattr(result, name)
         assert estimate.low <= truth <= estimate.high
     pull = -np.min(loop(0, force_noise=0.0).force)
-    assert found.pull_off_force.low < pull < found.pull_off_force.high
+    assert result.pull_off_force.low < pull < result.pull_off_force.high
 
 
 def test_a_spike_out_of_contact_is_no_contact():
@@ -30,8 +30,8 @@ def test_a_spike_out_of_contact_is_no_contact():
         force = whole.force.copy()
         force[row] += 0.2 * np.max(force)
         spiked = Recording(force, None, whole.displacement)
-        found = analyse_loop(spiked, Rig(RADIUS, MODULUS, stiffness=1e3))
-        assert found.hysteresis.value == pytest.approx(W_RETR - W_APPR, rel=0.1)
+        result = analyse_loop(spiked, Rig(RADIUS, MODULUS, stiffness=1e3))
+        assert result.hysteresis.value == pytest.approx(W_RETR - W_APPR, rel=0.1)
 
 
 def test_the_last_row_before_a_sharp_pull_off_is_no_spike():
@@ -49,18 +49,11 @@ def test_the_last_row_before_a_sharp_pull_off_is_no_spike():
 def test_rows_in_contact_give_no_zero_of_the_force(noise):
     columns = in_contact(force_noise=noise, radius_noise=0.0, stiffness=1e9)
     del columns["radius"]
-    found = measured_loop(columns, radius=RADIUS, contact_modulus=MODULUS)
+    result = measured_loop(columns, radius=RADIUS, contact_modulus=MODULUS)
     assert "The zero of the force is that of the file, as no rows are out of contact." in (
-        found.remarks
+        result.remarks
     )
     for name, truth in TRUTH.items():
-        estimate = getattr(found, name)
+        estimate = getattr(result, name)
         assert estimate.low - 1e-6 <= truth <= estimate.high + 1e-6
         assert estimate.value == pytest.approx(truth, rel=1e-4 if noise == 0 else 0.2)
-
-
-def test_rows_without_a_force_are_not_lost_to_noise():
-    whole = loop(0, without="radius")
-    force = np.where(np.arange(whole.force.size) % 8 == 3, np.nan, whole.force)
-    found = analyse_loop(replace(whole, force=force), Rig(RADIUS, MODULUS, stiffness=1e3))
-    assert found.hysteresis.low <= W_RETR - W_APPR <= found.hysteresis.high

@@ -19,10 +19,10 @@ def test_arrays_and_their_table_are_the_same_loop(tmp_path):
     path = tmp_path / "rig.csv"
     rows = zip(whole.force, whole.radius, strict=True)
     path.write_text("Force (N),Radius (m)\n" + "".join(f"{f},{a}\n" for f, a in rows))
-    known = {"radius": RADIUS, "contact_modulus": MODULUS}
-    assert repr(measured_loop(arrays, **known)) == repr(measured_loop(path, **known))
+    rig = {"radius": RADIUS, "contact_modulus": MODULUS}
+    assert repr(measured_loop(arrays, **rig)) == repr(measured_loop(path, **rig))
     with pytest.raises(ValueError, match="speed; give two of force, radius"):
-        measured_loop({"force": whole.force, "speed": whole.force}, **known)
+        measured_loop({"force": whole.force, "speed": whole.force}, **rig)
 
 
 @pytest.mark.parametrize(
@@ -49,11 +49,11 @@ def test_masked_rows_are_left_out_and_texts_have_units():
     columns = in_contact(force_noise=0.0, radius_noise=0.0)
     spiked = np.ma.masked_array(columns["force"].copy(), np.arange(columns["force"].size) == 40)
     spiked.data[40] = 9999.0
-    given = {"force": spiked, "radius": columns["radius"]}
-    found = measured_loop(given, radius="1.25mm", contact_modulus=f"{MODULUS}Pa")
-    assert found.w_retr.value == pytest.approx(W_RETR, rel=1e-9)
+    rig = {"force": spiked, "radius": columns["radius"]}
+    result = measured_loop(rig, radius="1.25mm", contact_modulus=f"{MODULUS}Pa")
+    assert result.w_retr.value == pytest.approx(W_RETR, rel=1e-9)
     labelled = xr.Dataset(
-        {"force": ("t", 1e3 * columns["force"], {"units": "mN"}), "radius": ("t", given["radius"])}
+        {"force": ("t", 1e3 * columns["force"], {"units": "mN"}), "radius": ("t", rig["radius"])}
     )
     timed = labelled.assign(time=("t", np.arange(labelled.sizes["t"])))
     for one in (labelled, timed, dict(labelled)):

@@ -50,10 +50,10 @@ def table(
 def test_tables_of_common_programs_are_read(content, tmp_path):
     path = tmp_path / "rig.csv"
     path.write_bytes(content)
-    found = read_recording(path, {}, {})
-    assert found.force == pytest.approx(FORCE)
-    assert found.radius == pytest.approx(RADIUS)
-    assert found.displacement is None
+    recording = read_recording(path, {}, {})
+    assert recording.force == pytest.approx(FORCE)
+    assert recording.radius == pytest.approx(RADIUS)
+    assert recording.displacement is None
 
 
 @pytest.mark.parametrize("separator", [",", ";", "\t"])
@@ -62,9 +62,9 @@ def test_a_radius_may_be_absent_out_of_contact(separator, absent, tmp_path):
     path = tmp_path / "rig.csv"
     rows = [("0.1", absent), *ROWS]
     path.write_text("\n".join(map(separator.join, [("Force (mN)", "Radius (um)"), *rows])) + "\n")
-    found = read_recording(path, {}, {})
-    np.testing.assert_allclose(found.radius, [np.nan, *RADIUS])
-    np.testing.assert_allclose(found.force, [1e-4, *FORCE])
+    recording = read_recording(path, {}, {})
+    np.testing.assert_allclose(recording.radius, [np.nan, *RADIUS])
+    np.testing.assert_allclose(recording.force, [1e-4, *FORCE])
 
 
 @pytest.mark.parametrize(

@@ -23,7 +23,7 @@ def points():
 
 def test_every_number_is_drawn_in_its_unit_with_its_interval():
     [axes] = series_figure(points(), "hysteresis").axes
-    drawn = [one.lines for one in axes.containers]
+    drawn = [container.lines for container in axes.containers]
     values = [float(line.get_ydata()[0]) for line, _, _ in drawn]
     assert values == pytest.approx([20, 22, 20, 9])
     is_open = [line.get_markerfacecolor() == "white" for line, _, _ in drawn]
@@ -33,30 +33,3 @@ def test_every_number_is_drawn_in_its_unit_with_its_interval():
     assert [text.get_text() for text in axes.texts] == ["↑", "none", "none"]
     assert [text.get_text() for text in axes.get_xticklabels()] == ["A", "B", "C", "D"]
     assert "mJ" in axes.get_ylabel()
-
-
-@pytest.mark.parametrize(
-    ("name", "arrow", "place", "word"),
-    [("e_el", "↑", 30, "at least"), ("w_appr", "↓", 15, "at most"), ("pull_off_force", "", 0, "")],
-)
-def test_arrows_show_where_shorter_waves_would_bring_a_number(name, arrow, place, word):
-    figure = series_figure(points(), name)
-    [axes] = figure.axes
-    arrows = [text for text in axes.texts if text.get_text() != "none"]
-    assert [text.get_text() for text in arrows] == [arrow] * bool(arrow)
-    if arrow:
-        assert arrows[0].xy[1] == pytest.approx(place)
-    told = " ".join(text.get_text() for text in figure.texts)
-    assert (f"Arrows: {word}," in told) == bool(arrow)
-
-
-def test_groups_have_a_marker_and_a_colour_and_the_legend_names_them():
-    [axes] = series_figure(points(), "w_retr").axes
-    looks = [(one.lines[0].get_marker(), one.lines[0].get_color()) for one in axes.containers]
-    assert looks[0] == looks[1] == looks[2] != looks[3]
-    legend = [text.get_text() for text in axes.get_legend().get_texts()]
-    assert legend == ["film", "glass", "predicted", "measured"]
-    [alone] = series_figure(
-        [SeriesPoint("A", "", UNKNOWN, UNKNOWN, is_lower_bound=False)], "w_retr"
-    ).axes
-    assert alone.get_legend() is None

@@ -1,21 +1,12 @@
 """Which scan to measure next follows from what the draws leave open."""
 
 import re
-from dataclasses import replace
 
-import pytest
-
-from crackfront.measured.prediction.prediction import predicted
 from crackfront.measured.prediction.surface_remarks import measure_next
-from crackfront.measured.scan.reading import read_measurements
-from crackfront.measured.spectrum.measured_surface import measured_surface
 from tests.measured.made import (
     DETAIL,
     OVERVIEW,
-    SCENE,
-    map_heights,
     shipped_surface,
-    write_al3d,
 )
 
 
@@ -43,27 +34,3 @@ def test_the_scan_that_is_asked_for_narrows_the_interval_as_much_as_was_said(sur
     longer, shorter = detail.factors_with
     assert both.factor < 1.5 * longer < shorter < detail.factor
     assert "would hardly narrow it" in measure_next(surface).sentence
-
-
-@pytest.mark.parametrize("path", [DETAIL, OVERVIEW])
-def test_the_advice_is_the_same_under_a_levelling_of_another_order(path):
-    kinds = {
-        re.sub(r"[\d.]+", "", measure_next(shipped_surface(path, **given)).sentence)
-        for given in ({}, {"detrend": "4"})
-    }
-    assert len(kinds) == 1
-
-
-@pytest.mark.usefixtures("few_draws")
-def test_scans_that_disagree_stand_in_the_first_line_of_the_page(tmp_path, rng):
-    heights = map_heights(rng)
-    paths = [
-        write_al3d(tmp_path / "as-made.al3d", heights),
-        write_al3d(tmp_path / "louder.al3d", 3 * heights[::-1]),
-    ]
-    surface = measured_surface(read_measurements(paths))
-    page = repr(predicted(surface, replace(SCENE, contact_modulus=1e3)))
-    first = page.splitlines()[0]
-    assert "disagrees with the other scans" in first
-    assert page.count(first) == 1
-    assert "Quasi-static" in page

@@ -66,10 +66,10 @@ def test_all_measurements_of_a_surface_have_the_units_and_sizes_of_the_container
     files = {f"{name}.txt": texts(one, 1e9) for name, one in zip("ab", heights, strict=True)}
     entries = [entry("a"), entry("b", size=[5.0, 5.0])]
     path = container(tmp_path / "film.zip", {"film": entries}, files, metadata)
-    found = read_measurements([path], CENTER)
-    assert [str(one.path) for one in found] == [f"{path}/a", f"{path}/b"]
-    assert [one.size[0] for one in found] == pytest.approx([SIDE, SIDE / 2])
-    for one, expected in zip(found, heights, strict=True):
+    measurements = read_measurements([path], CENTER)
+    assert [str(one.path) for one in measurements] == [f"{path}/a", f"{path}/b"]
+    assert [one.size[0] for one in measurements] == pytest.approx([SIDE, SIDE / 2])
+    for one, expected in zip(measurements, heights, strict=True):
         np.testing.assert_allclose(one.heights, expected - expected.mean(), atol=1e-17)
     assert "film: b" in str(cf.list_channels(path)[1])
 
@@ -82,8 +82,8 @@ def test_a_container_of_the_library_is_read(tmp_path, rng):
     ]
     path = tmp_path / "film.zip"
     write_containers([InMemorySurfaceContainer(scans)], str(path))
-    found = read_measurements([path], CENTER)
-    for one, expected in zip(found, heights, strict=True):
+    measurements = read_measurements([path], CENTER)
+    for one, expected in zip(measurements, heights, strict=True):
         assert one.size == pytest.approx((SIDE, SIDE))
         np.testing.assert_allclose(one.heights, expected - expected.mean(), atol=1e-17)
 
@@ -111,44 +111,6 @@ def test_the_instrument_of_a_container_counts_as_if_the_file_stated_it(tmp_path,
     assert named.tip_radius == pytest.approx(1e-6)
 
 
-def test_the_instrument_of_a_data_file_counts_before_that_of_its_container(tmp_path, rng):
-    [heights] = maps(rng, 1)
-    own = instrument(tip_radius=(20, "nm"))
-    scan = Topography(heights, (SIDE, SIDE), unit="m", info={"instrument": own})
-    scan.to_netcdf(str(tmp_path / "a.nc"))
-    stated = instrument(tip_radius=(5, "µm"), resolution=(1, "µm"))
-    one = entry("a", datafile={"squeezed-netcdf": "a.nc"}, instrument=stated)
-    content = {"a.nc": (tmp_path / "a.nc").read_bytes()}
-    [found] = read_measurements([container(tmp_path / "a.zip", {"film": [one]}, content)], CENTER)
-    assert (found.tip_radius, found.shortest) == pytest.approx((20e-9, 1e-6))
-
-
-@pytest.mark.parametrize("length", [(5, "V"), (5, None), (-5, "nm"), ("five", "nm")])
-def test_a_length_of_an_instrument_that_is_none_is_a_sentence(tmp_path, rng, length):
-    [heights] = maps(rng, 1)
-    entries = [entry("a", instrument=instrument(tip_radius=length))]
-    path = container(tmp_path / "film.zip", {"film": entries}, {"a.txt": texts(heights, 1e9)})
-    with pytest.raises(ValueError, match=r"film.zip/a: its container states the tip radius of"):
-        read_measurements([path])
-    [found] = read_measurements([path], ReadingOptions(tip_radius="5nm"))
-    assert found.tip_radius == pytest.approx(5e-9)
-
-
-@pytest.mark.parametrize(
-    "nothing",
-    [
-        *({}, "stylus", {"parameters": None}, {"parameters": {"tip_radius": None}}),
-        *(instrument(tip_radius=(0, "nm")), instrument(tip_radius=(None, "nm"))),
-    ],
-)
-def test_an_instrument_without_lengths_is_none(tmp_path, rng, nothing):
-    [heights] = maps(rng, 1)
-    entries = [entry("a", instrument=nothing)]
-    path = container(tmp_path / "film.zip", {"film": entries}, {"a.txt": texts(heights, 1e9)})
-    [found] = read_measurements([path])
-    assert (found.tip_radius, found.shortest) == pytest.approx((0, 4 * SIDE / 48))
-
-
 def test_one_of_several_surfaces_is_chosen_by_name_or_number(tmp_path, rng):
     heights = maps(rng)
     files = {f"{name}.txt": texts(one, 1e9) for name, one in zip("ab", heights, strict=True)}
@@ -157,24 +119,10 @@ def test_one_of_several_surfaces_is_chosen_by_name_or_number(tmp_path, rng):
     with pytest.raises(ValueError, match=r"2 surfaces; .*--surface: 0 'smooth' \(1.*; 1 'rough'"):
         read_measurements([path])
     for wanted in ("rough", "1"):
-        [found] = read_measurements([path], ReadingOptions(surface=wanted))
-        assert found.path.name == "b"
+        [measurement] = read_measurements([path], ReadingOptions(surface=wanted))
+        assert measurement.path.name == "b"
     with pytest.raises(ValueError, match="no surface '2'; choose"):
         read_measurements([path], ReadingOptions(surface="2"))
-
-
-def test_options_hold_where_the_container_says_nothing(tmp_path, rng):
-    [heights] = maps(rng, 1)
-    bare = entry("a")
-    del bare["unit"], bare["height_scale"]
-    path = container(tmp_path / "film.zip", {"film": [bare]}, {"a.txt": texts(heights, 1e6)})
-    with pytest.raises(ValueError, match=r"film.zip/a, read as \w+, states no unit of length"):
-        read_measurements([path])
-    [found] = read_measurements([path], ReadingOptions(unit="um"))
-    assert found.size[0] == pytest.approx(SIDE)
-    stated = container(tmp_path / "other.zip", {"film": [entry("a")]}, {"a.txt": b"1 2\n"})
-    with pytest.raises(ValueError, match=r"other.zip/a.*"):
-        read_measurements([stated], ReadingOptions(unit="um"))
 
 
 def test_what_is_no_container_or_a_damaged_one_is_refused_with_a_sentence(tmp_path, rng, scan):
@@ -203,9 +151,9 @@ def test_a_measurement_that_cannot_be_used_is_left_out_with_a_sentence(tmp_path,
     files = {"good.txt": texts(good, 1e9), "uneven.txt": line.getvalue()}
     entries = [entry("uneven", size=[8.4], height_scale=1.0), entry("good")]
     both = container(tmp_path / "both.zip", {"rough": entries}, files)
-    [one] = read_measurements([both], CENTER)
-    assert one.path == both / "good"
-    [sentence] = one.unusable
+    [measurement] = read_measurements([both], CENTER)
+    assert measurement.path == both / "good"
+    [sentence] = measurement.unusable
     assert sentence.startswith(f"{both / 'uneven'}: ")
     assert "not equally spaced" in sentence
     alone = container(tmp_path / "alone.zip", {"rough": entries[:1]}, files)

@@ -3,7 +3,6 @@
 import hashlib
 import subprocess
 import sys
-import warnings
 import zipfile
 
 import h5py
@@ -12,10 +11,8 @@ import pytest
 
 import crackfront as cf
 from crackfront.measured.options import ReadingOptions
-from crackfront.measured.prediction.surface_remarks import channel_remarks
 from crackfront.measured.scan.library import surface_library
 from crackfront.measured.scan.reading import read_measurements
-from crackfront.measured.spectrum.measured_surface import read_surface
 from studies.accuracy import scans
 from tests.measured.made import SIDE, read, refusal, write_text
 
@@ -37,9 +34,9 @@ def test_sides_that_cannot_be_are_refused_and_may_be_named(tmp_path, noise):
     message = refusal(path)
     assert "states sides of 160 m x 160 m, which no instrument measures" in message
     assert "--size 160,160 --unit um" in message
-    found = read(path, size="160,160", unit="um")
-    assert found.size == pytest.approx((160e-6, 160e-6))
-    assert np.std(found.heights) == pytest.approx(np.std(noise), rel=0.1)
+    measurement = read(path, size="160,160", unit="um")
+    assert measurement.size == pytest.approx((160e-6, 160e-6))
+    assert np.std(measurement.heights) == pytest.approx(np.std(noise), rel=0.1)
     plain = write_arrays(tmp_path / "plain.h5", surface=noise)
     assert "cannot have sides of 20 m x 20 m" in refusal(plain, unit="m", size=(20.0, 20.0))
     assert "which cannot be" in refusal(plain, unit="pm", size=(1e7, 1e7))
@@ -71,9 +68,9 @@ def test_the_array_that_is_named_as_heights_is_read(tmp_path, rng, noise, name):
     arrays, channel = ARRAYS[name]
     values = (rng.uniform(size=noise.shape), 1e6 * noise)
     path = write_arrays(tmp_path / "a.h5", **{one: values[which] for one, which in arrays.items()})
-    found = read(path, detrend="center", **PLAIN)
-    assert found.channel == channel
-    np.testing.assert_allclose(found.heights, noise - noise.mean(), atol=1e-18)
+    measurement = read(path, detrend="center", **PLAIN)
+    assert measurement.channel == channel
+    np.testing.assert_allclose(measurement.heights, noise - noise.mean(), atol=1e-18)
 
 
 @pytest.mark.parametrize(
@@ -93,46 +90,9 @@ def test_several_arrays_of_which_none_or_two_are_named_as_heights_are_refused(
     assert "contains 2 arrays, and their names do not say which one has the heights" in message
     assert all(f"'{name}'" in message for name in names)
     assert read(path, channel=names[1], **PLAIN).channel == f"'{names[1]}', 1 of 2"
-    assert not any(one.is_default for one in cf.list_channels(path))
+    assert not any(channel.is_default for channel in cf.list_channels(path))
     masked = write_arrays(tmp_path / "scan.h5", surface=1e6 * noise)
     assert "contains 2 arrays" in refusal(masked, mask=path, **PLAIN)
-
-
-def test_a_file_without_a_map_is_refused(tmp_path, noise):
-    assert "lacks an array" in refusal(write_arrays(tmp_path / "a.h5", x=noise[0]), **PLAIN)
-
-
-@pytest.mark.parametrize("mode", ["F", "I;16"])
-def test_a_picture_in_tiff_is_refused_with_what_to_export(tmp_path, noise, mode):
-    path = tmp_path / "scan.tif"
-    numbers = (1e9 * noise - 1e9 * noise.min()).astype("float32" if mode == "F" else "uint16")
-    image = pytest.importorskip("PIL.Image")
-    image.frombytes(mode, noise.shape, numbers.tobytes()).save(path)
-    assert "is a picture in TIFF, which states no unit of its heights; export" in refusal(path)
-
-
-@pytest.mark.parametrize("unit", ["um", "µm", "\u03bcm", "micron", "micrometer"])
-def test_a_unit_of_length_is_known_by_any_of_its_names(tmp_path, noise, unit):
-    path = tmp_path / "plain.npy"
-    np.save(path, 1e6 * noise)
-    found = read(path, unit=unit, size="20", height_unit=unit)
-    assert found.size == pytest.approx((20e-6, 20e-6))
-    assert np.std(found.heights) == pytest.approx(np.std(noise), rel=0.01)
-
-
-def test_warnings_of_parsers_are_none_of_the_users(tmp_path, noise, monkeypatch):
-    library, path, mask = surface_library().IO, tmp_path / "scan.txt", tmp_path / "mask.npy"
-    np.savetxt(path, 1e6 * noise.T)
-    np.save(mask, np.zeros(noise.shape))
-    opened, warned = library.AscReader, []
-
-    def warning(*arguments, **options):
-        warned.append(warnings.warn("wmf image format is not supported", stacklevel=2))
-        return opened(*arguments, **options)
-
-    monkeypatch.setattr(library, "AscReader", warning)
-    assert read(path, unit="um", size="5,4", mask=mask).heights.shape == noise.shape
-    assert warned
 
 
 def test_channels_are_listed_and_those_of_other_quantities_refused(monkeypatch, scan):
@@ -146,17 +106,6 @@ def test_channels_are_listed_and_those_of_other_quantities_refused(monkeypatch, 
     monkeypatch.setattr(module.ChannelInfo, "data_kind", kind)
     monkeypatch.setattr(module.ChannelInfo, "unit", "m")
     assert "channel 'Default' contains phase, not heights" in refusal(scan)
-
-
-@pytest.mark.usefixtures("few_draws")
-def test_a_channel_of_lengths_that_is_named_after_another_quantity_is_in_doubt(tmp_path, noise):
-    path = write_text(tmp_path / "scan.txt", noise)
-    path.write_text(path.read_text().replace("Channel: Main", "Channel: AmplitudeTrace"))
-    assert "(height, by its name another quantity)" in str(cf.list_channels(path)[0])
-    [told] = channel_remarks(read_surface([path], [ReadingOptions()]))
-    assert (
-        "channel 'AmplitudeTrace' has a unit of length, but the name of a quantity" in told.sentence
-    )
 
 
 def test_heights_have_a_unit_of_their_own_where_none_is_stated_or_it_cannot_be(tmp_path, noise):
@@ -179,12 +128,6 @@ def test_heights_have_a_unit_of_their_own_where_none_is_stated_or_it_cannot_be(t
     assert "states heights in nm, which are possible; leave" in refusal(path, height_unit="um")
 
 
-def test_unequally_spaced_lines_are_refused(rng, tmp_path):
-    places = np.sort(rng.uniform(0, 20, 128))
-    np.savetxt(tmp_path / "line.xyz", np.column_stack([places, rng.standard_normal(128)]))
-    assert "not equally spaced" in refusal(tmp_path / "line.xyz", unit="um")
-
-
 def test_units_and_sizes_that_a_file_lacks_must_be_named(tmp_path, heights, scan):
     path = tmp_path / "plain.txt"
     np.savetxt(path, 1e6 * heights)
@@ -192,49 +135,16 @@ def test_units_and_sizes_that_a_file_lacks_must_be_named(tmp_path, heights, scan
     assert "states no size" in refusal(path, unit="um")
     assert "--unit kg is not a unit of length" in refusal(path, unit="kg", size=(20.0, 20.0))
     assert "2 dimensions" in refusal(path, unit="um", size=(20.0, 20.0, 20.0))
-    [given] = read_measurements([path], ReadingOptions(**PLAIN))
-    assert given.size == pytest.approx((20e-6, 20e-6))
-    assert np.std(given.heights) == pytest.approx(
+    [measurement] = read_measurements([path], ReadingOptions(**PLAIN))
+    assert measurement.size == pytest.approx((20e-6, 20e-6))
+    assert np.std(measurement.heights) == pytest.approx(
         np.std(read_measurements([scan])[0].heights), rel=1e-6
     )
-
-
-@pytest.mark.parametrize("width", ["20 um", "20 km"])
-def test_a_map_of_which_one_side_is_stated_needs_both_by_name(tmp_path, heights, width):
-    path = write_text(tmp_path / "scan.txt", heights)
-    text = path.read_text().replace("# Height: 20 um\n", "")
-    path.write_text(text.replace("20 um", width))
-    assert "states one side of its map, 2" in refusal(path)
-    for size, expected in (("20", (20e-6, 20e-6)), ("20,40", (20e-6, 40e-6))):
-        assert read(path, size=size).size == pytest.approx(expected)
-    if width == "20 um":
-        message = "states one side of its map, 20 um, and not the other; name both in um, as in --"
-        assert message in refusal(path)
-        message = "20 um, and --size names 0.02 um for it; name both in um, as in --size 20,20"
-        assert message in refusal(path, size="0.02")
-    path.write_text("# Width: 20 um\n# Height: 20 um\n# Value units: um\n" + "1\n2\n4\n3\n" * 99)
-    assert "contains a line and states the sides of a map; write one side" in refusal(path)
 
 
 def test_units_and_sizes_that_a_file_states_are_not_overruled(scan):
     assert "states its own unit, m" in refusal(scan, unit="nm")
     assert "states its own size" in refusal(scan, size=(1.0, 1.0))
-
-
-def test_files_that_cannot_be_read_are_refused(rng, tmp_path, scan):
-    noise, empty, cut = (tmp_path / name for name in ("noise.al3d", "empty.al3d", "cut.al3d"))
-    noise.write_bytes(rng.bytes(5001))
-    empty.write_bytes(b"")
-    cut.write_bytes(scan.read_bytes()[:2000])
-    assert "in no format that SurfaceTopography reads" in refusal(noise)
-    assert "is empty" in refusal(empty)
-    assert "cut.al3d" in refusal(cut)
-    hollow = tmp_path / "hollow.x3p"
-    with zipfile.ZipFile(hollow, "w") as file:
-        file.writestr("main.xml", "<p:ISO5436_2 xmlns:p='http://www.opengps.eu/2008/ISO5436_2'/>")
-    assert "a part of it is missing or damaged; export it" in refusal(hollow)
-    with pytest.raises(FileNotFoundError):
-        read_measurements([tmp_path / "absent.al3d"])
 
 
 _LEAN = """
@@ -328,15 +238,3 @@ def test_a_map_is_the_same_in_every_format(tmp_path, rng, name):
     assert measurement.format == name
     assert measurement.size == pytest.approx((SIDE, SIDE))
     np.testing.assert_allclose(measurement.heights, heights - heights.mean(), atol=1e-20)
-
-
-def test_a_file_with_a_damaged_head_is_refused_with_a_sentence(tmp_path, rng):
-    path = tmp_path / "scan.x3p"
-    write_x3p(path, rng.standard_normal((N_SIDE, N_SIDE)))
-    with zipfile.ZipFile(path) as archive:
-        head, numbers = (archive.read(name) for name in ("main.xml", "bindata/data.bin"))
-    with zipfile.ZipFile(path, "w") as archive:
-        archive.writestr("main.xml", head.replace(b"<Model>B</Model>", b"<Model/>"))
-        archive.writestr("bindata/data.bin", numbers)
-    with pytest.raises(ValueError, match=r"scan.x3p cannot be read as what its head says: .*; exp"):
-        read_measurements([path])

@@ -14,18 +14,17 @@ def chosen(rng, heights, count):
     return np.unravel_index(rng.choice(heights.size, count, replace=False), heights.shape)
 
 
-@pytest.mark.parametrize("value", [-9999e-9, 32767e-9, 0.0])
-@pytest.mark.parametrize("tilt", [0.0, 5e-6])
+@pytest.mark.parametrize(("value", "tilt"), [(-9999e-9, 0.0), (32767e-9, 5e-6), (0.0, 5e-6)])
 def test_marks_for_missing_data_are_taken_as_missing_and_said(tmp_path, rng, heights, value, tilt):
     surface = heights + (5e-6 if value == 0 else 0) + tilt * np.linspace(0, 1, 128)[:, None]
     marked = surface.copy()
     marked[chosen(rng, heights, 20)] = value
-    found = read(write_al3d(tmp_path / "marked.al3d", marked))
+    measurement = read(write_al3d(tmp_path / "marked.al3d", marked))
     whole = read(write_al3d(tmp_path / "whole.al3d", surface))
-    assert found.missing == pytest.approx(20 / heights.size)
-    assert np.std(found.heights - whole.heights) < 0.01 * np.std(whole.heights)
+    assert measurement.missing == pytest.approx(20 / heights.size)
+    assert np.std(measurement.heights - whole.heights) < 0.01 * np.std(whole.heights)
     [remark] = [
-        one for one in scan_remarks([analysed_scan(found)]) if one.severity == "reservation"
+        one for one in scan_remarks([analysed_scan(measurement)]) if one.severity == "reservation"
     ]
     assert "20 points at " in remark.sentence
 

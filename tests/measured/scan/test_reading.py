@@ -12,7 +12,6 @@ from tests.measured.made import (
     HEAD,
     SIDE,
     measured_mean_square,
-    one_cell,
     read,
     refusal,
     write_al3d,
@@ -20,11 +19,6 @@ from tests.measured.made import (
 )
 
 N_POINT = 48
-
-
-def test_missing_points_written_as_nan_are_filled(tmp_path, noise):
-    [found] = read_measurements([write_text(tmp_path / "scan.txt", noise, one_cell("nan"))])
-    assert found.missing == pytest.approx(1 / noise.size)
 
 
 @pytest.mark.parametrize("order", [0, 1, 2])
@@ -79,13 +73,6 @@ def test_a_mask_is_left_out_of_the_levelling_and_stays_in_the_map(tmp_path, nois
     np.save(marked, np.zeros((3, 3)))
     assert "mask" in refusal(path, mask=marked)
     assert "points are left to fit" in refusal(path, mask="0um:20um,0um:20um")
-
-
-def test_several_files_may_have_options_each(tmp_path, noise):
-    paths = [write_text(tmp_path / f"{n}.txt", one) for n, one in enumerate((noise, noise[::-1]))]
-    both = [ReadingOptions(detrend="center"), ReadingOptions(detrend=4)]
-    found = read_measurements(paths, both)
-    assert [item.levelling for item in found] == ["the mean", "the polynomial of order 4"]
 
 
 def test_a_measurement_counts_once_under_any_name_in_any_unit(tmp_path, noise):

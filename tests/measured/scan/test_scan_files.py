@@ -9,7 +9,6 @@ import pytest
 from scipy.io import netcdf_file
 
 from crackfront.measured.scan import scan_files
-from crackfront.measured.scan.reading import read_measurements
 from tests.measured.made import HEAD, one_cell, read, refusal, write_text
 
 N_POINT = 48
@@ -21,17 +20,6 @@ def test_a_cell_that_is_no_number_is_refused_with_its_line(tmp_path, noise, text
     message = refusal(path)
     assert f"scan.txt, line {HEAD.count(chr(10)) + 21}:" in message
     assert repr(text) in message
-
-
-def test_a_damaged_first_row_is_no_head(tmp_path, noise):
-    damaged = write_text(
-        tmp_path / "scan.txt", noise, lambda i, j, text: "***" if (i, j) == (0, 3) else text
-    )
-    assert "number 4 of the row is '***'" in refusal(damaged)
-    damaged = write_text(
-        tmp_path / "scan.txt", noise, lambda i, j, text: "x" if (i, j) == (0, 0) else text
-    )
-    assert "number 1 of the row is 'x'" in refusal(damaged)
 
 
 def test_a_row_that_lacks_a_number_is_refused(tmp_path, noise):
@@ -46,19 +34,8 @@ def test_damaged_points_in_three_columns_are_refused(tmp_path, noise):
     path.write_text("\n".join([*rows[:5], "0 5 ***", *rows[6:]]))
     assert "line 6: number 3 of the row is '***'" in refusal(path, unit="um")
     path.write_text("\n".join([*rows[:5], "0 5 bad", *rows[6:]]))
-    found = read(path, detrend="center", unit="um")
-    assert found.missing == pytest.approx(1 / noise.size)
-
-
-def test_decimal_commas_are_read_as_points(tmp_path, noise):
-    [points] = read_measurements([write_text(tmp_path / "points.txt", noise)])
-    path = tmp_path / "commas.txt"
-    path.write_text(
-        (tmp_path / "points.txt").read_text().replace(".", ",").replace("20 um", "20,0 um")
-    )
-    [commas] = read_measurements([path])
-    assert commas.size == points.size
-    np.testing.assert_array_equal(commas.heights, points.heights)
+    measurement = read(path, detrend="center", unit="um")
+    assert measurement.missing == pytest.approx(1 / noise.size)
 
 
 def test_folders_pipes_devices_and_empty_files_are_refused_at_once(tmp_path):
@@ -69,13 +46,6 @@ def test_folders_pipes_devices_and_empty_files_are_refused_at_once(tmp_path):
     assert "is empty" in refusal(tmp_path / "empty.al3d")
     for name in ("/dev/zero", "/dev/null"):
         assert "is a device" in refusal(scan_files.Path(name))
-
-
-def test_files_larger_than_the_memory_are_refused_unread(tmp_path):
-    path = tmp_path / "sparse.nc"
-    with path.open("wb") as file:
-        file.truncate(300_000_000_000)
-    assert "has 300 GB; more than" in refusal(path)
 
 
 def test_maps_that_claim_more_points_than_fit_are_refused_before_they_are_read(

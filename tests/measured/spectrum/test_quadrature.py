@@ -88,14 +88,3 @@ def test_an_inner_parameter_beyond_its_limit_is_a_truncated_normal_one():
     parts = np.array([0.025, 0.5, 0.975])
     expected = truncnorm.ppf(parts, (0 - 1.5) / 0.1, (1 - 1.5) / 0.1, 1.5, 0.1)
     assert quantiles(found.inner[:, 0], weight, parts) == pytest.approx(expected, abs=2e-3)
-
-
-def test_states_of_another_seed_say_the_same():
-    likelihood = Normal([(0.3, -3.0, 0.3), (0.7, 2.0, 0.8)])
-    parts = (0.025, 0.5, 0.975)
-    ends = []
-    for seed in range(4):
-        found, weight = states(likelihood, seed)
-        ends.append(quantiles(found.outer[:, 0], weight, parts))
-    width = ends[0][2] - ends[0][0]
-    assert np.max(np.ptp(ends, axis=0)) < 0.03 * width

@@ -2,14 +2,6 @@
 
 import pytest
 
-from crackfront.measured.options import (
-    PredictionOptions,
-    PsdOptions,
-    ReadingOptions,
-    SelfAffineOptions,
-    SphereOptions,
-)
-from crackfront.measured.samples.sample import SampleOptions
 from crackfront.measured.tables.headings import heading, headings_above
 
 
@@ -21,21 +13,14 @@ from crackfront.measured.tables.headings import heading, headings_above
     ],
 )
 def test_a_unit_is_read_in_every_notation(text):
-    found = heading(text)
-    assert found.unit == "uN"
-    assert found.name.startswith("force")
+    column = heading(text)
+    assert column.unit == "uN"
+    assert column.name.startswith("force")
 
 
 @pytest.mark.parametrize("text", ["hurst (1)", "hurst [-]", "hurst ()", "hurst", "q/pi x 2D PSD"])
 def test_a_pure_number_has_no_unit(text):
     assert heading(text).unit == ""
-
-
-def test_no_option_of_a_sample_ends_in_a_unit():
-    records = SampleOptions, SphereOptions, ReadingOptions, PsdOptions, SelfAffineOptions
-    for record in (*records, PredictionOptions):
-        for name in record.model_fields:
-            assert heading(name).name == name
 
 
 def test_units_may_stand_below_the_names():

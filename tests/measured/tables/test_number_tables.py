@@ -1,7 +1,5 @@
 """Rows of numbers: where values are missing, and at what cost."""
 
-import time
-
 import numpy as np
 import pytest
 
@@ -25,23 +23,6 @@ def test_a_value_may_be_missing_in_every_row(tmp_path, separator, missing):
     table = number_tables(path).main_table
     assert table.cells.shape == (12, 6)
     assert np.count_nonzero(np.isnan(table.numbers(range(6)))) == 12
-
-
-def test_long_rows_with_missing_values_cost_as_much_as_short_ones(tmp_path):
-    seconds = []
-    for shape in ((4096, 64), (64, 4096)):
-        path = tmp_path / "map.txt"
-        path.write_text("\n".join(map(" ".join, rows(*shape))))
-        start = time.process_time()
-        assert number_tables(path).main_table.cells.shape == shape
-        seconds.append(time.process_time() - start)
-    assert seconds[1] < 5 * seconds[0] + 1
-
-
-def test_a_single_column_is_read(tmp_path):
-    path = tmp_path / "line.txt"
-    path.write_text("\n".join(map(str, range(1, 10))))
-    assert number_tables(path).n_column == 1
 
 
 def test_a_number_of_points_above_the_rows_is_not_one_of_them(tmp_path):

@@ -11,7 +11,6 @@ from studies.accuracy.files import STUDIES
 from studies.accuracy.scenes import SCENES
 from studies.accuracy.study import scene_errors, trial_seconds
 from studies.numbers import stored
-from tests.commands import slow
 
 
 def run(*arguments):
@@ -33,12 +32,13 @@ def test_an_empty_folder_has_nothing_to_report(tmp_path):
     assert "run python -m studies accuracy scene" in empty.output
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("study", "tables"),
     [
         ("requested", {"Time to an error of the hysteresis", "Errors that were requested"}),
-        slow("unseen", {"Errors on unseen surfaces"}),
-        slow("coverage", {"Stated and true errors"}),
+        ("unseen", {"Errors on unseen surfaces"}),
+        ("coverage", {"Stated and true errors"}),
     ],
 )
 def test_one_measured_scene_is_reported_and_kept(study, tables, tmp_path, monkeypatch):
@@ -52,30 +52,13 @@ def test_one_measured_scene_is_reported_and_kept(study, tables, tmp_path, monkey
     assert tables == stored("accuracy").tables.keys()
 
 
-@pytest.mark.parametrize("study", STUDIES)
-def test_the_cost_of_a_study_is_told_before_it_is_measured(study, tmp_path, monkeypatch):
-    def measured(*_):
-        raise ValueError("measured")
-
-    monkeypatch.setitem(STUDIES, study, STUDIES[study]._replace(measured=measured))
-    arguments = ("--study", study, "--realisations", 16, "--output", tmp_path)
-    told, _ = run("scene", "large-0.04", *arguments).stderr.split("Error: measured")
-    assert re.fullmatch(r"about [\d.]+ (s|min|hours) of processor time\n", told)
-
-
 @pytest.mark.slow
 def test_the_cost_of_a_study_is_that_of_its_runs():
     scene = SCENES["small-0.04"]
-    found = scene_errors(scene, scene.requested_trials(), range(2))
+    errors = scene_errors(scene, scene.requested_trials(), range(2))
     reference = trial_seconds(scene, [])
     # The reference says how fast this machine is.
-    expected = np.mean(found.reference_seconds) / reference
+    expected = np.mean(errors.reference_seconds) / reference
     expected *= STUDIES["requested"].seconds(scene) - reference
-    spent = sum(np.mean(one.seconds) for one in found.errors)
+    spent = sum(np.mean(error.seconds) for error in errors.errors)
     assert spent / 4 < expected < 4 * spent
-
-
-def test_an_unknown_scene_is_refused_with_the_nearest_one():
-    unknown = run("scene", "flat-0.05")
-    assert unknown.exit_code == 2
-    assert "'flat-0.05' is not a scene; did you mean flat-0." in unknown.output

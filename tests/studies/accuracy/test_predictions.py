@@ -1,14 +1,11 @@
 """Predictions from scans, held against simulations of the surfaces."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 
 from studies.accuracy import predictions
 from studies.accuracy.predictions import comparison_table
-
-ROOT = Path(__file__).parents[3]
+from tests.places import ROOT
 
 
 @pytest.fixture(scope="module")

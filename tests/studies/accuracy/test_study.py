@@ -60,6 +60,7 @@ def observed_order(converged, setting, coarse, fine):
     return -math.log(errors[1] / errors[0]) / math.log(fine / coarse)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("setting", "coarse", "fine", "order"),
     [
@@ -73,6 +74,7 @@ def test_the_front_converges_with_the_order_of_the_setting(converged, setting, c
     assert abs(observed_order(converged, setting, coarse, fine) - order) < 0.3
 
 
+@pytest.mark.slow
 def test_more_sites_converge_faster_than_any_power(converged):
     orders = [observed_order(converged, "sites", *pair) for pair in ((1.4, 2), (2, 2.8))]
     assert min(orders) > 5
@@ -100,6 +102,7 @@ def small_study():
     return scene_errors(SMALL, finer + SMALL.requested_trials(), range(3))
 
 
+@pytest.mark.slow
 def test_errors_fall_with_the_error_that_is_asked_for(small_study):
     assert SMALL.elastic_energy == 0.04
     requested = [errors for errors in small_study.errors if errors.setting == "requested"]
@@ -113,6 +116,7 @@ def test_errors_fall_with_the_error_that_is_asked_for(small_study):
     assert np.median(np.abs(finer.adhesion)) < 0.01 * np.max(np.abs(requested[0].adhesion))
 
 
+@pytest.mark.slow
 def test_a_study_is_read_as_it_was_written(small_study, tmp_path):
     path = tmp_path / "numerics.nc"
     write_dataset(path, errors_dataset(small_study), provenance())

@@ -48,13 +48,13 @@ def test_a_limit_has_the_longer_range_of_all_surfaces_and_its_change_on_some(rng
     assert float(limit.mean(BOUNDARY).value) == pytest.approx(long.mean() + 0.12)
     left = [np.delete(long, seed).mean() + (0.16, 0.08, 0.12)[min(seed, 2)] for seed in range(6)]
     error = math.sqrt(5 / 6 * np.sum((np.array(left) - np.mean(left)) ** 2))
-    found = limit.mean(BOUNDARY)
-    assert float(found.standard_error) == pytest.approx(error)
+    mean = limit.mean(BOUNDARY)
+    assert float(mean.standard_error) == pytest.approx(error)
     # The two with both ranges have one degree of freedom, the four others four.
     squares = (np.array(left) - np.mean(left)) ** 2
     both, rest = squares[:2].sum(), squares[2:].sum()
     freedom = (both + rest) ** 2 / (both**2 + rest**2 / 4)
-    assert float(found.high - found.value) == pytest.approx(error * stdtrit(freedom, 0.975))
+    assert float(mean.high - mean.value) == pytest.approx(error * stdtrit(freedom, 0.975))
     assert float(limit.mean(FRONT).standard_error) == pytest.approx(0, abs=1e-12)
     assert float(limit.excess(0.0).value) == pytest.approx(-math.log(long.mean() + 0.12))
 

@@ -74,9 +74,9 @@ def test_the_force_of_a_smooth_sphere_is_that_of_jkr_to_a_part_of_the_pull_off_f
         elastic_energy=0.0,
         loads=Loads(max_penetration=1.0, step=0.1, shown_penetration=0.5),
     )
-    found = boundary_cycle(smooth)
-    stable = (found.penetration > -0.75) & (found.force < -1e-9) & (found.penetration >= -0.2)
+    cycle = boundary_cycle(smooth)
+    stable = (cycle.penetration > -0.75) & (cycle.force < -1e-9) & (cycle.penetration >= -0.2)
     expected = [
-        float(jkr.equilibrium_force(jkr.equilibrium_radius(b))) for b in found.penetration[stable]
+        float(jkr.equilibrium_force(jkr.equilibrium_radius(b))) for b in cycle.penetration[stable]
     ]
-    assert np.max(np.abs(found.force[stable] - expected)) < bound * 1.5
+    assert np.max(np.abs(cycle.force[stable] - expected)) < bound * 1.5

@@ -17,26 +17,16 @@ def test_every_configuration_of_the_validation_is_valid(path):
 
 
 def test_cases_are_smooth_spheres_and_then_surface_after_surface(branches):
-    given = load_validation(branches)
-    cases = validation_cases(given)
+    configuration = load_validation(branches)
+    cases = validation_cases(configuration)
     listed = [(case.n_point, case.elastic_energy, case.roll_off) for case in cases]
     first, second = (48, 0.4, 0.6), (48, 0.4, 0.9)
     assert listed == [(48, 0, 0.6), (64, 0.4, 0.6), first, second, first, second]
     seeds = [case.seed for case in cases]
     assert len({*seeds[:4]}) == len({*seeds[4:]}) == 1
     assert seeds[3] != seeds[4]
-    second = given.cases[2].model_copy(update={"surfaces": 1, "skipped": 1})
-    assert validation_cases(given.model_copy(update={"cases": (second,)})) == cases[5:]
-
-
-def test_a_surface_that_is_not_counted_has_the_seed_of_the_file(loops):
-    assert {case.seed for case in validation_cases(load_validation(loops))} == {5}
-
-
-def test_files_of_cases_have_names_of_what_determines_them(branches, case):
-    stems = {one.stem for one in validation_cases(load_validation(branches))}
-    assert len(stems) == 6
-    assert case.stem.startswith("n48-g0.7-e0.02-")
+    second = configuration.cases[2].model_copy(update={"surfaces": 1, "skipped": 1})
+    assert validation_cases(configuration.model_copy(update={"cases": (second,)})) == cases[5:]
 
 
 def test_a_loop_begins_before_the_surfaces_attract_each_other():
@@ -55,31 +45,17 @@ def test_a_loop_begins_before_the_surfaces_attract_each_other():
         ("loops", "side: 5.12", "side: 2.56", r"cases\[0\]: domain of side 2.56 is too small"),
         ("loops", "cutoff: 0.6", "cutoff: 0.1", r"cases\[0\]: short_cutoff 0.1 is not above two"),
         ("loops", "tion: 0.3}", "tion: 0.4}", r"cases\[0\]: shown_penetration 0.4 is"),
-        ("loops", "tion: 0.3}", "tion: 0.45}", r"must be below max_penetration 0.45"),
-        ("loops", "step: 0.15", "step: 0.3", r"step 0.3 is above a third of max_penetration 0.45"),
         ("loops", "tolerance: 1.0e-4", "tolerance: 0", r"tolerance is 0.*greater than 0"),
-        ("loops", "tolerance: 1.0e-4", "tolerance: 0.9", r"tolerance is 0.9.*equal to 0.01"),
         ("loops", "range: 0.70", "range: 10", r"interaction_range is 10.*equal to 1"),
-        (
-            "branches",
-            "roll_off: 0.9",
-            "roll_off: 50",
-            r"cases\[2\]: waves of 50, .* of side 5.12;",
-        ),
-        ("loops", "cutoff: 0.6", "cutoff: 100", r"cases\[0\]: waves of 100, .* side 5.12"),
         (
             "loops",
             "spacing: 0.05",
             "spacing: 5",
             r"front: spacing 5 misses waves .*take 0.3 or less",
         ),
-        ("loops", "tion: 0.3}", "tion: -0.15}", r"shown_penetration -0.15 .*; take 0 or"),
         ("loops", "seed: 5", "sead: 5", r"unknown key sead; did you mean seed"),
         ("branches", "first: 0.2", "first: 0.5", r"steady parts are first=0.5 last=0.4"),
-        ("branches", "max_penetration: 0.6", "max_penetration: 0.4", r"all below max_penetration"),
-        ("branches", "tion: 0.2", "tion: 0.4", r"shown_penetration 0.4 is not on both branches"),
         ("branches", "roll_off: 0.9", "roll_off: 0.3", r"cases\[2\]: roll_off 0.3 is shorter"),
-        ("branches", "step: 0.1", "step: 0.15", r"cases\[0\]: shown_penetration 0.2 .* step"),
     ],
 )
 def test_a_validation_that_cannot_be_run_is_refused(tmp_path, request, kind, old, new, sentence):

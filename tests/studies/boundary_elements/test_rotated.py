@@ -38,11 +38,11 @@ def brute_force(heights, angle, radius):
 def test_every_angle_has_the_kernel_of_its_own_crack_to_round_off(rng, shape):
     heights = 1e-3 * rng.standard_normal(shape)
     angles = np.array([0.0, 0.3, 2.2, 4.0])
-    found = adhesion_on_rays(heights, PIXEL, angles, 0.1, 7)
+    adhesion = adhesion_on_rays(heights, PIXEL, angles, 0.1, 7)
     expected = np.array(
         [[brute_force(heights, a, 0.1 * (m + 1)) for a in angles] for m in range(7)]
     )
-    np.testing.assert_allclose(found, expected, atol=1e-13)
+    np.testing.assert_allclose(adhesion, expected, atol=1e-13)
     assert np.std(expected) > 1e-4
 
 
@@ -50,9 +50,9 @@ def test_a_crack_that_does_not_turn_has_the_field_of_the_tile(rng):
     spectrum = SelfAffineSpectrum(1.0, 2.0, hurst=0.8).with_elastic_energy(0.02)
     heights = gaussian_field(spectrum, 16, 16 * PIXEL, rng)
     tile = rough_adhesion(heights, PIXEL).work_of_adhesion
-    found = adhesion_on_rays(heights, PIXEL, np.array([0, np.pi / 2]), PIXEL, 7, rotated=False)
-    np.testing.assert_allclose(found[:, 0], tile[9:, 8], atol=1e-13)
-    np.testing.assert_allclose(found[:, 1], tile[8, 9:], atol=1e-13)
+    adhesion = adhesion_on_rays(heights, PIXEL, np.array([0, np.pi / 2]), PIXEL, 7, rotated=False)
+    np.testing.assert_allclose(adhesion[:, 0], tile[9:, 8], atol=1e-13)
+    np.testing.assert_allclose(adhesion[:, 1], tile[8, 9:], atol=1e-13)
 
 
 def test_turning_the_surface_turns_the_field_of_cracks_that_turn(rng):
@@ -64,16 +64,3 @@ def test_turning_the_surface_turns_the_field_of_cracks_that_turn(rng):
     after = adhesion_on_rays(turned, PIXEL, angles + np.pi / 2, 0.1, 9)
     assert not np.allclose(before, adhesion_on_rays(heights, PIXEL, angles + np.pi / 2, 0.1, 9))
     np.testing.assert_allclose(after, before, atol=1e-13)
-
-
-def test_turning_the_crack_changes_single_places_and_no_statistics():
-    spectrum = SelfAffineSpectrum(0.1, 0.1, hurst=1.0).with_elastic_energy(0.03)
-    heights = gaussian_field(spectrum, 128, 5.12, np.random.default_rng(3))
-    angles = 2 * np.pi * np.arange(512) / 512
-    one, other = (
-        adhesion_on_rays(heights, 0.04, angles, 0.02, 128, rotated=rotated)
-        for rotated in (True, False)
-    )
-    assert np.corrcoef(one.ravel(), other.ravel())[0, 1] < 0.95
-    assert one.std() == pytest.approx(other.std(), rel=0.02)
-    assert one.mean() == pytest.approx(other.mean(), rel=0.01)

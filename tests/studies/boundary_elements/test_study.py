@@ -12,9 +12,8 @@ from studies.boundary_elements.averages import limit_settings, rows_by_zone
 from studies.boundary_elements.commands import commands
 from studies.boundary_elements.differences import Differences
 from studies.boundary_elements.hysteresis import Hysteresis
-from studies.boundary_elements.picture import ValidationPicture, validation_figure
 from studies.boundary_elements.report import validation_report
-from studies.records import read_record, read_records
+from studies.records import read_records
 
 
 def run(configuration, *options):
@@ -39,6 +38,7 @@ def branch_results(branches):
     return results(branches)
 
 
+@pytest.mark.slow
 def test_loops_are_compared_state_by_state_with_a_crack_that_turns_and_one_that_does_not(
     loop_results,
 ):
@@ -54,15 +54,6 @@ def test_loops_are_compared_state_by_state_with_a_crack_that_turns_and_one_that_
     assert [row.n_point for row in found] == [48, 48]
     text = (loop_results / "validation.md").read_text()
     assert text.startswith(validation_report(found, rows))
-
-
-def test_the_figure_shows_the_forces_and_the_contact(loop_results):
-    picture = read_record(loop_results / "picture.nc", ValidationPicture)
-    force, contact = validation_figure(picture).axes[:2]
-    assert len(force.get_legend().get_texts()) == 4
-    assert len(force.texts) == 5  # an arrow for every jump, and the name of the panel
-    assert (len(contact.images), len(contact.lines)) == (2, 4)
-    assert (loop_results / "validation.png").stat().st_size > 10_000
 
 
 @pytest.mark.slow
@@ -87,15 +78,16 @@ def test_tables_figures_and_sentence_are_those_of_the_rows(branch_results):
     found = [row for (*_, zone), row in rows_by_zone(rows, 0.6).items() if not zone]
     told = validity_of(validity_text(found))
     limits = limit_settings(rows)
-    assert [[row.n_point for row in one.rows] for one in limits] == [[64]]
+    assert [[row.n_point for row in limit.rows] for limit in limits] == [[64]]
     assert [row.ratio for row in told] == pytest.approx(
-        [math.exp(float(one.excess(0.0).value)) for one in limits], rel=1e-4, nan_ok=True
+        [math.exp(float(limit.excess(0.0).value)) for limit in limits], rel=1e-4, nan_ok=True
     )
     assert [(row.surfaces, row.fine) for row in told] == [(2, 1)]
     for name in ("validation", "hysteresis"):
         assert (branch_results / f"{name}.png").stat().st_size > 5_000
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("loop_results")
 def test_a_validation_that_is_repeated_computes_no_cycle_again(loops, monkeypatch):
     # What it draws again is not in question.
@@ -105,6 +97,7 @@ def test_a_validation_that_is_repeated_computes_no_cycle_again(loops, monkeypatc
     assert "approach to" not in outcome.output
 
 
+@pytest.mark.slow
 def test_a_damaged_cycle_is_refused(loops, loop_results):
     path = min(loop_results.glob("n48-*.nc"))
     kept = path.read_bytes()

@@ -15,12 +15,11 @@ from crackfront.simulate.storage import write_derived
 from crackfront.sweep.parameters import load_sweep
 from crackfront.sweep.rows import failed_row
 from studies.__main__ import main
-from studies.law.cells import MEASURED, LawCell, _without_spacing, csv_rows, measured_cells
+from studies.law.cells import MEASURED, LawCell, _without_spacing, measured_cells
 from studies.law.fitting import fitted_law
 from studies.law.front_sweeps import front_sweeps
 from tests.commands import dataset_of_rows
-
-ROOT = Path(__file__).parents[3]
+from tests.places import ROOT
 
 
 @pytest.mark.slow
@@ -34,15 +33,15 @@ def test_the_fit_finds_the_law_that_was_planted(rng):
         )
         for g in np.geomspace(0.3, 100, 10)
     ]
-    found = fitted_law(cells)
+    law = fitted_law(cells)
     s, g = np.array([0.1, 0.4, 0.84]), np.array([1.0, 10.0, np.inf])
     np.testing.assert_allclose(
-        law_value(found.coefficients, s[:, None], g),
+        law_value(law.coefficients, s[:, None], g),
         law_value(truth, s[:, None], g),
         rtol=0.03,
     )
-    assert found.rms < 0.02
-    assert found.exponent[0] == pytest.approx(0.612, abs=3 * found.exponent[1])
+    assert law.rms < 0.02
+    assert law.exponent[0] == pytest.approx(0.612, abs=3 * law.exponent[1])
 
 
 def planted_cell(template: LawCell, truth, s, g, breadth, noise):
@@ -75,7 +74,7 @@ def test_the_table_of_another_configuration_is_refused(tmp_path, monkeypatch, ve
     path = Path("sweep.yaml")
     path.write_text(text)
     sweep = load_sweep(path)
-    rows = [failed_row(one, "refused", "a test") for one in sweep.simulations()]
+    rows = [failed_row(simulation, "refused", "a test") for simulation in sweep.simulations()]
     table = dataset_of_rows(sweep, rows)
     write_derived(Path("results/sweep/hysteresis.nc"), table, provenance(text))
     path.write_text(re.sub(r"^seed: \d+", "seed: 77", text, flags=re.M))
@@ -92,9 +91,3 @@ def test_spacings_are_extrapolated_to_none_in_either_order_of_the_amplitudes(tmp
     [again] = _without_spacing(replace(sweep, elastic_energies=energies[::-1]), cells[::-1])
     assert found == again
     assert found.both == pytest.approx(3.0 + energies[0] / (energies[1] - energies[0]))
-
-
-@pytest.mark.parametrize("text", ["", "spectrum,kind\nflat,roughness\n"])
-def test_a_table_of_something_else_is_refused(text):
-    with pytest.raises(ValueError, match=r"the table lacks (rows|the column approach);"):
-        csv_rows(text, LawCell)

@@ -1,8 +1,5 @@
 """The law of k held to simulated spheres, to which none of its numbers is adjusted."""
 
-from dataclasses import replace
-from pathlib import Path
-
 import numpy as np
 import pytest
 
@@ -12,9 +9,9 @@ from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.sweep.parameters import load_sweep
 from studies.law.cells import HELD_OUT as HELD_OUT_SHAPES
 from studies.law.cells import csv_text, measured_cells
-from studies.law.spheres import is_covered, is_within, law_of, read_spheres, sphere_table
+from studies.law.spheres import is_covered, is_within, law_of, read_spheres
+from tests.places import ROOT
 
-ROOT = Path(__file__).parents[3]
 REFERENCE = ROOT / "docs/reference/spheres.csv"
 HELD_OUT = ROOT / "docs/reference/held-out.csv"
 
@@ -48,25 +45,6 @@ def test_a_table_of_spheres_is_read_as_it_was_written(spheres, tmp_path):
     path.write_text(csv_text(spheres))
     assert read_spheres([path]) == spheres
     assert path.read_text() == REFERENCE.read_text()
-
-
-def test_a_sphere_is_covered_where_its_errors_and_those_of_the_law_allow(spheres):
-    row = replace(spheres[4], both_error=0.0, numerical_error=0.0)
-    law = law_of(row)
-    for end, inside, outside in ((law.both.high, 0.999, 1.001), (law.both.low, 1.001, 0.999)):
-        assert is_covered(replace(row, both=inside * end), law)
-        assert not is_covered(replace(row, both=outside * end), law)
-        assert is_covered(replace(row, both=outside * end, both_error=0.1), law)
-
-
-def test_the_table_has_a_line_for_every_sphere_and_says_how_many_are_covered(spheres):
-    lines = sphere_table(spheres).splitlines()
-    assert len(lines) == 2 + len(spheres) + 2
-    laws = [law_of(row) for row in spheres]
-    large = [(row, law) for row, law in zip(spheres, laws, strict=True) if law.size > 1]
-    covered = sum(is_covered(row, law) for row, law in large)
-    assert lines[-1].startswith(f"For g above 1, {len(large)} rows: ")
-    assert lines[-1].endswith(f"cover {covered}.")
 
 
 @pytest.mark.parametrize(

@@ -11,8 +11,8 @@ CONFIGURATIONS = Path(__file__).parents[3] / "config" / "figures"
 
 def parameters(name, **changes):
     """Parameters of the file of a figure at the scale quick, with changes; errors as there."""
-    given = load_figure(CONFIGURATIONS / f"{name}.yaml", "quick")
-    return type(given).model_validate(given.model_dump() | changes)
+    figure_parameters = load_figure(CONFIGURATIONS / f"{name}.yaml", "quick")
+    return type(figure_parameters).model_validate(figure_parameters.model_dump() | changes)
 
 
 def with_measured(folder, name, text):

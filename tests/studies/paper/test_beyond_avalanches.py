@@ -4,17 +4,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from pydantic import ValidationError
 
 from studies.paper.avalanches import AvalancheRecord
-from studies.paper.event_laws import cutoff_slope, depth_slope, event_law
 from studies.paper.events import event_record
-from studies.paper.figure import figure
-from tests.studies.paper.made import computed, failed, is_labelled, parameters
+from tests.studies.paper.made import computed, failed, parameters
 
 pytestmark = pytest.mark.usefixtures("_few_draws")
-
-SCENE = figure("beyond-avalanches")
 
 
 @pytest.fixture(scope="module")
@@ -93,40 +88,6 @@ def test_avalanches_of_the_theory_pass(rng):
     assert failed(synthetic(rng)) == []
 
 
-def test_avalanches_of_another_exponent_fail(rng):
-    assert sum("exponent" in claim for claim in failed(synthetic(rng, exponent=1.6))) == 2
-
-
-def test_whole_events_of_another_exponent_or_roughness_fail(rng):
-    wrong = failed(synthetic(rng, event_exponent=1.5))
-    assert sum("straight front" in claim for claim in wrong) == 3
-    assert any("tau of their areas" in claim for claim in wrong)
-    wrong = failed(synthetic(rng, roughness=0.6))
-    assert any("cut-off" in claim for claim in wrong)
-    assert any("depth" in claim for claim in wrong)
-    assert failed(replace(synthetic(rng), swept_area=np.array([1.0, 1.0, 0.98]))) == [
-        "the fronts sweep the area that their load moves over, a whole period"
-    ]
-
-
-def test_the_exponents_of_whole_events_are_recovered(rng):
-    data = synthetic(rng)
-    assert event_law(data).exponent == pytest.approx(1.28, abs=0.05)
-    assert cutoff_slope(data).exponent == pytest.approx(1.388, abs=0.05)
-    assert depth_slope(data).exponent == pytest.approx(0.388, abs=1e-9)
-
-
-def test_what_few_events_leave_open_is_told(rng):
-    few = scaling_events(1.28, count=300)
-    springs = np.repeat(np.arange(SPRINGS.size), few.size // SPRINGS.size)
-    data = replace(
-        synthetic(rng), event_area=few, event_extent=few ** (1 / 1.388), event_spring=springs
-    )
-    (claim, *_) = SCENE.checks(data)
-    assert claim.passed
-    assert "times as many events" in claim.remark
-
-
 @pytest.mark.slow
 def test_whole_events_sweep_the_way_of_the_load(record):
     assert record.swept_area == pytest.approx(1.0, abs=1e-3)
@@ -172,15 +133,3 @@ def test_avalanches_and_smooth_steps_sweep_the_whole_area(record):
     assert np.all(record.energy > 0)
     assert np.all(record.extent > 0)
     assert np.all(np.diff(record.penetration[record.disorder_index == 0]) < 0)
-
-
-def test_penetrations_in_the_wrong_order_are_refused():
-    with pytest.raises(ValidationError, match="penetrations must fall from max_penetration"):
-        parameters("beyond-avalanches", last_penetration=0.0)
-
-
-def test_its_drawing_has_six_labelled_panels(rng):
-    drawn = SCENE.draw(synthetic(rng))
-    assert len(drawn.axes) == 6
-    assert len(drawn.subfigs[0].legends[0].texts) == SPRINGS.size
-    assert is_labelled(drawn.axes)

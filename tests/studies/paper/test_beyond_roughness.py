@@ -4,12 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from pydantic import ValidationError
 
 from studies.paper.figure import figure
 from studies.paper.front_spectra import RoughnessRecord, fitted_roughness, stiffness_wavevector
 from studies.paper.rough import STRONG, WEAK
-from tests.studies.paper.made import computed, failed, is_labelled, parameters
+from tests.studies.paper.made import computed, failed, parameters
 
 SCENE = figure("beyond-roughness")
 
@@ -74,55 +73,9 @@ def test_other_exponents_fail_the_checks(rng):
     assert "the two exponents differ" in both
 
 
-def test_without_the_stiffness_of_the_circle_the_exponent_is_lower(rng):
-    data = synthetic((0.388, 0.5), rng)
-    bare = fitted_roughness(replace(data, ring_stiffness=np.zeros(4)), WEAK)
-    assert bare.exponent < fitted_roughness(data, WEAK).exponent - 0.03
-
-
 def test_differences_follow_from_the_spectrum(record):
     for index in (STRONG, WEAK):
         variance = np.sum(2 * record.power[index].mean(axis=0)) / (2 * np.pi * record.radius[index])
         plateau = record.difference[index, -1] ** 2
         assert 0.3 * 2 * variance < plateau < 3 * 2 * variance
         assert np.all(record.difference[index, :10] < record.difference[index, 20])
-
-
-def test_straight_fronts_count_as_circles_as_stiff_as_their_springs(record):
-    springs = np.array([12.0, 1.2]) * record.larkin_length[2:]
-    assert record.ring_stiffness[2:] == pytest.approx(record.radius[2:] / springs, rel=1e-9)
-    assert record.larkin_length[3] == pytest.approx(10 * record.larkin_length[2])
-    # Of the same springs the front with more disorder is the rougher one.
-    strong, weak = record.power[2:].mean(axis=1)
-    assert strong.sum() > 3 * weak.sum()
-
-
-def test_weak_disorder_roughens_less(record):
-    assert np.all(record.difference[WEAK] < 0.5 * record.difference[STRONG])
-    assert record.larkin_length[WEAK] > 50 * record.larkin_length[STRONG]
-
-
-@pytest.mark.parametrize(
-    ("changes", "sentence"),
-    [
-        ({"first_penetration": 2.0}, "penetrations must fall from max_penetration"),
-        ({"weak_from": 90.0}, "weak_from is 90; it must be below weak_to, 50"),
-        ({"n_surface": 1}, "an interval needs 2 surfaces"),
-    ],
-)
-def test_parameters_that_cannot_be_fitted_are_refused(changes, sentence):
-    with pytest.raises(ValidationError, match=sentence):
-        parameters("beyond-roughness", **changes)
-
-
-def test_a_range_of_a_straight_front_that_holds_no_wavelength_is_refused():
-    line = parameters("beyond-roughness").weak_line.model_dump() | {"fit_from": 1.0}
-    with pytest.raises(ValidationError, match=r"fit_from is 1; it must be below fit_to, 0\.07"):
-        parameters("beyond-roughness", weak_line=line)
-
-
-def test_its_drawing_has_four_labelled_panels(record):
-    wide = replace(record, longest=np.full(4, 1.0), shortest=np.full(4, 0.2))
-    drawn = SCENE.draw(wide)
-    assert len(drawn.axes) == 4
-    assert is_labelled(drawn.axes)

@@ -1,16 +1,13 @@
 """`python -m studies paper`: its figures from their configurations to the gallery."""
 
-from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 
-import pytest
 from click.testing import CliRunner
 
-from studies.__main__ import STUDIES, main
+from studies.__main__ import main
 from studies.numbers import stored
 from studies.paper.checks import Check
-from studies.paper.figure import figure
 from tests.studies.paper.made import CONFIGURATIONS
 
 
@@ -73,53 +70,9 @@ def test_expectations_and_what_is_undecided_do_not_fail_and_are_counted_by_thems
     assert text.rstrip().endswith("Theory of depinning.")
 
 
-def test_the_studies_and_their_commands_are_listed():
-    listed = CliRunner().invoke(main, ["--help"]).stdout
-    assert set(STUDIES) <= set(listed.split())
-    assert {"figure", "draw", "check", "gallery"} <= set(run("--help").stdout.split())
-
-
-def test_the_cost_of_a_figure_is_told_before_it_is_computed(tmp_path, monkeypatch):
-    def computed(*_):
-        raise ValueError("computed")
-
-    shown = replace(figure("beyond-avalanches"), compute=computed)
-    monkeypatch.setattr("studies.paper.commands.figure", lambda name: shown)
-    configuration = CONFIGURATIONS / "beyond-avalanches.yaml"
-    result = run("figure", configuration, "--scale", "paper", "--output", tmp_path)
-    assert result.exit_code == 2
-    assert result.stderr == "about 31.4 min of processor time\nError: computed\n"
-
-
-def test_a_folder_that_cannot_be_written_is_refused_before_anything_is_computed(
-    tmp_path, monkeypatch
-):
-    (tmp_path / "taken").write_text("a file")
-    shown = replace(figure("main-1d"), compute=None)
-    monkeypatch.setattr("studies.paper.commands.figure", lambda name: shown)
-    result = run("figure", CONFIGURATIONS / "main-1d.yaml", "--output", tmp_path / "taken")
-    assert result.exit_code == 2
-    assert "cannot be used: Not a directory" in result.output
-
-
 def test_the_figure_of_a_sweep_that_was_not_run_says_how_to_run_it(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "config").symlink_to(CONFIGURATIONS.parent)
     result = run("figure", "config/figures/si-5.yaml")
     assert result.exit_code == 2
     assert "run the sweep first: make SWEEP=config/default.yaml" in result.output
-
-
-@pytest.mark.parametrize(
-    ("arguments", "sentence"),
-    [
-        (["draw", "other.nc"], "data of a figure; their files are named"),
-        (["check", "--output", "."], "run python -m studies paper figure"),
-        (["gallery", "--output", "."], "run python -m studies paper figure"),
-    ],
-)
-def test_what_is_no_figure_is_refused(tmp_path, monkeypatch, arguments, sentence):
-    monkeypatch.chdir(tmp_path)
-    result = run(*arguments)
-    assert result.exit_code == 2
-    assert sentence in result.output

@@ -22,12 +22,6 @@ def test_the_measured_hysteresis_is_above_all_that_is_computed(shown):
     assert paper == pytest.approx(0.0668, abs=1e-4)
 
 
-def test_boundary_elements_widen_the_interval_of_the_front(shown):
-    front, elements = (one.value for one in shown[2:])
-    assert front.high - front.low < elements.high - elements.low
-    assert elements.low < elements.value < elements.high < front.low
-
-
 def test_the_table_and_the_figure_have_them_all(shown):
     table = hystereses_table(shown)
     assert table.count("\n") == 1 + len(shown)

@@ -22,12 +22,3 @@ def test_a_smooth_loop_follows_the_closed_forms(smooth):
 def test_a_wrong_smooth_loop_fails_its_checks(smooth):
     wrong = replace(smooth, radius=smooth.radius * 1.01, force=smooth.force * 1.01)
     assert [check.passed for check in SCENE.checks(wrong)] == [False, False, False, True]
-
-
-def test_its_drawing_names_its_jumps_and_the_pull_off_force(smooth):
-    axes = SCENE.draw(smooth).axes[0]
-    assert "force" in axes.get_ylabel()
-    texts = " ".join(text.get_text() for text in axes.texts).replace("\n", " ")
-    for name in ("jump into contact", "jump out of contact", "pull-off force"):
-        assert name in texts
-    assert axes.get_ylim()[0] < 1.1 * smooth.force.min()

@@ -4,7 +4,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from pydantic import ValidationError
 
 from studies.paper.figure import figure
 from tests.studies.paper.made import computed, failed, parameters
@@ -35,12 +34,6 @@ def test_the_patches_of_a_retraction_do_not_overlap(record):
         assert np.all(record.before[chosen][1:] <= record.after[chosen][:-1])
 
 
-def test_a_missing_instability_breaks_the_balance(record):
-    largest = int(np.argmax(record.energy))
-    energy = np.where(np.arange(record.energy.size) == largest, 1e-9, record.energy)
-    assert any("not stored" in claim for claim in failed(replace(record, energy=energy)))
-
-
 def test_wrong_signs_extents_and_branches_fail(record):
     assert any(
         "dissipates energy" in claim for claim in failed(replace(record, energy=-record.energy))
@@ -50,22 +43,6 @@ def test_wrong_signs_extents_and_branches_fail(record):
     )
     swapped = replace(record, state_direction=-record.state_direction)
     assert "b = 0: the radius in approach (A) is below that in retraction (B)" in failed(swapped)
-
-
-def test_disorder_in_the_wrong_order_is_refused():
-    with pytest.raises(ValidationError, match="the first must be the larger"):
-        parameters("main-3ab", **COARSE, weak=0.1)
-
-
-def test_both_contacts_take_the_sites_of_the_larger():
-    steps = {"load_step": 1.0, "travel": 0.5, "precision": 1e-3}
-    coarse = parameters("main-3ab", **COARSE | steps | {"error": 0.1, "least_angles": 4})
-    sites = [
-        coarse.contact(energy, coarse.precision / 10).field.geometry.n_site
-        for energy in (coarse.strong, coarse.weak)
-    ]
-    assert sites[0] != sites[1]
-    assert computed("main-3ab", coarse).before.shape[1] == max(sites)
 
 
 def test_its_drawing_has_patches_and_a_cycle(record):

@@ -8,7 +8,7 @@ import pytest
 from crackfront.core.field.rays import front_adhesion
 from crackfront.simulate.simulation import simulation_field
 from studies.paper.rough import patch_of
-from tests.studies.paper.made import computed, drawn_from_file, failed, is_labelled, parameters
+from tests.studies.paper.made import computed, failed, parameters
 
 
 def coarse(**others):
@@ -57,24 +57,3 @@ def test_a_patch_is_the_field_that_the_front_feels():
     for ray in (0, field.geometry.n_site // 3):
         place = (1.2 * way[ray : ray + 1] for way in field.geometry)
         np.testing.assert_allclose(patch_of(field, *place)[0, 0], along[ray], atol=1e-3)
-
-
-def test_the_drawing_of_its_file_has_labelled_axes(loop, tmp_path):
-    assert is_labelled(drawn_from_file(loop, tmp_path).axes[:2])
-
-
-@pytest.mark.parametrize(
-    ("others", "sentence"),
-    [
-        ({"short_cutoff": 0.05}, "roll_off 0.04 is shorter than short_cutoff 0.05"),
-        ({"error": 1e-6}, "error is 1e-06, but the finest numerics leave"),
-    ],
-)
-def test_a_loop_that_cannot_be_computed_is_refused(others, sentence):
-    with pytest.raises(ValueError, match=sentence):
-        coarse(**others)
-
-
-def test_a_cycle_without_steady_branches_is_refused():
-    with pytest.raises(ValueError, match="steady states in approach"):
-        computed("main-3cd", coarse(max_penetration=0.1))

@@ -5,15 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from studies.paper.figure import figure, files_of_figure, load_figure
+from studies.paper.figure import figure
 from studies.paper.perimeters import advances
 from tests.studies.paper.made import (
     computed,
-    drawn_from_file,
     failed,
-    is_labelled,
     parameters,
-    with_measured,
 )
 
 
@@ -94,10 +91,6 @@ def test_the_widest_instability_does_not_depend_on_the_load_step(contact):
     assert finer.widest[0] == pytest.approx(contact.widest[0], rel=0.02)
 
 
-def test_the_drawing_of_its_file_has_labelled_axes(contact, tmp_path):
-    assert is_labelled(drawn_from_file(contact, tmp_path).axes[:2])
-
-
 MEASURED = """force (mN),radius (um),branch
 -0.15,70,approach
 0.05,90,approach
@@ -117,28 +110,3 @@ def test_measured_points_are_fitted_checked_and_drawn(tmp_path):
     ]
     labels = [line.get_label() for line in figure("main-5bc").draw(record).axes[1].get_lines()]
     assert {"measured, approach", "measured, retraction"} <= set(labels)
-
-
-def test_a_measured_file_is_one_of_the_files_that_a_figure_is_computed_from(tmp_path):
-    configuration = with_measured(tmp_path, "main-5bc", MEASURED)
-    [measured] = files_of_figure(load_figure(configuration, "paper"))
-    assert measured.read_text() == MEASURED
-
-
-@pytest.mark.parametrize(
-    ("others", "sentence"),
-    [
-        ({"short_cutoff": 3e-6}, "roll_off 2.1e-06 is shorter than short_cutoff 3e-06"),
-        ({"shown_force": 2e-3}, "shown_force 0.002 is above largest_force 0.001"),
-        ({"plateau": 8.4e-26}, "energy of full conformity is 0.111 J/m.2, not below"),
-    ],
-)
-def test_a_contact_that_cannot_be_computed_is_refused(others, sentence):
-    with pytest.raises(ValueError, match=sentence):
-        film_parameters(**others)
-
-
-def test_a_force_below_that_of_jump_in_shows_no_perimeter():
-    given = film_parameters().model_copy(update={"shown_force": -1.0})
-    with pytest.raises(ValueError, match="raise shown_force"):
-        computed("main-5bc", given)

@@ -2,12 +2,8 @@
 
 import numpy as np
 import pytest
-from scipy.integrate import quad
 
 from studies.paper.power_law import (
-    JointPowerLaw,
-    PowerLaw,
-    cutoff_scale,
     joint_power_law,
     truncated_power_law,
 )
@@ -37,23 +33,6 @@ def test_its_interval_covers_the_exponent_about_as_often_as_it_says(rng):
     assert sum(law.low <= 1.28 <= law.high for law in laws) >= 6
 
 
-@pytest.mark.usefixtures("_few_draws")
-def test_values_below_the_smallest_have_no_part(rng):
-    values = drawn(rng, 1.5, 50.0, 500)
-    more = np.concatenate([values, np.full(300, 0.5)])
-    one = truncated_power_law(values, 1.0, np.random.default_rng(1))
-    other = truncated_power_law(more, 1.0, np.random.default_rng(1))
-    assert one.exponent == pytest.approx(other.exponent, abs=1e-12)
-
-
-def test_its_density_is_normalised():
-    law = PowerLaw(1.28, 1.2, 1.4, cutoff=80.0, smallest=2.0, n_value=100)
-    integral = sum(
-        quad(law.density, *ends, limit=200)[0] for ends in [(2.0, 20.0), (20.0, 200.0), (200, 8000)]
-    )
-    assert integral == pytest.approx(1.0, abs=1e-7)
-
-
 SCALES = (600.0, 3000.0, 15000.0)
 
 
@@ -76,32 +55,6 @@ def test_a_joint_law_recovers_the_exponent_of_samples_with_a_shoulder(rng, expon
     assert law.low - 0.02 < exponent < law.high + 0.02
     assert law.high - law.low < 0.2
     assert law.exponent == pytest.approx(exponent, abs=0.08)
-
-
-@pytest.mark.usefixtures("_few_draws")
-def test_an_exponential_cutoff_would_take_a_shoulder_for_a_smaller_exponent(rng):
-    samples = scaling(rng, 1.28, 5000, shoulder=1.5, tail=3.0)
-    bare = [truncated_power_law(sample, 30.0, rng).exponent for sample in samples]
-    assert np.mean(bare) < 1.2
-    assert joint_power_law(samples, 30.0, rng).high > 1.28
-
-
-@pytest.mark.usefixtures("_few_draws")
-def test_the_scales_of_a_joint_law_are_those_of_its_samples(rng):
-    samples = scaling(rng, 1.28, 3000)
-    law = joint_power_law(samples, 30.0, rng)
-    expected = [np.mean(sample**2) / np.mean(sample) / 2 for sample in samples]
-    assert law.scales == pytest.approx(expected, rel=0.01)
-    assert [cutoff_scale(sample) for sample in samples] == pytest.approx(expected)
-    assert law.n_value.tolist() == [np.sum(sample >= 30.0) for sample in samples]
-
-
-def test_the_density_of_a_joint_law_is_normalised_for_every_sample():
-    scales = np.array(SCALES)
-    law = JointPowerLaw(1.28, 1.2, 1.4, 0.6, 1.6, 1.3, scales, 30.0, np.array([9, 9, 9]), 1.3)
-    for sample, scale in enumerate(SCALES):
-        grid = np.geomspace(30.0, 100 * scale, 40001)
-        assert np.trapezoid(law.density(grid, sample), grid) == pytest.approx(1.0, abs=1e-5)
 
 
 @pytest.mark.usefixtures("_few_draws")

@@ -93,9 +93,3 @@ def test_the_fit_from_the_data_of_the_figure_is_that_of_the_sweep(tmp_path):
     again = study_fit(read_record(path, ParametricStudy))
     assert again.pooled.factor == fit.pooled.factor
     assert np.array_equal(again.cells.factor.low, fit.cells.factor.low)
-
-
-def test_the_page_shows_the_law_and_k_against_disorder_and_size():
-    drawn = SCENE.draw(study(3.0)[0])
-    assert [axes.get_title(loc="left") for axes in drawn.axes][:3] == ["a", "b", "c"]
-    assert drawn.axes[1].get_xscale() == drawn.axes[2].get_xscale() == "log"

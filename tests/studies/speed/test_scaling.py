@@ -17,11 +17,6 @@ def test_a_job_has_no_gaps(tasks, n_worker, expected):
     assert seconds == pytest.approx(expected, abs=13 * LOSSES.hand_out)
 
 
-def test_a_manager_hands_out_no_faster_than_it_can():
-    seconds = scaling.job_seconds([LOSSES.hand_out / 10] * 1000, 500, LOSSES) - LOSSES.start
-    assert seconds == pytest.approx(1000 * LOSSES.hand_out, rel=0.01)
-
-
 def test_more_ranks_are_never_slower_and_never_more_efficient_than_a_full_job(rng):
     shards = [rng.lognormal(0, 1, 60) for _ in range(100)]
     rows = scaling.played(shards, LOSSES, 32, (32, 64, 128, 1024))
