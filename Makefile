@@ -66,7 +66,7 @@ locked   = awk '/^[^ ]/ { kept = $(2)/^($(1))==/ } kept' requirements.lock
 
 all: env  ## Run the sweep SWEEP to its fit and figures
 	@plan=$$($(CHECK) $(call quoted,$(SWEEP))) && echo "$$plan" | sed -n 1p
-	@$(SNAKE) --config sweep=$(call quoted,$(SWEEP))
+	@$(SNAKE) --quiet all --config sweep=$(call quoted,$(SWEEP))
 	@echo "Dataset: $(RESULTS)hysteresis.nc"
 	@sed -n 's/^- //p; /^## /q' $(RESULTS)fit.md
 	@echo "Fit:     $(RESULTS)fit.md"

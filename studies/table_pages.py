@@ -7,6 +7,7 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 from studies.numbers import Origin, Stored, Table
+from studies.pages import markdown_table
 from studies.paper.figure import FIGURES
 
 TABLES = Path("docs/experiments/tables")
@@ -18,36 +19,133 @@ GALLERY = Path("docs/experiments/gallery.md")
 _COUNTS = "counts"
 """Stored text of the study of the paper that says how many checks agree."""
 
-_GALLERY = """\
-# Gallery
+_ABOUT_GALLERY = """\
+- **Differs as the law of k says:** the paper has k = 3 everywhere; simulated k falls with the
+  disorder and depends on the spectrum and on the size of the contact. The number is
+  [the law of k](../law.md).
+- **Cannot be decided:** the data are too few to confirm or to contradict the claim.
+- **Is not met:** an expectation of this project, which the paper does not state. Its origin stands
+  below its table.
+- **FAIL:** unexplained.
 
-Every computed figure of the paper with checks against the statements of the paper or against
-exact results. `make figures` computes the figures, `python -m studies paper gallery` stores them,
-and `python -m studies pages` writes this page. A check agrees if the number that was found lies
-within the stated tolerance or bound; if its 95% interval does not contain the expected number, the
-remark says so. A check may differ from the paper as [the law of k](../law.md) predicts; then the
-number of the law is stated too. Or it fails, and the difference is unexplained."""
+A check agrees if the number lies within the stated tolerance or bound. If its 95% interval does
+not contain the expected number, the remark in the table says so.
+
+Main Figs. 1a to 1c and SI Figs. S-1 to S-3 are drawings and are not computed. SI Fig. S-4 compares
+the model with [boundary elements](boundary-elements.md#at-weak-roughness-both-agree); it was
+computed on 512 x 512 points, where the paper has 1024 x 1024. The measured data of main Fig. 5 and
+SI Fig. S-6 are not part of this repository.
+
+The tile repeats under the contact in two figures. In main Fig. 3c, d its side is 0.2 under a
+contact 3.4 wide (reduced lengths); a wider one would need 6 GB of memory. In the sweep of SI Fig.
+S-5 it is four roll-offs or 200 short cutoffs under a contact 3.8 wide.
+
+```sh
+make figures SCALE=paper          # computes the figures
+python -m studies paper gallery   # stores them with their checks
+python -m studies pages           # writes this page
+```"""
 
 _TABLES = """\
 # Tables of the study {}
 
-The [experiments](../index.md) explain these tables. `python -m studies pages` writes this page."""
+{} `python -m studies pages` writes this page."""
+
+_ABOUT_TABLES = {
+    "accuracy": "Errors of the numerics and of stated intervals. Columns are explained on the "
+    "pages of [numerics](../numerics.md), [hard cases](../hard-cases.md), [scans](../scans.md) and "
+    "[measured loops](../../loops.md).",
+    "boundary-elements": "The crack front against boundary elements on the same rough spheres "
+    "([explanation](../boundary-elements.md)). Lengths are in reduced units, and e_el is in units "
+    "of w_int. Where the last line says `crackfront validate`, the command is now `python -m "
+    "studies boundary-elements validate`.",
+    "law": "[The law of k](../../law.md): its coefficients, and its differences from straight "
+    "fronts and [spheres](../spheres.md).",
+    "paper": "Every check of the [gallery](../gallery.md), and the hysteresis on nanodiamond, "
+    "measured and computed ([conclusions](../../accuracy.md)).",
+    "speed": "Times of requests, solvers and sweeps ([explanation](../performance.md)).",
+}
+"""What the page of each study shows, and where it is explained."""
+
+_FIGURE = re.compile(
+    r"## (?P<title>.+)\n\n(?P<picture>.+)\n\n(?P<cost>.+)\.\n\n(?P<checks>[\s\S]+)"
+)
+"""Stored text of a figure: its title, its picture, what it cost and its checks."""
+
+_AGREES = "agrees"
 
 
 def written_pages(studies: Mapping[str, Stored]) -> dict[Path, str]:
     """Text of every page that is written from stored tables alone, by its path."""
     pages = {}
     for study, record in studies.items():
-        tables = dict(record.tables)
-        shown = [tables.pop(name) for name in (_COUNTS, *FIGURES) if name in tables]
-        if shown:
-            pages[GALLERY] = _page([_GALLERY, *(table.text for table in shown)], shown)
-        if tables:
-            sections = (_section(name, table) for name, table in sorted(tables.items()))
+        figures = {name: record.tables[name] for name in FIGURES if name in record.tables}
+        if figures:
+            pages[GALLERY] = _gallery(figures, record.tables[_COUNTS])
+        tables = {
+            name: table
+            for name, table in sorted(record.tables.items())
+            if name not in (_COUNTS, *figures)
+        }
+        checks = (_checks_section(name, table.text) for name, table in figures.items())
+        sections = [*(_section(name, table) for name, table in tables.items()), *checks]
+        if sections:
             pages[TABLES / f"{study}.md"] = _page(
-                [_TABLES.format(study), *sections], tables.values()
+                [_TABLES.format(study, _ABOUT_TABLES[study]), *sections],
+                [*tables.values(), *figures.values()],
             )
     return pages
+
+
+def _gallery(figures: Mapping[str, Table], counts: Table) -> str:
+    """Page of the counts, the checks that do not agree, and all figures."""
+    differing = [row for name, table in figures.items() for row in _differing(name, table.text)]
+    header = "figure | claim | expected | found | result"
+    parts = [
+        "# Gallery",
+        counts.text,
+        f"These checks do not agree:\n\n{markdown_table(header, differing)}",
+        _ABOUT_GALLERY,
+        *(_picture(name, table.text) for name, table in figures.items()),
+    ]
+    return _page(parts, [counts, *figures.values()])
+
+
+def _differing(name: str, text: str) -> list[list[str]]:
+    """Cells of the checks of a figure that do not agree, without remarks."""
+    link = f"[{name}](tables/paper.md#checks-{name})"
+    return [[link, *row[:4]] for row in _check_rows(text) if row[3] != _AGREES]
+
+
+def _picture(name: str, text: str) -> str:
+    """Picture of a figure below its title; its caption counts the checks."""
+    parts, rows = _figure_parts(text), _check_rows(text)
+    agreeing = sum(row[3] == _AGREES for row in rows)
+    link = f"[checks](tables/paper.md#checks-{name})"
+    caption = f"*{agreeing} of {len(rows)} {link} agree. {parts['cost']}.*"
+    return f"## {parts['title']}\n\n{parts['picture']}\n\n{caption}"
+
+
+def _checks_section(name: str, text: str) -> str:
+    """Checks of a figure below its name and its title."""
+    parts = _figure_parts(text)
+    return f"## Checks, {name}\n\n{parts['title']}.\n\n{parts['checks']}"
+
+
+def _figure_parts(text: str) -> re.Match[str]:
+    """Parts of the stored text of a figure."""
+    parts = _FIGURE.fullmatch(text)
+    if parts is None:
+        raise ValueError(
+            f"{text.splitlines()[0]!r} is not a stored figure; run python -m studies paper gallery"
+        )
+    return parts
+
+
+def _check_rows(text: str) -> list[list[str]]:
+    """Cells of all checks of a figure: claim, expected, found, result and remark."""
+    rows = [line[2:-2].split(" | ") for line in text.splitlines() if line.startswith("| ")]
+    return [row for row in rows if row[0] not in ("claim", "---")]
 
 
 def _page(parts: Iterable[str], origins: Iterable[Origin]) -> str:
@@ -67,6 +165,7 @@ def _measured_line(origins: Iterable[Origin]) -> str:
     for origin in origins:
         machine = "" if origin.machine == "unknown" else f", {origin.machine}"
         place = f"commit {origin.commit[:7]}{machine}", origin.date[:10]
-        commands.setdefault(place, {})[f"`{origin.command}`"] = None
+        typed = re.sub("^studies ", "python -m studies ", origin.command)
+        commands.setdefault(place, {})[f"`{typed}`"] = None
     parts = (f"{', '.join(names)} ({commit}, {date})" for (commit, date), names in commands.items())
     return f"*Numbers of this page: {'; '.join(parts)}.*"

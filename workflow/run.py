@@ -31,14 +31,19 @@ def _is_writable(folder: Path) -> bool:
         return False
 
 
-try:
-    ensure_cache()
-
+def run() -> None:
+    """Run Snakemake, and name its log if a job failed."""
     from snakemake.cli import main
 
-    main()
-except SystemExit as ended:
-    if ended.code:
-        sys.exit("The workflow did not finish; the last log in .snakemake/log/ says more")
+    try:
+        main()
+    except SystemExit as ended:
+        if ended.code:
+            sys.exit("The workflow did not finish; the last log in .snakemake/log/ says more")
+
+
+try:
+    ensure_cache()
+    run()
 except KeyboardInterrupt:
     sys.exit("Interrupted before any job began; run the same command again")

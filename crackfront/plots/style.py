@@ -13,6 +13,7 @@ from contextlib import AbstractContextManager, contextmanager, nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from crackfront.core.arguments import check_type
 from crackfront.simulate.storage import replace_atomically
 
 if TYPE_CHECKING:
@@ -123,7 +124,10 @@ def shown_axes() -> Iterator[Axes]:
 
 
 def axes_to_draw_on(axes: Axes | None) -> AbstractContextManager[Axes]:
-    """The user's axes as they are, or new ones in the package's style."""
+    """The user's axes as they are, or new ones in the package's style; TypeError for others."""
+    from matplotlib.axes import Axes
+
+    check_type("axes", axes, (Axes, type(None)), "one Axes of matplotlib, as axes[0] of several")
     return shown_axes() if axes is None else nullcontext(axes)
 
 

@@ -323,7 +323,7 @@ def energy_table(energies: Mapping[Kind, Sequence[Found]]) -> str:
             f"{np.median([scan.factor for scan in scans]):.2f} | {np.median(shares):.0%}"
         )
     table = markdown_table(
-        "scans | resolved | e_el found / true | median error | intervals that hold it | "
+        "scans | resolved | e_el found / true | median error | intervals that contain it | "
         "their factor | e_el measured",
         rows,
     )
@@ -334,7 +334,7 @@ def energy_table(energies: Mapping[Kind, Sequence[Found]]) -> str:
     return (
         f"{table}\n\n{len(every)} scans: median error {error:.0%}, geometric mean of "
         f"found / true {np.exp(np.mean(np.log(ratios))):.2f}, {covered:.1%} of the "
-        "intervals hold the truth"
+        "intervals contain the true value"
     )
 
 

@@ -237,7 +237,7 @@ def coverage_table(coverages: Mapping[str, Coverage]) -> str:
     shares = [f"{share:.0%}" for share in (*np.mean(inside, axis=0), np.mean(inside))]
     rows.append(("**all**", str(len(inside)), str(too_short), *shares, "", ""))
     return markdown_table(
-        "rig | loops | refused | w_appr | w_retr | hysteresis | all three | rms error of the "
+        "rig | loops | rejected | w_appr | w_retr | hysteresis | all three | rms error of the "
         "hysteresis | half of its interval",
         rows,
     )

@@ -62,10 +62,11 @@ def _hysteresis_table(shown: Sequence[averages.Setting]) -> str:
             f"{float(repelling.value):.1%} | {' | '.join(map(_shown, works))}"
         )
     return _table(
-        "Works of adhesion of the smooth sphere with the same force at the same penetration, in "
-        "w_int; boundary elements first, then the front on the same surfaces; in brackets standard "
-        "errors over surfaces. Hysteresis: w_retr - w_appr. Range 0 is extrapolated by the range "
-        f"to the power {averages.ORDER}. Repels: where w_loc is negative.",
+        "A smooth sphere with the work of adhesion w_appr or w_retr has the same force at the same "
+        "penetration. Works are in w_int, of boundary elements and then of the front on the same "
+        "surfaces; brackets contain standard errors over surfaces. The hysteresis is "
+        "w_retr - w_appr. Range 0 is an extrapolation with the range to the power "
+        f"{averages.ORDER}. *Repels* is the share of the surface with negative w_loc.",
         "roll-off | e_el | points | range | step | surfaces | repels | w_appr | front | w_retr "
         "| front | hysteresis | front",
         lines,
@@ -84,10 +85,11 @@ def ratio_table(validity: Sequence[ValidityRow]) -> str:
         return ""
     slope, error = excess_coefficient(validity)
     return _table(
-        "Hysteresis of the front over that of boundary elements at a vanishing range, without what "
-        "these lose on the smooth sphere; 68% intervals by Student's t over the surfaces, and half "
-        "of what extrapolation by the second and by the fourth power differ by. The law through "
-        f"them is ln(ratio) = c e_el / w_int, c = {slope:.2f} ± {error:.2f}.",
+        "Hysteresis of the front over the hysteresis of boundary elements, extrapolated to a "
+        "vanishing range and less the hysteresis of a smooth sphere in boundary elements. The 68% "
+        "interval contains the scatter of the surfaces (Student's t) and half of the difference "
+        "between extrapolations with the second and the fourth power. The law is "
+        f"ln(ratio) = c e_el/w_int with c = {slope:.2f} ± {error:.2f}.",
         "roll-off / cutoff | H | e_el | g | ratio | interval | law | surfaces | on the finest grid",
         (
             f"{row.roll_off:g} | {row.hurst:g} | {row.elastic_energy:.4f} | {row.size:.2g} | "
@@ -102,7 +104,7 @@ def order_table(rows: Sequence[Hysteresis]) -> str:
     """Ratios of the hystereses at a vanishing range, by the power of the extrapolation."""
     powers = " | ".join(f"power {order:g}" for order in averages.ORDERS)
     return _table(
-        "The ratio at a vanishing range, by the power of the range that extrapolates to it.",
+        "The ratio at a vanishing range, extrapolated with three powers of the range.",
         f"roll-off | H | e_el | {powers}",
         (
             " | ".join(
@@ -118,8 +120,9 @@ def size_table(tables: Sequence[Mapping[tuple[float, ...], ValidityRow]]) -> str
     """Ratios of surfaces that differ in their size g alone, not in amplitude, shape or zone."""
     keys = sorted(set.intersection(*({*table} for table in tables)))
     return _table(
-        "Hysteresis of the front over that of boundary elements where amplitude, shape and length "
-        "of the cohesive zone over the cutoff are the same; 68% intervals by Student's t.",
+        "Hysteresis of the front over the hysteresis of boundary elements. Rows differ in g alone "
+        "if amplitude, shape and *zone / cutoff* are equal: the length of the cohesive zone over "
+        "the cutoff. Intervals are 68% (Student's t).",
         "roll-off / cutoff | H | e_el | zone / cutoff | g | ratio | interval | surfaces",
         (
             f"{row.roll_off:g} | {row.hurst:g} | {row.elastic_energy:.4f} | {zone:g} | "
@@ -156,9 +159,10 @@ def _difference_table(loops: Sequence[Differences]) -> str:
         "{perimeter_approach:.4f} | {perimeter_retraction:.4f} | {perimeter_all:.4f}"
     )
     return _table(
-        "Boundary elements minus front. Forces in units of the smooth pull-off force, areas "
-        "relative, distances of perimeters in short cutoffs: in approach and retraction at the "
-        "shown penetration, and the mean over all states.",
+        "Boundary elements minus front. Forces are in units of the pull-off force of the smooth "
+        "sphere, and areas are relative. Distances of perimeters are in short cutoffs: at the "
+        "shown penetration of each branch, and in the mean of all states. The crack *turns* with "
+        "the edge or is *fixed*.",
         f"{_CRACK} | force, mean | median size | rms | largest | area, mean | rms "
         "| perimeter, appr. | retr. | all",
         (cells.format(**_cell_values(row)) for row in loops),
@@ -172,9 +176,9 @@ def _jump_table(loops: Sequence[Differences]) -> str:
         "{jump_shift:.4f} | {jump_spread:.4f} | {pull_off_force:.2%} | {pull_off_penetration:.3f}"
     )
     return _table(
-        "Arcs of the perimeter that move a quarter of a short cutoff or more in one load step; of "
-        "the front's, those for which the boundary elements jump at the same place within 0.1 of "
-        "penetration; their penetrations, boundary elements minus front.",
+        "Jumps are arcs of the perimeter that move a quarter of a short cutoff or more in one load "
+        "step. A jump of the front is *shared* if the boundary elements jump at the same place "
+        "within 0.1 of penetration; shifts of penetration are boundary elements minus front.",
         f"{_CRACK} | boundary | front | shared | mean shift | rms shift | pull-off force "
         "| end of contact",
         (cells.format(**_cell_values(row)) for row in loops),
@@ -184,8 +188,9 @@ def _jump_table(loops: Sequence[Differences]) -> str:
 def edge_table(rows: Sequence[EdgeForces]) -> str:
     """Forces of the front's model on the edges of boundary elements."""
     return _table(
-        "Rms slope of the edges, rms of w_loc along them, in w_int, and the force left over "
-        "it; force of the line that would balance the others, over that of first order.",
+        "Rms slope of the edge, rms of w_loc along it (*pinning*, in w_int), and the remaining "
+        "force in the model of the front over the pinning. *Line* is the force of the line that "
+        "would balance the other forces, over the force of first order.",
         "points | range | e_el | slope | pinning | left / pinning | line",
         (
             f"{row.n_point} | {row.interaction_range:g} | {row.elastic_energy:.4f} | "

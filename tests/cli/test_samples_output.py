@@ -38,12 +38,12 @@ def test_a_text_stays_a_text_in_a_spreadsheet(table):
     rows = "".join(
         f'"{name}",polished,20nm,2um,0.8,20nm,1.25mm,-1mJ/m2,{name},-3\n' for name in names
     )
-    table.write_text(f"{TABLE.splitlines()[0]},=note,thickness\n{rows}")
+    table.write_text(f"{TABLE.splitlines()[0]},=note,batch\n{rows}")
     result = run("samples", table, *SPHERE, "--no-figure")
-    assert "copied to the results without being used: =note, thickness" in result.stderr
+    assert "copied to the results without being used: =note, batch" in result.stderr
     with (table.parent / "results/samples/series.csv").open(newline="") as file:
         written = list(csv.DictReader(file))
     assert [row["sample"] for row in written] == [f"'{name}" for name in names]
     assert [row["'=note"] for row in written] == [f"'{name}" for name in names]
-    assert {row["thickness"] for row in written} == {"-3"}
+    assert {row["batch"] for row in written} == {"-3"}
     assert {float(row["measured_hysteresis"]) for row in written} == {-1e-3}

@@ -11,6 +11,17 @@ from studies.quotes import QUOTED, Quote
 from studies.table_pages import GALLERY, TABLES, written_pages
 from tests.places import ROOT
 
+FIGURE = """\
+## Fig. 1d: a sphere
+
+![Fig. 1d: a sphere](figures/main-1d.png)
+
+Scale quick, 3 s of one core.
+
+| claim | expected | found | result | remark |
+| --- | --- | --- | --- | --- |
+| radius | 1 | 1 | agrees | exact |
+| k | 3 | 2 | differs as the law of k says: 2 |  |"""
 ORIGIN = {"command": "studies law", "commit": "1a2b3c4d5e", "machine": "EPYC", "date": "2026-11-28"}
 
 
@@ -18,7 +29,7 @@ def known(text):
     """Stored tables of two studies, and a number."""
     number = Number(8.0, 0.5, command="studies speed", commit="9f8e7d6c5b", date="2026-11-27")
     law, counts = Table(text, **ORIGIN), Table("3 of 3 agree", **ORIGIN)
-    figure = Table("## Fig. 1d", **(ORIGIN | {"command": "make figures"}))
+    figure = Table(FIGURE, **(ORIGIN | {"command": "make figures"}))
     return {
         "law": Stored(tables={"limit": law}),
         "paper": Stored(tables={"main-1d": figure, "counts": counts}),
@@ -28,11 +39,11 @@ def known(text):
 
 def test_each_study_with_tables_has_a_page_whose_last_line_says_where_they_were_measured():
     pages = written_pages(known("# k\n\n| 3 |"))
-    assert set(pages) == {TABLES / "law.md", GALLERY}
+    assert set(pages) == {TABLES / "law.md", TABLES / "paper.md", GALLERY}
     lines = pages[TABLES / "law.md"].splitlines()
     assert [line for line in lines if line.startswith("#")][1:] == ["## Limit", "## k"]
     assert "| 3 |" in lines
-    assert "`studies law` (commit 1a2b3c4, EPYC, 2026-11-28)" in lines[-1]
+    assert "`python -m studies law` (commit 1a2b3c4, EPYC, 2026-11-28)" in lines[-1]
 
 
 def test_each_table_of_a_page_has_its_command_below_its_heading():
@@ -42,9 +53,25 @@ def test_each_table_of_a_page_has_its_command_below_its_heading():
     assert "## Make b\n\nBy `make b`:" in page
 
 
-def test_the_gallery_begins_with_the_counts_of_its_checks():
+def test_the_gallery_begins_with_the_counts_and_the_checks_that_do_not_agree():
     text = written_pages(known("| 3 |"))[GALLERY]
-    assert text.index("3 of 3 agree") < text.index("## Fig. 1d") < text.index("1a2b3c4")
+    differing = "](tables/paper.md#checks-main-1d) | k | 3 | 2 | differs as the law of k says: 2 |"
+    places = ["3 of 3 agree", differing, "## Fig. 1d", "![Fig. 1d", "*1 of 2 [", "1a2b3c4"]
+    assert sorted(places, key=text.index) == places
+    assert "radius" not in text
+
+
+def test_all_checks_of_a_figure_are_on_the_page_of_tables():
+    lines = written_pages(known("| 3 |"))[TABLES / "paper.md"].splitlines()
+    assert lines.index("## Checks, main-1d") < lines.index("| radius | 1 | 1 | agrees | exact |")
+    assert "![Fig. 1d: a sphere](figures/main-1d.png)" not in lines
+
+
+def test_a_figure_that_was_not_stored_by_the_command_is_named_with_the_command():
+    studies = known("| 3 |")
+    studies["paper"].tables["main-1d"] = Table("## Fig. 1d", **ORIGIN)
+    with pytest.raises(ValueError, match=r"Fig\. 1d.*python -m studies paper gallery"):
+        written_pages(studies)
 
 
 @pytest.mark.parametrize(

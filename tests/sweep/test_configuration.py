@@ -299,7 +299,7 @@ BAD = {
     "too few points": (
         (
             "pixels_per_cutoff: 4\n  tile: {roll_offs: 10, cutoffs: 20}",
-            "pixels_per_cutoff: 2\n  tile: {roll_offs: 0, cutoffs: 1}",
+            "pixels_per_cutoff: 2\n  tile: {roll_offs: 1, cutoffs: 1}",
         ),
         "tiles of flat have 2 points a side; use at least 4",
     ),
