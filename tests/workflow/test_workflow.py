@@ -457,7 +457,8 @@ def test_make_takes_a_configuration_in_a_folder_of_any_name():
     lines = done.stdout.splitlines()
     taken = name.replace("$$", "$")
     [checked] = [line for line in lines if "/crackfront plan " in line]
-    assert shlex.split(checked.partition("$(")[2].rpartition(") && echo")[0])[-2:] == ["plan", taken]
+    checking = checked.partition("$(")[2].rpartition(") && echo")[0]
+    assert shlex.split(checking)[-2:] == ["plan", taken]
     [planned] = [shlex.split(line) for line in lines if "--config" in line]
     assert planned[-2:] == ["--config", f"sweep={taken}"]
     assert any("results/mine/fit.md" in line for line in lines)
