@@ -76,13 +76,13 @@ def fit_result(fit: SweepFit) -> str:
     by_law = "; ".join([pooled, *_range_of(law)])
     return (
         f"# Hysteresis: w_retr, w_appr = {_mean_adhesion(fit)} ± k e_el\n\n"
-        f"- k of this sweep, {_n_simulation(fit)} simulations: {_pooled_entry(fit, 'factor')}\n"
+        f"- k of this sweep ({_used_simulations(fit)}): {_pooled_entry(fit, 'factor')}\n"
         f"{_needed_line(fit)}"
         f"- k by the law: {by_law}; k of the paper: {PAPER_FACTOR:g}\n"
         f"- exponent of w_rms: {_exponent_entry(fit)}\n"
         f"- exponent by the law: {_law_exponent_entry(fit)}; of the paper: 2\n"
-        "- k falls with disorder and rises with the size of the contact (docs/law.md), so that it is "
-        "neither 3 nor constant, and the exponent is not 2"
+        "- k falls with disorder and rises with the size of the contact (docs/law.md), so that it "
+        "is neither 3 nor constant, and the exponent is not 2"
     )
 
 
@@ -116,6 +116,15 @@ def _law_exponent_entry(fit: SweepFit) -> str:
     if not np.isfinite(pooled):
         return MISSING
     return "; ".join([f"{pooled:.2f}", *_range_of(fit.law_exponent)])
+
+
+def _used_simulations(fit: SweepFit) -> str:
+    """How many simulations are in the range of the fit, and the range if that is not all."""
+    used, total = _n_simulation(fit), fit.table.e_el.size
+    if used == total:
+        return counted(total, "simulation")
+    low, high = fit.lowest_elastic_energy, fit.highest_elastic_energy
+    return f"{used} of {total} simulations, e_el/w_int from {low:g} to {high:g}"
 
 
 def _n_simulation(fit: SweepFit) -> int:
