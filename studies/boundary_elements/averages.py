@@ -86,16 +86,16 @@ class Setting:
 
         if len(fine) < 2:
             return student_estimate(estimate_without(), math.nan, 0)
-        count, both = self.surfaces, len(fine)
+        count, n_fine = self.surfaces, len(fine)
         changed = np.array([estimate_without(seed) for seed in {**fine, **coarse}])
         squares = (changed - np.mean(changed)) ** 2
         error = math.sqrt((count - 1) / count * float(np.sum(squares)))
-        parts = float(np.sum(squares[:both])), float(np.sum(squares[both:]))
-        squares_by_freedom = parts[0] ** 2 / (both - 1) + parts[1] ** 2 / max(1, count - both)
+        parts = float(np.sum(squares[:n_fine])), float(np.sum(squares[n_fine:]))
+        squares_by_freedom = parts[0] ** 2 / (n_fine - 1) + parts[1] ** 2 / max(1, count - n_fine)
         return student_estimate(
             estimate_without(),
             error,
-            sum(parts) ** 2 / squares_by_freedom if squares_by_freedom else both - 1,
+            sum(parts) ** 2 / squares_by_freedom if squares_by_freedom else n_fine - 1,
         )
 
 

@@ -60,16 +60,16 @@ def close_to(
     `law` is the number that the law of k gives, and the half of its interval.
     """
     after = f" {units}" if units else ""
-    said = ""
+    law_text = ""
     if law is not None and abs(measured - law[0]) <= law[1]:
-        said = f"{with_error(*law)}{after}"
+        law_text = f"{with_error(*law)}{after}"
     return Check(
         claim,
         f"{with_error(expected, tolerance)}{after}",
         f"{measured:.6g}{after}",
         abs(measured - expected) <= tolerance,
         remark,
-        said,
+        law_text,
     )
 
 

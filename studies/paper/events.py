@@ -94,11 +94,11 @@ def _events(parameters: EventParameters, spring: float, seed: int, tile: int) ->
     sites = geometry.n_site * pulled.larkin_length / geometry.length
     events, patches, swept = [], [], [0.0, 0.0]
     for step in steps:
-        each = swept_areas(step.before, step.after, geometry) / whole
-        area = float(np.sum(each))
+        shares = swept_areas(step.before, step.after, geometry) / whole
+        area = float(np.sum(shares))
         swept[step.unstable] += area
         if step.unstable:
-            events.append((area, area**2 / float(np.sum(each**2)) / sites))
+            events.append((area, area**2 / float(np.sum(shares**2)) / sites))
             parts = swept_clusters(step.before, step.after, travel, geometry)
             patches += [part.area / whole for part in parts]
     total, loaded = sum(swept), geometry.length * pulled.period / whole

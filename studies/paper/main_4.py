@@ -169,9 +169,9 @@ def _highest(patch: Array) -> Integers:
 
 def mapping_checks(record: Mapping) -> tuple[Check, ...]:
     """Parseval, the mean, and that peaks raise the work of adhesion."""
-    many = record.band_modes >= _FEWEST_MODES
+    is_populated = record.band_modes >= _FEWEST_MODES
     valley, peak = record.adhesion[tuple(record.valley)], record.adhesion[tuple(record.peak)]
-    furthest = np.argmax(np.abs(record.band_correlation[many] - _ALIGNMENT))
+    furthest = np.argmax(np.abs(record.band_correlation[is_populated] - _ALIGNMENT))
     return (
         close_to(
             "Parseval: w_rms / sqrt(e_el w_int), both of the tile",
@@ -198,11 +198,11 @@ def mapping_checks(record: Mapping) -> tuple[Check, ...]:
         close_to(
             "peaks raise w_loc: correlation with the half-derivative of the heights in octaves of "
             "wavelength, the furthest from 2 sqrt(2) / pi",
-            float(record.band_correlation[many][furthest]),
+            float(record.band_correlation[is_populated][furthest]),
             _ALIGNMENT,
             0.015,
             remark="mean of Re sqrt(i q_x + abs(q_y)) / sqrt(q) over the directions of q; "
-            f"{np.count_nonzero(many)} octaves of {_FEWEST_MODES} modes or more",
+            f"{np.count_nonzero(is_populated)} octaves of {_FEWEST_MODES} modes or more",
         ),
         Check(
             "w_loc at valleys, on average, and at peaks",

@@ -214,7 +214,7 @@ def _hysteresis_checks(contact: NanodiamondContact) -> tuple[Check, ...]:
     hysteresis = 1e3 * float(contact.retraction[0] - contact.approach[0])
     error = 1e3 * math.hypot(contact.approach[1], contact.retraction[1])
     law = contact.law
-    said = (law.approach.factor.value + law.retraction.factor.value) * energy
+    law_hysteresis = (law.approach.factor.value + law.retraction.factor.value) * energy
     reach = 2 * REACH * law.both.standard_error * energy
     remark = (
         f"w_appr = {1e3 * contact.approach[0]:.1f} and w_retr = {1e3 * contact.retraction[0]:.1f}, "
@@ -232,7 +232,7 @@ def _hysteresis_checks(contact: NanodiamondContact) -> tuple[Check, ...]:
             2 * PAPER_FACTOR * energy,
             2 * ONE_DIGIT * energy,
             remark=remark,
-            law=(said, math.hypot(reach, REACH * error)),
+            law=(law_hysteresis, math.hypot(reach, REACH * error)),
         ),
         Check(
             "hysteresis of the simulation: the order of magnitude of the measured one",

@@ -195,9 +195,9 @@ def read_profile_density(path: Path | None) -> ProfileDensity:
     lines, (wavevector, density), _ = read_measured(path, (_WAVEVECTOR, _DENSITY))
     wrong = np.flatnonzero(np.diff(wavevector) <= 0)
     if wrong.size:
-        before, here = wavevector[wrong[0] : wrong[0] + 2]
+        before, current = wavevector[wrong[0] : wrong[0] + 2]
         raise section_error(
-            f"{path}, line {lines[wrong[0] + 1]}: q is {here:g} 1/m after {before:g} 1/m; "
+            f"{path}, line {lines[wrong[0] + 1]}: q is {current:g} 1/m after {before:g} 1/m; "
             "wavevectors must increase"
         )
     if wavevector.size < 2:

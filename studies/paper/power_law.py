@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -199,17 +200,16 @@ def joint_power_law(
             f"{_FEWEST}, so lower the smallest or take more values"
         )
     binned = [_binned(sample, smallest) for sample in samples]
-    scales, natural, steepness = _most_likely_joint(binned, smallest)
+    best = _most_likely_joint(binned, smallest)
     again = []
     for _ in range(_N_JOINT_BOOTSTRAP):
         drawn = [(values, rng.multinomial(n.sum(), n / n.sum())) for values, n in binned]
-        again.append(_most_likely_joint(drawn, smallest)[1][0])
-    exponent, shoulder, quarter = (float(value) for value in natural)
-    low, high = _interval(exponent, again)
-    shape = shoulder, 4 * quarter, steepness
+        again.append(_most_likely_joint(drawn, smallest).exponent)
+    low, high = _interval(best.exponent, again)
+    shape = best.shoulder, 4 * best.quarter, best.steepness
     upper = [_binned(sample, 2 * smallest) for sample in samples]
-    later = float(_most_likely_joint(upper, 2 * smallest)[1][0])
-    return JointPowerLaw(exponent, low, high, *shape, scales, smallest, n_value, later)
+    later = _most_likely_joint(upper, 2 * smallest).exponent
+    return JointPowerLaw(best.exponent, low, high, *shape, best.scales, smallest, n_value, later)
 
 
 def _binned(sample: Array, smallest: float) -> tuple[Array, Integers]:
@@ -219,8 +219,23 @@ def _binned(sample: Array, smallest: float) -> tuple[Array, Integers]:
     return smallest * 10 ** ((filled + 0.5) / _BINS_A_DECADE), counts
 
 
-def _most_likely_joint(samples: Samples, smallest: float) -> tuple[Array, Array, float]:
-    """Scales, (tau, C, B/4) and delta for binned samples."""
+class _JointParameters(NamedTuple):
+    """Most likely parameters of the joint distribution."""
+
+    scales: Array
+    """Cutoff scale of each sample."""
+    exponent: float
+    """tau."""
+    shoulder: float
+    """C."""
+    quarter: float
+    """B / 4."""
+    steepness: float
+    """delta."""
+
+
+def _most_likely_joint(samples: Samples, smallest: float) -> _JointParameters:
+    """Most likely parameters for binned samples."""
     scales = np.array([cutoff_scale(*sample) for sample in samples])
     used = [(values[values >= smallest], counts[values >= smallest]) for values, counts in samples]
 
@@ -229,7 +244,8 @@ def _most_likely_joint(samples: Samples, smallest: float) -> tuple[Array, Array,
 
     options = {"bounds": _STEEPNESS, "method": "bounded", "options": {"xatol": 1e-2}}
     steepness = float(minimize_scalar(lambda value: at(value)[0], **options).x)
-    return scales, at(steepness)[1], steepness
+    exponent, shoulder, quarter = (float(value) for value in at(steepness)[1])
+    return _JointParameters(scales, exponent, shoulder, quarter, steepness)
 
 
 def _natural_parameters(

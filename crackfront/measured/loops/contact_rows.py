@@ -240,8 +240,8 @@ def _is_contact(force: Array, displacement: Array, rows: Rows, count: int) -> bo
     stiffness /= np.nanmax(displacement) - np.nanmin(displacement)
     half = max(count // 2, FEWEST_FREE_ROWS)
     first = _slope(displacement[rows[:half]], force[rows[:half]], _CERTAINTY)
-    both = _slope(displacement[rows[: 2 * half]], force[rows[: 2 * half]], _CERTAINTY_OF_ALL)
-    return bool(abs(first) > _STEEP * stiffness and first * both > 0)
+    whole_slope = _slope(displacement[rows[: 2 * half]], force[rows[: 2 * half]], _CERTAINTY_OF_ALL)
+    return bool(abs(first) > _STEEP * stiffness and first * whole_slope > 0)
 
 
 def _slope(displacement: Array, force: Array, certainty: float) -> float:

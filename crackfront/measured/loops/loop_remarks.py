@@ -126,10 +126,10 @@ def _modulus_and_trends(
             )
             return
     if loop.by_approach:
-        both = best_modulus(loop.recording, loop.rig, averaged)
+        best = best_modulus(loop.recording, loop.rig, averaged)
         yield (
             "The modulus by fit is the one of the approach; with the retraction it would be "
-            f"{prefixed('Pa', both)}, as w_retr is not constant."
+            f"{prefixed('Pa', best)}, as w_retr is not constant."
         )
     if len(sentences) == 2 and not loop.has_force_and_radius:
         yield (

@@ -102,8 +102,8 @@ def _draw_stated(axes: Axes, surface: StatedSurface) -> None:
     wavevector = _set_wavevectors(axes, surface)
     shown = wavevector[wavevector <= 2 * np.pi / spectrum.short_cutoff]
     axes.plot(shown, spectrum.density(shown), color=BLACK, label="spectrum", zorder=4)
-    given = 2 * np.pi / np.array(spectrum.wavelengths), np.array(spectrum.densities)
-    _draw_points(axes, *given, BLUE, "o", "as given")
+    points = 2 * np.pi / np.array(spectrum.wavelengths), np.array(spectrum.densities)
+    _draw_points(axes, *points, BLUE, "o", "as given")
     axes.set_ylim(bottom=0.02 * min(spectrum.densities))
     _add_scales(axes, surface)
     axes.legend(loc="lower left")

@@ -80,30 +80,32 @@ def measure_next(surface: Surface) -> Remark:
 
 def _larger_scans(joint: JointSpectrum) -> Iterator[_Advice]:
     """Advice on waves that are longer than the measured ones, if they matter."""
-    factor, (known, _) = joint.draws.factor, joint.draws.factors_with
+    factor, (remaining, _) = joint.draws.factor, joint.draws.factors_with
     longer = joint.shares.continued_long.value
     is_modelled = _is_modelled(joint) and longer >= joint.shares.continued / 2
-    if factor <= _NARROWER * known and not is_modelled:
+    if factor <= _NARROWER * remaining and not is_modelled:
         return
     # Nine tenths of e_el in the longer waves are in the scan.
     beyond = joint.spectrum.longer_than(joint.longest)
     side = _WAVES_OF_SIDE * beyond.dominant_wavelengths(0.5)[1]
     pixel = joint.longest / _OVERLAP / _PIXELS_OF_WAVE
-    effect = _effect(factor, known, [_measured_text(longer)] if is_modelled else [])
+    effect = _effect(factor, remaining, [_measured_text(longer)] if is_modelled else [])
     scans = _scans(side, pixel, "a side of {side} and pixels of at most {pixel}")
-    yield _Advice(factor / known, f"{scans} {effect}")
+    yield _Advice(factor / remaining, f"{scans} {effect}")
 
 
 def _finer_scans(surface: MeasuredSurface) -> Iterator[_Advice]:
     """Advice on waves that are shorter than the measured ones, if they matter."""
     joint = surface.joint
-    factor, (_, known) = joint.draws.factor, joint.draws.factors_with
+    factor, (_, remaining) = joint.draws.factor, joint.draws.factors_with
     missing = joint.shares.missing_short
     shorter = joint.shares.continued - joint.shares.continued_long.value
     is_modelled = _is_modelled(joint) and shorter > joint.shares.continued / 2
     is_missing = missing.value > NOTABLE_SHARE
     finest = _FINEST_PIXEL * _PIXELS_OF_WAVE
-    if finest >= joint.shortest or not (factor > _NARROWER * known or is_missing or is_modelled):
+    if finest >= joint.shortest or not (
+        factor > _NARROWER * remaining or is_missing or is_modelled
+    ):
         return
     shortest = max(_shortest_needed(joint), finest)
     tip = _tip_radius(joint, shortest) if _has_tip(surface) else math.inf
@@ -111,14 +113,14 @@ def _finer_scans(surface: MeasuredSurface) -> Iterator[_Advice]:
     further = [_measured_text(shorter)] if is_modelled else []
     if is_missing:
         further.append(f"may add {part_of_energy(missing)}")
-    effect = _effect(factor, known, further, at_best=is_limited)
+    effect = _effect(factor, remaining, further, at_best=is_limited)
     scans = _scans(
         _WAVES_OF_SIDE * _OVERLAP * joint.shortest,
         shortest / _PIXELS_OF_WAVE,
         "pixels of at most {pixel}{tip} and a side of at least {side}",
         _tip_text(tip),
     )
-    yield _Advice(max(factor / known, 1 + missing.value), f"{scans} {effect}")
+    yield _Advice(max(factor / remaining, 1 + missing.value), f"{scans} {effect}")
 
 
 def _is_modelled(joint: JointSpectrum) -> bool:
@@ -131,10 +133,10 @@ def _measured_text(part: float) -> str:
     return f"would measure {part:.0%} of e_el that now comes from a model"
 
 
-def _effect(factor: float, known: float, further: list[str], *, at_best: bool = False) -> str:
+def _effect(factor: float, remaining: float, further: list[str], *, at_best: bool = False) -> str:
     """Effects of a scan: the uncertainty factor of e_el would be `known`, and further ones."""
-    narrower, word = f"would narrow it to {'at best ' if at_best else ''}{known:.2g}", "and"
-    if factor <= _NARROWER * known:
+    narrower, word = f"would narrow it to {'at best ' if at_best else ''}{remaining:.2g}", "and"
+    if factor <= _NARROWER * remaining:
         narrower, word = "would hardly narrow it", "but"
     return f"{narrower}, {word} {' and '.join(further)}" if further else narrower
 

@@ -81,7 +81,7 @@ def _plane_of_least_slope(level: Array, fitted: PointMask) -> Array:
     slopes = []
     for axis in range(level.ndim):
         rows, is_used = np.moveaxis(level, axis, 0), np.moveaxis(fitted, axis, 0)
-        both = is_used[1:] & is_used[:-1]
-        slopes.append(np.mean(np.diff(rows, axis=0)[both]) if both.any() else math.nan)
+        is_pair = is_used[1:] & is_used[:-1]
+        slopes.append(np.mean(np.diff(rows, axis=0)[is_pair]) if is_pair.any() else math.nan)
     places = np.ogrid[tuple(map(slice, level.shape))]
     return np.asarray(sum(slope * place for slope, place in zip(slopes, places, strict=True)))

@@ -106,17 +106,17 @@ def _spikes(heights: Heights) -> PointMask:
     data, is_present = np.ma.getdata(heights), ~np.ma.getmaskarray(heights)
     is_spike = np.zeros(data.shape, dtype=bool)
     steps = np.abs(np.diff(data, axis=0))
-    both = is_present[1:] & is_present[:-1]
-    usual = _usual_step(steps, both)
-    large = (steps > _SPIKE * usual) & both
+    is_pair = is_present[1:] & is_present[:-1]
+    usual = _usual_step(steps, is_pair)
+    large = (steps > _SPIKE * usual) & is_pair
     if not large.any():
         return is_spike
     # Candidates have a large step, and no small one, to a neighbour along the first axis.
     candidate = np.zeros(data.shape, dtype=bool)
     candidate[1:] |= large
     candidate[:-1] |= large
-    candidate[1:] &= large | ~both
-    candidate[:-1] &= large | ~both
+    candidate[1:] &= large | ~is_pair
+    candidate[:-1] &= large | ~is_pair
     places = np.nonzero(candidate & is_present)
     if not places[0].size:
         return is_spike
@@ -128,12 +128,12 @@ def _spikes(heights: Heights) -> PointMask:
     return is_spike
 
 
-def _usual_step(steps: NDArray[Any], both: PointMask) -> float:
+def _usual_step(steps: NDArray[Any], is_pair: PointMask) -> float:
     """Rms difference of neighbours that are `both` present, or the least if most are equal."""
     every = max(1, steps.size // _MOST_SAMPLES)
-    sample = steps[::every][both[::every]]
+    sample = steps[::every][is_pair[::every]]
     usual = _RMS_OF_QUANTILE * float(np.quantile(sample, 0.9)) if sample.size else 0.0
-    return usual or float(np.min(steps[both & (steps > 0)], initial=np.inf))
+    return usual or float(np.min(steps[is_pair & (steps > 0)], initial=np.inf))
 
 
 def _neighbours(data: NDArray[Any], places: tuple[NDArray[np.int64], ...]) -> NDArray[Any]:
