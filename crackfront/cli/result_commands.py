@@ -112,7 +112,7 @@ def figures(configuration: Path, output: Path | None) -> None:
 _CAPTIONS = {
     "factor": "The factor k against disorder (a) and against the size of the roughness (b).",
     "hysteresis": "Hysteresis against disorder, and the spectra.",
-    "loop": "One simulation of the sweep: the loop of force against radius, or of a straight front "
+    "loop": "One simulation of the sweep: the loop of radius against force, or of a straight front "
     "the pinning force against its load.",
 }
 
