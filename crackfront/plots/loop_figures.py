@@ -133,7 +133,7 @@ def steady_loop_figure(
         left_handles, left_labels = left_axes.get_legend_handles_labels()
         right_axes.get_legend().remove()
         handles, labels = handles + left_handles, labels + left_labels
-        figure.legend(handles, labels, loc="outside upper center", ncols=4, title=title)
+        figure.legend(handles, labels, loc="outside upper center", ncols=3, title=title)
         for axes, letter in ((left_axes, "a"), (right_axes, "b")):
             axes.set_title(letter, loc="left", fontweight="bold")
         left_axes.set_title("loop of its works of adhesion", fontsize=7)
@@ -161,13 +161,8 @@ def _draw_whole(
     look = {"color": "0.35", "linewidth": 0.7, "dashes": (1, 1.5), "zorder": 1}
     axes.plot(ends, [largest, largest], label="edge pinned at the turn", **look)
     axes.axhspan(*window, color="0.93", linewidth=0, zorder=0)
-    axes.annotate(
-        "jumps into and out of contact",
-        (float(jkr.equilibrium_force(starts[0], works[0])) / 2, starts[0] / 2),
-        xytext=(8, -3),
-        textcoords="offset points",
-        color="0.35",
-    )
+    look = {"xycoords": "axes fraction", "color": "0.35", "va": "bottom"}
+    axes.annotate("dashed: jumps into\nand out of contact", (0.03, 0.04), **look)
     low, high = jkr.pull_off_force(works[1]), float(max(ends[0], np.max(states.force)))
     axes.set_xlim(low - 0.08 * (high - low), max(high, 0.0) + 0.1 * (high - low))
     axes.set_ylim(0.0, 1.06 * largest)
