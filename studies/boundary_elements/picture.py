@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from operator import attrgetter
 from typing import Any
@@ -270,9 +270,7 @@ def hysteresis_figure(rows: Sequence[Hysteresis], short_cutoff: float) -> Figure
         return figure
 
 
-def _draw_models(
-    axes: Axes, far: Sequence[Setting], spectrum: str, look: Mapping[str, Any]
-) -> None:
+def _draw_models(axes: Axes, far: Sequence[Setting], spectrum: str, look: dict[str, Any]) -> None:
     """Hysteresis of both models on surfaces of one spectrum."""
     for model, name, style in (
         ("front", "front", {"markerfacecolor": "white", "linestyle": "--"}),
@@ -288,27 +286,30 @@ def _draw_ratios(
     far: Sequence[Setting],
     sideways: float,
     spectrum: str,
-    look: Mapping[str, Any],
+    look: dict[str, Any],
 ) -> None:
     """Ratios on surfaces of one spectrum: at every computed range, then at none.
 
     `sideways` is the place of the spectrum next to the others.
     """
     ranges = _ranges(near)
-    for place, reach in enumerate((*ranges, 0.0)):
-        style: dict[str, Any] = {"markerfacecolor": "white", "markersize": 2.4}
-        alike = [setting for setting in near if setting.rows[0].interaction_range == reach]
-        if reach == 0.0:
-            style, alike = {"label": spectrum}, list(far)
-        aside = _ASIDE * (sideways * (len(ranges) + 1) + place - len(ranges) / 2)
+    small = {"markerfacecolor": "white", "markersize": 2.4}
+    groups = [
+        ([setting for setting in near if setting.rows[0].interaction_range == reach], small)
+        for reach in ranges
+    ]
+    groups.append((list(far), {"label": spectrum}))
+    for place, (alike, style) in enumerate(groups):
+        aside = _ASIDE * (sideways * len(groups) + place - len(ranges) / 2)
         energies = [float(setting.mean(attrgetter("elastic_energy")).value) for setting in alike]
         logarithms = [setting.excess(0.0) for setting in alike]
         middle = np.array([float(logarithm.value) for logarithm in logarithms])
         error = np.array([float(logarithm.standard_error) for logarithm in logarithms])
+        ratio = np.exp(middle)
         axes.errorbar(
             np.array(energies) + aside,
-            np.exp(middle),
-            yerr=(np.exp(middle) - np.exp(middle - error), np.exp(middle + error) - np.exp(middle)),
+            ratio,
+            yerr=(ratio - np.exp(middle - error), np.exp(middle + error) - ratio),
             **look | style | {"linestyle": "none"},
         )
 
@@ -319,8 +320,8 @@ def _draw_ratio_law(axes: Axes) -> None:
     energy = np.linspace(0.0, axes.get_xlim()[1], 100)
     label = rf"law $\exp({coefficient:.2f}\,e_\mathrm{{el}}/w_\mathrm{{int}})$"
     axes.plot(energy, np.exp(coefficient * energy), color=BLACK, zorder=1, label=label)
-    ends = (np.exp((coefficient + sign * error) * energy) for sign in (-1, 1))
-    axes.fill_between(energy, *ends, color="0.88", linewidth=0, zorder=0)
+    low, high = (np.exp((coefficient + sign * error) * energy) for sign in (-1, 1))
+    axes.fill_between(energy, low, high, color="0.88", linewidth=0, zorder=0)
     axes.axhline(1.0, color="0.5", linewidth=0.5, zorder=0)
     axes.set_xlim(0.0, energy[-1])
 

@@ -253,7 +253,7 @@ def pinned_loop_figure(loop: PinnedLoop) -> Drawing:
         )
         works, window = (loop.approach, loop.retraction), (loop.lowest_radius, loop.highest_radius)
         draw_loop(panels["c"], loop, works, window, elastic_energy=loop.elastic_energy)
-        panels["c"].get_legend().remove()
+        panels["c"].get_legend().remove()  # type: ignore[union-attr]
         _draw_fronts(panels["d"], loop)
         handles, labels = panels["c"].get_legend_handles_labels()
         # The fronts of the branches have the colours of c.

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure, FigureBase
+from matplotlib.figure import Figure, SubFigure
 
 from crackfront.core.arrays import Array
 from crackfront.measured.density.densities import Density
@@ -100,7 +100,7 @@ def prediction_figure(surface: Surface, prediction: Prediction, panel: str | Non
         return figure
 
 
-def _name_scans(figure: FigureBase, panels: Sequence[Axes]) -> None:
+def _name_scans(figure: Figure | SubFigure, panels: Sequence[Axes]) -> None:
     """Explain the symbols of scans above all panels, where they cover no data."""
     entries: dict[str, Artist] = {}
     for axes in panels:
@@ -125,7 +125,7 @@ def _name_curve(axes: Axes) -> None:
     )
 
 
-def _characters(figure: FigureBase) -> float:
+def _characters(figure: Figure | SubFigure) -> float:
     """Width of a figure in characters of the smallest font."""
     return float(figure.bbox.width / figure.dpi * 72 / (0.6 * SMALLEST_FONT))
 
@@ -185,7 +185,7 @@ def _add_scales(axes: Axes, surface: Surface) -> None:
     add_wavelengths(axes)
 
 
-def _draw_scans(figure: FigureBase, surface: MeasuredSurface, fewest: int = 1) -> None:
+def _draw_scans(figure: Figure | SubFigure, surface: MeasuredSurface, fewest: int = 1) -> None:
     """The scans as used, in a row of panels."""
     shown = surface.scans[:_MOST_MAPS]
     maps = figure.subplots(1, max(len(shown), fewest), squeeze=False)[0]
