@@ -644,7 +644,7 @@ def test_plots_draw_on_given_axes_and_leave_nothing_behind(surface, loop, jumps)
     assert cf.plot_loop(loop, given) is given
     branch = loop.direction.values == 1
     markers = next(line for line in given.get_lines() if line.get_label() == "approach")
-    np.testing.assert_array_equal(markers.get_xdata(), loop.mean_radius[branch])
+    np.testing.assert_array_equal(markers.get_ydata(), loop.mean_radius[branch])
     for drawn in (
         cf.plot_fronts(loop, surface, axes_of_a_figure()),
         cf.plot_surface(surface, axes_of_a_figure()),
@@ -661,13 +661,13 @@ def test_what_is_in_si_units_is_drawn_in_them(surface, loop, jumps):
     drawn = cf.plot_loop(loop_si, axes_of_a_figure())
     approach = next(line for line in drawn.get_lines() if line.get_label() == "approach")
     branch = loop_si.isel(step=loop_si.direction.values == 1)
-    np.testing.assert_allclose(approach.get_xdata(), branch.mean_radius, rtol=1e-12)
-    np.testing.assert_allclose(approach.get_ydata(), branch.force, rtol=1e-12)
-    assert drawn.xaxis.get_major_formatter()(50e-6) == "50"
-    assert drawn.yaxis.get_major_formatter()(-2e-4) == "−200"
+    np.testing.assert_allclose(approach.get_xdata(), branch.force, rtol=1e-12)
+    np.testing.assert_allclose(approach.get_ydata(), branch.mean_radius, rtol=1e-12)
+    assert drawn.xaxis.get_major_formatter()(-2e-4) == "−200"
+    assert drawn.yaxis.get_major_formatter()(50e-6) == "50"
     assert (drawn.get_xlabel(), drawn.get_ylabel()) == (
-        "mean contact radius (µm)",
         "normal force (µN)",
+        "mean contact radius (µm)",
     )
     image = cf.plot_surface(surface_si, axes_of_a_figure()).get_images()[0]
     np.testing.assert_allclose(image.get_array(), surface_si.values.T, rtol=1e-12)

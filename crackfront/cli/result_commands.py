@@ -114,7 +114,7 @@ _CAPTIONS = {
     "correlation length of w_loc (b). Straight fronts: k against size g (a), and k of the infinite "
     "contact against disorder (b).",
     "hysteresis": "Hysteresis against disorder (a), and the spectra (b).",
-    "loop": "One simulation of the sweep: the loop of force against radius, or of a straight front "
+    "loop": "One simulation of the sweep: the loop of radius against force, or of a straight front "
     "the pinning force against its load.",
 }
 

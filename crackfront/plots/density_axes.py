@@ -25,6 +25,10 @@ _REDUCED_LABEL = r"$C^\mathrm{iso}$ / $(3\pi w_\mathrm{int}R/4E')^2$"
 _NAME_WIDTH = 0.4
 """Width of the name of a bar. (Units: width of the axes)"""
 
+_BARS_NEXT_TO_NAMES = 0.92, 0.11
+_BARS_BELOW_NAMES = 0.85, 0.15
+"""Height of the highest bar and distance of the bars. (Units: height of the axes)"""
+
 
 def draw_spectrum(
     axes: Axes,
@@ -56,12 +60,12 @@ def draw_spectrum(
             for order, value in zip(("0", "1/2", "1"), rms, strict=True)
         ]
         labels = rf"wavevector $q$ $\times$ ${LATERAL.tex}$", _REDUCED_LABEL
-    _add_bars(axes, names, *(2 * np.pi / (lateral * ends) for ends in (longest, shortest)))
     axes.set(xlabel=labels[0], ylabel=labels[1])
     if ideal is not None:
         curve = wave[ideal > 0], power * ideal[ideal > 0]
         axes.plot(*curve, color=BLACK, dashes=(4, 2), label="spectrum", zorder=3)
     axes.set_ylim(bottom=0.1 * power * float(density.min()))
+    _add_bars(axes, names, *(2 * np.pi / (lateral * ends) for ends in (longest, shortest)))
     axes.legend(loc="lower left")
 
 
@@ -92,19 +96,30 @@ def _two_digits(value: float) -> str:
 
 
 def _add_bars(axes: Axes, names: Sequence[str], lowest: Array, highest: Array) -> None:
-    """Bars between wavevectors, above the curves, with their names next to or above them."""
+    """Bars between wavevectors in a strip above the curves, with their names next to or above them.
+
+    Call this after the lower limit of the densities is set.
+    """
     lower_limit, upper_limit = np.log(axes.get_xlim())
-    top = max(float(np.max(line.get_ydata())) for line in axes.get_lines())
     name_width = _NAME_WIDTH * (upper_limit - lower_limit)
     bars = np.clip(np.log([lowest, highest]), lower_limit, upper_limit).T
     room = np.max([bars[:, 0] - lower_limit, upper_limit - bars[:, 1]], axis=0)
     names_next_to_bars = bool(np.all(room > name_width))
-    # Heights are in decades; densities of more than ten make each decade shorter.
-    stretch = max(1.0, 0.1 * math.log10(top / axes.get_ylim()[0]))
+    first, spacing = _BARS_BELOW_NAMES
+    if names_next_to_bars:
+        first, spacing = _BARS_NEXT_TO_NAMES
+    strip = axes.get_xaxis_transform()
     for level, (name, (low, high)) in enumerate(zip(names, bars, strict=True)):
-        height = top * 10.0 ** (stretch * (5.4 - 1.9 * level))
+        height = first - spacing * level
         ends = lowest[level], highest[level]
-        axes.plot(ends, [height, height], color=BLACK, linewidth=2.5, solid_capstyle="butt")
+        axes.plot(
+            ends,
+            [height, height],
+            color=BLACK,
+            linewidth=2.5,
+            solid_capstyle="butt",
+            transform=strip,
+        )
         look: dict[str, Any]
         if not names_next_to_bars:
             half_width = name_width / 2
@@ -115,9 +130,15 @@ def _add_bars(axes: Axes, names: Sequence[str], lowest: Array, highest: Array) -
             place, shift, look = ends[1], (4, 0), {"ha": "left", "va": "center"}
         else:
             place, shift, look = ends[0], (-4, 0), {"ha": "right", "va": "center"}
-        look["bbox"] = {"facecolor": "white", "linewidth": 0, "pad": 1}
-        axes.annotate(name, (place, height), xytext=shift, textcoords="offset points", **look)
-    axes.set_ylim(top=top * 10.0 ** (stretch * (6.6 if names_next_to_bars else 7.4)))
+        look["bbox"] = {"facecolor": "white", "linewidth": 0, "pad": 0.5}
+        axes.annotate(
+            name, (place, height), xytext=shift, xycoords=strip, textcoords="offset points", **look
+        )
+    bottom = axes.get_ylim()[0]
+    curves = [line for line in axes.get_lines() if line.get_transform() == axes.transData]
+    top = max(float(np.max(line.get_ydata())) for line in curves)
+    share = first - spacing * len(names)
+    axes.set_ylim(top=bottom * (top / bottom) ** (1 / share))
 
 
 def set_density_scales(axes: Axes, wavevector: Array) -> None:

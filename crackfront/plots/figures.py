@@ -161,7 +161,7 @@ def plot_spectrum(surface: DataArray, axes: Axes | None = None) -> Axes:
 
 @checked_call
 def plot_loop(loop: Dataset, axes: Axes | None = None) -> Axes:
-    """Force against mean radius, with the JKR curves of both branches and of the paper.
+    """Mean radius against force, with the JKR curves of both branches and of the paper.
 
     For a straight front: the force of its springs against their position.
 

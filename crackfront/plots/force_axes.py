@@ -1,4 +1,4 @@
-"""Force against contact radius of a sphere by JKR, with the intervals of its works of adhesion."""
+"""Contact radius against force of a sphere by JKR, with the intervals of its works of adhesion."""
 
 from __future__ import annotations
 
@@ -42,14 +42,14 @@ def draw_forces(
         if math.isnan(adhesion.value):
             continue
         label = rf"{name}, $w = {1e3 * adhesion.value:.3g}$ mJ m$^{{-2}}$"
-        axes.plot(micrometres, force(adhesion.value), color=colour, label=label, zorder=3)
+        axes.plot(force(adhesion.value), micrometres, color=colour, label=label, zorder=3)
         ends = force(adhesion.low), force(adhesion.high)
-        axes.fill_between(micrometres, *ends, color=colour, alpha=0.2, linewidth=0)
+        axes.fill_betweenx(micrometres, *ends, color=colour, alpha=0.2, linewidth=0)
     smooth = rf"smooth, $w_\mathrm{{int}} = {1e3 * w_int:.3g}$ mJ m$^{{-2}}$"
-    axes.plot(micrometres, force(w_int), color="0.35", dashes=(4, 2), label=smooth)
-    axes.axhline(0.0, color="0.6", linewidth=0.5, zorder=1)
-    axes.set_xlim(0, micrometres[-1])
-    axes.set_xlabel("contact radius (µm)")
-    axes.set_ylabel(f"normal force ({unit})")
+    axes.plot(force(w_int), micrometres, color="0.35", dashes=(4, 2), label=smooth)
+    axes.axvline(0.0, color="0.6", linewidth=0.5, zorder=1)
+    axes.set_ylim(0, micrometres[-1])
+    axes.set_xlabel(f"normal force ({unit})")
+    axes.set_ylabel("contact radius (µm)")
     title = "nothing is predicted" if math.isnan(w_retr.value) else "95% intervals shaded"
-    axes.legend(loc="upper left", title=title, title_fontsize=6)
+    axes.legend(loc="lower right", title=title)

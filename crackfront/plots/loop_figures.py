@@ -1,4 +1,4 @@
-"""Figures of one cycle: force against mean radius with JKR curves, or of a straight front."""
+"""Figures of one cycle: mean radius against force with JKR curves, or of a straight front."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ _MARGIN = 0.02
 """Least distance of an arrow from the edges. (Units: axes)"""
 
 _LEGEND = 0.55
-"""Width and height of the space for a legend at the upper left. (Units: axes)"""
+"""Width and height of the space for a legend at the lower right. (Units: axes)"""
 
 _ARROW_OFFSETS = (-0.09, -0.07, -0.05, 0.05, 0.07, 0.09)
 """Distances between a branch and its arrow that are tried. (Units: axes)"""
@@ -133,7 +133,7 @@ def steady_loop_figure(
         left_handles, left_labels = left_axes.get_legend_handles_labels()
         right_axes.get_legend().remove()
         handles, labels = handles + left_handles, labels + left_labels
-        figure.legend(handles, labels, loc="outside upper center", ncols=4, title=title)
+        figure.legend(handles, labels, loc="outside upper center", ncols=3, title=title)
         for axes, letter in ((left_axes, "a"), (right_axes, "b")):
             axes.set_title(letter, loc="left", fontweight="bold")
         left_axes.set_title("loop of its works of adhesion", fontsize=7)
@@ -152,25 +152,20 @@ def _draw_whole(
         look: dict[str, Any] = {"color": colour, "zorder": 2}
         radius = np.linspace(start, largest, 300)
         force = jkr.equilibrium_force(radius, adhesion)
-        axes.plot(radius, force, linewidth=1.0, **look)
-        axes.plot([0.0, start], [0.0, force[0]], linewidth=0.7, dashes=(4, 2), **look)
+        axes.plot(force, radius, linewidth=1.0, **look)
+        axes.plot([0.0, force[0]], [0.0, start], linewidth=0.7, dashes=(4, 2), **look)
         _mark_states(axes, states, direction, markersize=2, markeredgewidth=0.5)
         middle = np.array([150, 151])[::direction]
-        draw_arrow(axes, radius[middle], force[middle], colour)
+        draw_arrow(axes, force[middle], radius[middle], colour)
     ends = jkr.equilibrium_force(largest, np.array(works))
     look = {"color": "0.35", "linewidth": 0.7, "dashes": (1, 1.5), "zorder": 1}
-    axes.plot([largest, largest], ends, label="edge pinned at the turn", **look)
-    axes.axvspan(*window, color="0.93", linewidth=0, zorder=0)
-    axes.annotate(
-        "jumps into and out of contact",
-        (starts[0] / 2, float(jkr.equilibrium_force(starts[0], works[0])) / 2),
-        xytext=(-8, 8),
-        textcoords="offset points",
-        color="0.35",
-    )
+    axes.plot(ends, [largest, largest], label="edge pinned at the turn", **look)
+    axes.axhspan(*window, color="0.93", linewidth=0, zorder=0)
+    look = {"xycoords": "axes fraction", "color": "0.35", "va": "bottom"}
+    axes.annotate("dashed: jumps into\nand out of contact", (0.03, 0.04), **look)
     low, high = jkr.pull_off_force(works[1]), float(max(ends[0], np.max(states.force)))
-    axes.set_xlim(0.0, 1.06 * largest)
-    axes.set_ylim(low - 0.08 * (high - low), max(high, 0.0) + 0.1 * (high - low))
+    axes.set_xlim(low - 0.08 * (high - low), max(high, 0.0) + 0.1 * (high - low))
+    axes.set_ylim(0.0, 1.06 * largest)
     _name_axes(axes)
 
 
@@ -208,7 +203,7 @@ def draw_loop(
 
     def draw_curve(adhesion: float, label: str | None, **look: Any) -> None:
         force = units.scale(FORCE) * jkr.equilibrium_force(radius, adhesion)
-        axes.plot(units.scale(LATERAL) * radius, force, label=label, **look)
+        axes.plot(force, units.scale(LATERAL) * radius, label=label, **look)
 
     for (direction, style), adhesion in zip(_BRANCHES.items(), works, strict=True):
         every = max(1, np.count_nonzero(states.direction == direction) // MOST_MARKERS)
@@ -226,20 +221,20 @@ def draw_loop(
             draw_curve(adhesion, name, color="0.35", linewidth=0.6, dashes=(4, 2), zorder=1)
     if np.isfinite(window[0]):
         ends = (units.scale(LATERAL) * end for end in window)
-        axes.axvspan(*ends, color="0.93", linewidth=0, zorder=0, label="window of the averages")
+        axes.axhspan(*ends, color="0.93", linewidth=0, zorder=0, label="window of the averages")
     _set_limits(axes, states, units)
     if arrows:
         for direction, style in _BRANCHES.items():
             _draw_direction(axes, *_points(states, direction, units), style.colour)
     _name_axes(axes, units)
-    axes.legend(loc="upper left")
+    axes.legend(loc="lower right")
 
 
 def _points(states: LoopStates, direction: int, units: AxisUnits) -> tuple[Array, Array]:
-    """Mean radii and forces of a branch in the units of the axes."""
+    """Forces and mean radii of a branch in the units of the axes."""
     branch = states.direction == direction
     radius, force = states.mean_radius[branch], states.force[branch]
-    return units.scale(LATERAL) * radius, units.scale(FORCE) * force
+    return units.scale(FORCE) * force, units.scale(LATERAL) * radius
 
 
 def _mark_states(
@@ -253,8 +248,8 @@ def _mark_states(
 
 def _name_axes(axes: Axes, units: AxisUnits = REDUCED) -> None:
     """Name the axes of a loop."""
-    units.name(axes.xaxis, "mean contact radius", LATERAL)
-    units.name(axes.yaxis, "normal force", FORCE)
+    units.name(axes.xaxis, "normal force", FORCE)
+    units.name(axes.yaxis, "mean contact radius", LATERAL)
 
 
 def draw_pinning(
@@ -290,23 +285,23 @@ def draw_pinning(
 
 
 def _set_limits(axes: Axes, states: LoopStates, units: AxisUnits) -> None:
-    """Limits around the states, with room for the legend at the upper left."""
+    """Limits around the states, with room for the legend at the lower right."""
     for values, setter, unit, below, above in (
-        (states.mean_radius, axes.set_xlim, units.scale(LATERAL), 0.12, 0.08),
-        (states.force, axes.set_ylim, units.scale(FORCE), 0.15, 0.2),
+        (states.force, axes.set_xlim, units.scale(FORCE), 0.15, 0.2),
+        (states.mean_radius, axes.set_ylim, units.scale(LATERAL), 0.12, 0.08),
     ):
         low, high = float(np.min(values)), float(np.max(values))
         span = max(high - low, 0.1)
         setter(unit * (low - below * span), unit * (high + above * span))
 
 
-def _draw_direction(axes: Axes, radius: Array, force: Array, colour: str) -> None:
+def _draw_direction(axes: Axes, force: Array, radius: Array, colour: str) -> None:
     """Draw an arrow next to a branch in its direction, as far from all curves as possible."""
     if radius.size < FEWEST_FOR_ARROW:
         return
     to_axes = axes.transData + axes.transAxes.inverted()
     curves = np.concatenate([to_axes.transform(line.get_xydata()) for line in axes.get_lines()])
-    points = to_axes.transform(np.stack([radius, force], axis=1))
+    points = to_axes.transform(np.stack([force, radius], axis=1))
     span = max(1, radius.size // 5)
     chords = points[span:] - points[:-span]
     along = chords / np.hypot(*chords.T)[:, None]
@@ -327,6 +322,6 @@ def _draw_direction(axes: Axes, radius: Array, force: Array, colour: str) -> Non
 
 def _fits_axes(arrow: Array) -> bool:
     """Whether the points of an arrow, (3, 2), are inside the axes and outside the legend."""
-    on_legend = (arrow[:, 0] < _LEGEND) & (arrow[:, 1] > 1 - _LEGEND)
+    on_legend = (arrow[:, 0] > 1 - _LEGEND) & (arrow[:, 1] < _LEGEND)
     inside = (arrow > _MARGIN) & (arrow < 1 - _MARGIN)
     return bool(np.all(inside) and not np.any(on_legend))

@@ -41,8 +41,9 @@ COLOURS = (GREEN, BLUE, PURPLE, VERMILION, ORANGE, SKY, BLACK)
 MARKERS = ("s", "o", "^", "D", "v", "P", "X")
 """Markers of the spectra."""
 
-_EXPLANATION_FONT = 6.5
-"""Size of the font of explanations. (Units: point)"""
+SMALLEST_FONT = 7.25
+"""Size of the smallest font. A page of the documentation shows a figure of the width `PAGE` at 0.97
+of its size, so that this is 7 there. (Units: point)"""
 
 _SCREEN_WIDTH = 4.0
 """Width of a figure on a screen. (Units: inch)"""
@@ -52,7 +53,7 @@ _SCREEN_RESOLUTION = 144
 
 STYLE: dict[Any, Any] = {
     "font.family": "DejaVu Sans",
-    "font.size": 7.0,
+    "font.size": SMALLEST_FONT,
     "mathtext.fontset": "dejavusans",
     "axes.labelsize": 8.0,
     "axes.linewidth": 0.6,
@@ -65,7 +66,7 @@ STYLE: dict[Any, Any] = {
     "ytick.major.width": 0.6,
     "xtick.minor.width": 0.4,
     "ytick.minor.width": 0.4,
-    "legend.fontsize": 6.0,
+    "legend.fontsize": SMALLEST_FONT,
     "legend.frameon": False,
     "legend.handlelength": 1.8,
     "legend.labelspacing": 0.35,
@@ -104,9 +105,9 @@ def blank_figure(width: float, height: float) -> Figure:
 
 def explain(figure: Figure, text: str) -> None:
     """Write lines below a figure that explain what is missing in its legend."""
-    per_inch = 72 / (0.56 * _EXPLANATION_FONT)
+    per_inch = 72 / (0.56 * SMALLEST_FONT)
     lines = textwrap.fill(text, int(per_inch * figure.get_figwidth()))
-    figure.supxlabel(lines, fontsize=_EXPLANATION_FONT, color="0.25")
+    figure.supxlabel(lines, fontsize=SMALLEST_FONT, color="0.25")
 
 
 @contextmanager

@@ -93,7 +93,7 @@ def hysteresis_figure(fit: SweepFit) -> Figure:
         left_axes, right_axes = figure.subplots(1, 2, width_ratios=(1.5, 1))
         draw_hysteresis(left_axes, fit)
         draw_spectra(right_axes, fit)
-        figure.legend(*legend_entries(left_axes), loc="outside upper center", ncols=4)
+        figure.legend(*legend_entries(left_axes), loc="outside upper center", ncols=3)
         for axes, letter in ((left_axes, "a"), (right_axes, "b")):
             axes.set_title(letter, loc="left", fontweight="bold")
         texts = [*points_explained(fit), *arrows_explained(fit)]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -20,15 +21,25 @@ from studies.accuracy.study import SceneErrors, pareto_front, rms
 _SHOWN = ("chemical-0.0025", "chemical-0.04", "flat-0.16", "h03-0.04")
 """Scenes of the figure of time against error."""
 
+_OTHERS = "samples, pixels or tolerance varied"
 _NAMES = {
-    "sites": "sites of the front",
-    "cubic": "samples, cubic pieces",
-    "linear": "samples, linear pieces",
-    "pixels": "pixels of the tile",
-    "tolerance": "tolerance of the force",
+    "sites": "sites of the front varied",
+    "cubic": _OTHERS,
+    "linear": _OTHERS,
+    "pixels": _OTHERS,
+    "tolerance": _OTHERS,
     "requested": "chosen for an error",
     "finer": "finer than the reference",
 }
+"""Name in the legend of every setting that is varied."""
+
+_LOOKS: dict[str, dict[str, Any]] = {
+    _OTHERS: {"color": "0.45", "marker": "o", "markerfacecolor": "white", "linestyle": "none"},
+    _NAMES["sites"]: {"color": style.VERMILION, "marker": "s", "linestyle": "none"},
+    _NAMES["requested"]: {"color": style.BLUE, "marker": "D", "linewidth": 1.2},
+    _NAMES["finer"]: {"color": style.BLACK, "marker": "X", "markersize": 5, "linestyle": "none"},
+}
+"""Looks of the points, from the lowest layer to the highest."""
 
 _AXES: dict[SettingName, str] = {
     "sites": "sites per short cutoff",
@@ -65,10 +76,7 @@ def work_precision_figure(studies: Sequence[SceneErrors]) -> Figure:
         for axes in panels[::2]:
             axes.set_ylabel("rms error of the hysteresis (%)")
         entries = panels[0].get_legend_handles_labels()
-        figure.legend(*entries, loc="outside right upper", title="varied")
-        style.explain(
-            figure, "grey: the Pareto front, from setting to setting that none beats in both"
-        )
+        figure.legend(*entries, loc="outside upper center", ncols=3)
         return figure
 
 
@@ -76,19 +84,12 @@ def _draw_work_precision(axes: Axes, study: SceneErrors) -> None:
     """Draw the settings of one scene."""
     seconds, relative = study.work_and_precision()
     error, best = 100 * relative, pareto_front(seconds, relative)
-    varied = np.array([errors.setting for errors in study.errors])
-    axes.plot(seconds[best], error[best], color="0.8", linewidth=4, zorder=1, label="Pareto front")
-    for setting, colour, marker in zip(_NAMES, style.COLOURS, style.MARKERS, strict=False):
-        chosen = varied == setting
-        axes.plot(
-            seconds[chosen],
-            error[chosen],
-            marker=marker,
-            linewidth=0.8,
-            color=colour,
-            label=_NAMES[setting],
-            zorder=3 if setting == "requested" else 2,
-        )
+    label = "fastest for its error (Pareto front)"
+    axes.plot(seconds[best], error[best], color="0.85", linewidth=5, zorder=1, label=label)
+    names = np.array([_NAMES[errors.setting] for errors in study.errors])
+    for layer, (name, look) in enumerate(_LOOKS.items(), start=2):
+        chosen = names == name
+        axes.plot(seconds[chosen], error[chosen], label=name, zorder=layer, **look)
     axes.set(xscale="log", yscale="log")
     label_decimals(axes.xaxis)
     label_decimals(axes.yaxis, LogLocator())

@@ -12,12 +12,20 @@ from matplotlib.axes import Axes
 from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.ticker import FixedLocator
 
 from crackfront.analysis.estimate import Estimate
+from crackfront.analysis.validity import excess_coefficient, shipped_validity
 from crackfront.core.arrays import Array
 from crackfront.core.variables import AREA, FORCE, LATERAL, VERTICAL, variable
 from crackfront.plots.fronts import closed_front, label_plane
-from crackfront.plots.parts import FORCE_LABEL, HEIGHT_LABEL, PENETRATION_LABEL, label_panel
+from crackfront.plots.parts import (
+    FORCE_LABEL,
+    HEIGHT_LABEL,
+    PENETRATION_LABEL,
+    label_decimals,
+    label_panel,
+)
 from crackfront.plots.style import (
     BLACK,
     BLUE,
@@ -53,18 +61,14 @@ _DASHES = (3, 1.5)
 _DOTS = (0.8, 1.6)
 _BRANCHES = ((1, "approach", BLUE), (-1, "retraction", VERMILION))
 
-_BANDS = ((0.25, "0.93"), (0.10, "0.85"))
-"""Logarithms of the ratio up to which the grey bands reach, and their greys."""
+_ASIDE = 0.0025
+"""How far ratios at one e_el are set off sideways from each other. (Units: w_int)"""
 
-_ASIDE = 0.003
-"""How far ratios of a spectrum, and those at no range, are set off sideways (Units: w_int)."""
+_LEGEND_ROOM = 1.3
+"""Factor by which the axis of the ratios is extended for its legend."""
 
-_EXPLAINED = (
-    "a: boundary elements at a vanishing range of the attraction (filled), front (open); b: ratios "
-    "at that range (large) and at those that were computed (small), set off sideways by "
-    f"{_ASIDE:g} from each other; grey: within ±{_BANDS[1][0]:.2f} and ±{_BANDS[0][0]:.2f}; bars: "
-    "one standard error over surfaces, none where there is one surface"
-)
+_RATIOS = (0.5, 0.7, 1.0, 1.4, 2.0, 2.8, 4.0)
+"""Labelled ratios of the front to boundary elements."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -227,44 +231,111 @@ def _draw_contact(axes: Axes, picture: ValidationPicture) -> None:
 
 
 def hysteresis_figure(rows: Sequence[Hysteresis], short_cutoff: float) -> Figure:
-    """Extrapolated hysteresis of both models against e_el, and the ratio of the two.
+    """Extrapolated hysteresis of both models against e_el, and the ratio of the two with its law.
 
-    Ratios at the ranges that were computed are small and open.
+    Ratios at the ranges that were computed are small and open, those of one surface left out.
     """
     computed, limits = (
         rough_settings(averaged) for averaged in (settings(rows), limit_settings(rows))
     )
+    computed = [setting for setting in computed if setting.surfaces > 1]
+    shapes = sorted({setting.rows[0].scene[:2] for setting in limits})
     with house_style():
         figure = blank_figure(PAGE, 0.48 * PAGE)
-        both = figure.subplots(1, 2)
-        for part, grey in _BANDS:
-            both[1].axhspan(-part, part, color=grey, linewidth=0, zorder=0)
-        for number, shape in enumerate(sorted({setting.rows[0].scene[:2] for setting in limits})):
+        values, ratios = figure.subplots(1, 2)
+        for number, shape in enumerate(shapes):
             near, far = (
                 [setting for setting in many if setting.rows[0].scene[:2] == shape]
                 for many in (computed, limits)
             )
             look = {"color": COLOURS[number], "marker": MARKERS[number], "linewidth": 0.8}
-            filled: dict[str, Any] = look | {"label": _spectrum(far[0].rows[0], short_cutoff)}
-            hollow: dict[str, Any] = look | {"markerfacecolor": "white"}
-            theirs, ours = (
-                [setting.mean(attrgetter(f"{model}_difference")) for setting in far]
-                for model in ("boundary", "front")
-            )
-            _draw_estimates(both[0], far, theirs, **filled)
-            _draw_estimates(both[0], far, ours, **hollow, linestyle="--")
-            small = hollow | {"markersize": 2.4}
-            for place, (many, style) in enumerate(((near, small), (far, filled))):
-                ratios = [setting.excess(0.0) for setting in many]
-                aside = (2 * number + place) * _ASIDE
-                _draw_estimates(both[1], many, ratios, aside, **style, linestyle="none")
-        names = "hysteresis / $w_\\mathrm{int}$", "$\\ln$ (hysteresis, front / boundary elements)"
-        for axes, panel, name in zip(both, "ab", names, strict=True):
-            axes.set(xlim=(0.0, None), xlabel=r"$e_\mathrm{el}/w_\mathrm{int}$", ylabel=name)
+            spectrum = _spectrum(far[0].rows[0], short_cutoff)
+            _draw_models(values, far, spectrum, look)
+            sideways = number - (len(shapes) - 1) / 2
+            _draw_ratios(ratios, near, far, sideways, spectrum, look)
+        _draw_ratio_law(ratios)
+        energy = r"energy of full conformity $e_\mathrm{el}/w_\mathrm{int}$"
+        for axes, panel in ((values, "a"), (ratios, "b")):
+            axes.set(xlim=(0.0, None), xlabel=energy)
             axes.legend(loc="upper left")
             label_panel(axes, panel)
-        explain(figure, _EXPLAINED)
+        values.set_ylabel(r"hysteresis / $w_\mathrm{int}$")
+        values.set_ylim(0.0, None)
+        ratios.set_ylabel("hysteresis, front / boundary elements")
+        ratios.set_yscale("log")
+        label_decimals(ratios.yaxis, FixedLocator(_RATIOS))
+        ratios.minorticks_off()
+        ratios.set_ylim(top=_LEGEND_ROOM * ratios.get_ylim()[1])
+        explain(figure, _ranges_explained(computed))
         return figure
+
+
+def _draw_models(axes: Axes, far: Sequence[Setting], spectrum: str, look: dict[str, Any]) -> None:
+    """Hysteresis of both models on surfaces of one spectrum."""
+    for model, name, style in (
+        ("front", "front", {"markerfacecolor": "white", "linestyle": "--"}),
+        ("boundary", "boundary elements", {}),
+    ):
+        hysteresis = [setting.mean(attrgetter(f"{model}_difference")) for setting in far]
+        _draw_estimates(axes, far, hysteresis, label=f"{name}, {spectrum}", **look, **style)
+
+
+def _draw_ratios(
+    axes: Axes,
+    near: Sequence[Setting],
+    far: Sequence[Setting],
+    sideways: float,
+    spectrum: str,
+    look: dict[str, Any],
+) -> None:
+    """Ratios on surfaces of one spectrum: at every computed range, then at none.
+
+    `sideways` is the place of the spectrum next to the others.
+    """
+    ranges = _ranges(near)
+    small = {"markerfacecolor": "white", "markersize": 2.4}
+    groups = [
+        ([setting for setting in near if setting.rows[0].interaction_range == reach], small)
+        for reach in ranges
+    ]
+    groups.append((list(far), {"label": spectrum}))
+    for place, (alike, style) in enumerate(groups):
+        aside = _ASIDE * (sideways * len(groups) + place - len(ranges) / 2)
+        energies = [float(setting.mean(attrgetter("elastic_energy")).value) for setting in alike]
+        logarithms = [setting.excess(0.0) for setting in alike]
+        middle = np.array([float(logarithm.value) for logarithm in logarithms])
+        error = np.array([float(logarithm.standard_error) for logarithm in logarithms])
+        ratio = np.exp(middle)
+        axes.errorbar(
+            np.array(energies) + aside,
+            ratio,
+            yerr=(ratio - np.exp(middle - error), np.exp(middle + error) - ratio),
+            **look | style | {"linestyle": "none"},
+        )
+
+
+def _draw_ratio_law(axes: Axes) -> None:
+    """The law by which predictions are divided, with its standard error, and equal models."""
+    coefficient, error = excess_coefficient(shipped_validity())
+    energy = np.linspace(0.0, axes.get_xlim()[1], 100)
+    label = rf"law $\exp({coefficient:.2f}\,e_\mathrm{{el}}/w_\mathrm{{int}})$"
+    axes.plot(energy, np.exp(coefficient * energy), color=BLACK, zorder=1, label=label)
+    low, high = (np.exp((coefficient + sign * error) * energy) for sign in (-1, 1))
+    axes.fill_between(energy, low, high, color="0.88", linewidth=0, zorder=0)
+    axes.axhline(1.0, color="0.5", linewidth=0.5, zorder=0)
+    axes.set_xlim(0.0, energy[-1])
+
+
+def _ranges(computed: Sequence[Setting]) -> list[float]:
+    """Ranges of the attraction, from the longest to the shortest."""
+    return sorted({setting.rows[0].interaction_range for setting in computed}, reverse=True)
+
+
+def _ranges_explained(computed: Sequence[Setting]) -> str:
+    """Explanation of the symbols of the ratios."""
+    ranges = " and ".join(f"{reach:g}" for reach in _ranges(computed))
+    small = f"small: at the ranges {ranges}, from left to right; " if ranges else ""
+    return f"b: {small}large: at no range; bars and grey: one standard error"
 
 
 def _spectrum(row: Hysteresis, short_cutoff: float) -> str:
@@ -275,18 +346,11 @@ def _spectrum(row: Hysteresis, short_cutoff: float) -> str:
 
 
 def _draw_estimates(
-    axes: Axes,
-    shown_settings: Sequence[Setting],
-    estimates: Sequence[Estimate],
-    aside: float = 0.0,
-    **style: Any,
+    axes: Axes, shown_settings: Sequence[Setting], estimates: Sequence[Estimate], **style: Any
 ) -> None:
     """Values against e_el with their standard errors, if there is more than one surface."""
     axes.errorbar(
-        [
-            float(setting.mean(attrgetter("elastic_energy")).value) + aside
-            for setting in shown_settings
-        ],
+        [float(setting.mean(attrgetter("elastic_energy")).value) for setting in shown_settings],
         [float(estimate.value) for estimate in estimates],
         yerr=[float(estimate.standard_error) for estimate in estimates],
         **style,
@@ -294,23 +358,34 @@ def _draw_estimates(
 
 
 def edge_figure(rows: Sequence[EdgeForces]) -> Figure:
-    """What is not balanced against the range, and the force that the line has at the shortest."""
-    energies = sorted({round(row.elastic_energy, 2) for row in rows})
+    """What is not balanced against e_el, and the force that the line has at the shortest range."""
+    ranges = sorted({row.interaction_range for row in rows})
     with house_style():
         figure = blank_figure(PAGE, 0.46 * PAGE)
         imbalances, forces = figure.subplots(1, 2)
-        for energy, colour, marker in zip(energies, COLOURS, MARKERS, strict=False):
-            alike = [row for row in rows if round(row.elastic_energy, 2) == energy]
-            ranges = [row.interaction_range for row in alike]
-            style = {"color": colour, "marker": marker, "linestyle": "none", "label": f"{energy:g}"}
-            imbalances.plot(ranges, [row.left / row.pinning for row in alike], **style)
-            shortest = min(alike, key=attrgetter("interaction_range"))
-            forces.plot(shortest.line, shortest.needed, **style)
+        for reach, face in zip(ranges, (BLACK, "white"), strict=False):
+            alike = sorted(
+                (row for row in rows if row.interaction_range == reach),
+                key=attrgetter("elastic_energy"),
+            )
+            imbalances.plot(
+                [row.elastic_energy for row in alike],
+                [row.left / row.pinning for row in alike],
+                "o-",
+                color=BLACK,
+                linewidth=0.6,
+                markerfacecolor=face,
+                label=f"{reach:g}",
+            )
+        shortest = [row for row in rows if row.interaction_range == ranges[0]]
+        for row, colour, marker in zip(shortest, COLOURS, MARKERS, strict=False):
+            label = rf"$e_\mathrm{{el}} = {row.elastic_energy:.2f}\,w_\mathrm{{int}}$"
+            forces.plot(row.line, row.needed, marker, color=colour, label=label)
         forces.axline((0.0, 0.0), slope=1.0, color="0.6", linewidth=0.8, zorder=0)
         imbalances.set(
-            xlim=(0.0, 1.1 * max(row.interaction_range for row in rows)),
+            xlim=(0.0, 1.1 * max(row.elastic_energy for row in rows)),
             ylim=(0.0, 1.1 * max(row.left / row.pinning for row in rows)),
-            xlabel=HEIGHT_LABEL.format("range of attraction"),
+            xlabel=r"energy of full conformity $e_\mathrm{el}/w_\mathrm{int}$",
             ylabel="rms force left / rms pinning",
         )
         forces.set(
@@ -318,11 +393,12 @@ def edge_figure(rows: Sequence[EdgeForces]) -> Figure:
             ylabel=r"force that balances the others / $w_\mathrm{int}$",
         )
         for axes, panel in ((imbalances, "a"), (forces, "b")):
-            axes.legend(loc="upper left", title=r"$e_\mathrm{el}/w_\mathrm{int}$")
+            axes.legend(loc="upper left")
             label_panel(axes, panel)
+        imbalances.get_legend().set_title(HEIGHT_LABEL.format("range of attraction"))
         explain(
             figure,
-            f"b: means over {CLASSES} classes of sites, as many in each, by the force of first "
-            "order; grey line: both forces are equal",
+            "one surface, and therefore no bars over surfaces; "
+            f"b: means over {CLASSES} classes of sites; grey: both forces are equal",
         )
         return figure

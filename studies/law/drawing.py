@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -14,7 +15,6 @@ from crackfront.analysis.estimate import REACH
 from crackfront.analysis.finding import PERTURBATION_FACTOR
 from crackfront.analysis.law import (
     LEAST_SIZE,
-    TYPICAL_BREADTH,
     WEAKEST,
     effective_size,
     infinite_ratio,
@@ -30,35 +30,32 @@ from crackfront.plots.style import (
     ORANGE,
     PAGE,
     PURPLE,
-    SKY,
     VERMILION,
     blank_figure,
-    explain,
     house_style,
 )
 from crackfront.plots.sweep_figures import draw_infinite_law
 from studies.law.cells import LawCell
-from studies.paper.drawing import name_panels, write_beside
+from studies.paper.drawing import name_panels
 
 _LARGE = 3.0
 """Size g above which points are extrapolated: their gain is small, and its error smaller."""
 
-_LOOKS = {
-    "flat": ("flat", GREEN, "s"),
-    "flat-chemical": ("flat, chemical", GREEN, "D"),
-    "gaussian": ("gaussian", PURPLE, "^"),
-    "gaussian-chemical": ("gaussian, chemical", PURPLE, "v"),
-    "h03": ("$H=0.3$", ORANGE, "X"),
-    "h05": ("$H=0.5$", SKY, "P"),
-    "h08": ("$H=0.8$", BLUE, "o"),
-    "ring": ("ring", VERMILION, "p"),
-    "two-slopes": ("$H=0.9$, then $0.3$", "0.45", "<"),
-    "two-reversed": ("$H=0.3$, then $0.9$", "0.45", ">"),
-}
-"""Name in the legend, colour and marker of every spectrum of straight fronts.
+_SPHERES = "spheres, not fitted"
+"""Name of the spheres in the legend."""
 
-Spectra of two slopes are named from long waves to short ones.
-"""
+_FAMILIES = {
+    "flat": ("flat", "flat-chemical"),
+    "Gaussian": ("gaussian", "gaussian-chemical"),
+    "$H=0.3$ to $0.8$": ("h03", "h05", "h08"),
+    "two slopes": ("two-slopes", "two-reversed"),
+    "ring": ("ring",),
+    _SPHERES: (_SPHERES,),
+}
+"""Spectra that share a colour and a marker, by their name in the legend."""
+
+_LOOKS = ((GREEN, "s"), (PURPLE, "^"), (BLUE, "o"), (ORANGE, "X"), (VERMILION, "p"), ("0.2", "o"))
+"""Colour and marker of every family."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,31 +85,28 @@ def spectra_points(cells: Sequence[LawCell]) -> tuple[LawPoints, ...]:
 
 def law_figure(fronts: Sequence[LawPoints], spheres: LawPoints) -> Figure:
     """Collapse of straight fronts and spheres on the shipped law, and its infinite contact."""
-    drawn = [(points, _style(*_LOOKS[points.name])) for points in fronts]
-    drawn.append((spheres, _style(spheres.name, "0.2", "o", is_open=True)))
+    drawn = [
+        (points, _style(name, colour, marker, is_open=name == _SPHERES))
+        for (name, members), (colour, marker) in zip(_FAMILIES.items(), _LOOKS, strict=True)
+        for points in (*fronts, replace(spheres, name=_SPHERES))
+        if points.name in members
+    ]
     with house_style():
-        figure = blank_figure(PAGE, 0.56 * PAGE)
-        collapse, infinite = figure.subplots(1, 2, width_ratios=(1.2, 1))
+        figure = blank_figure(PAGE, 0.52 * PAGE)
+        collapse, infinite = figure.subplots(1, 2, width_ratios=(1.15, 1))
         _draw_collapse(collapse, drawn)
         draw_infinite_law(infinite)
         for points, style in drawn:
             _draw_extrapolated(infinite, points, style)
         infinite.set_ylim(0.0, 1.12 * PERTURBATION_FACTOR)
         infinite.legend(loc="lower left")
-        entries = collapse.get_legend_handles_labels()
-        figure.legend(*entries, loc="outside upper center", ncols=6, columnspacing=1.4)
+        entries = dict(zip(*reversed(collapse.get_legend_handles_labels()), strict=True))
+        collapse.legend(list(entries.values()), list(entries), loc="lower right")
         name_panels((collapse, infinite), "ab")
-        explain(
-            figure,
-            "bars: 95% intervals over surfaces; spheres, to which nothing was adjusted, are open "
-            f"circles; a: freed of what depends on s, with the law at s = 0, dashed below g = "
-            f"{LEAST_SIZE:g}, where its fit begins; b: points of g above {_LARGE:g}, which the law "
-            "extrapolates, in the colours of a",
-        )
         return figure
 
 
-def _style(label: str, colour: str, marker: str, *, is_open: bool = False) -> dict[str, Any]:
+def _style(label: str, colour: str, marker: str, *, is_open: bool) -> dict[str, Any]:
     """Look of small points with thin bars; open ones are larger and lie below the others."""
     return {
         "label": label,
@@ -130,37 +124,26 @@ def _style(label: str, colour: str, marker: str, *, is_open: bool = False) -> di
 
 
 def _draw_collapse(axes: Axes, drawn: Sequence[tuple[LawPoints, dict[str, Any]]]) -> None:
-    """Draw k freed of its fall with s against the effective size, and the law, then one curve."""
+    """Draw k over its value in the infinite contact against the effective size, and the law."""
     law = shipped_law()
-    k_0, *_, m_4, m_5, _, _, m_8, _ = law.coefficients
-    sizes = {
-        points.name: effective_size(law.coefficients, points.disorder, points.size, points.breadth)
+    sizes = [
+        effective_size(law.coefficients, points.disorder, points.size, points.breadth)
         for points, _ in drawn
-    }
-    largest = max(float(np.max(size)) for size in sizes.values())
-    lowest, highest = LEAST_SIZE / 4, 2 * largest
-    line: dict[str, Any] = {"color": BLACK, "linewidth": 1.0, "zorder": 2}
-    label = f"law (rms departure {100 * law.rms:.2g}% for $g>1$)"
+    ]
+    lowest, highest = LEAST_SIZE / 4, 2 * max(float(np.max(size)) for size in sizes)
+    line: dict[str, Any] = {"color": BLACK, "linewidth": 1.0, "zorder": 4}
     fitted, below = np.geomspace(LEAST_SIZE, highest, 200), np.geomspace(lowest, LEAST_SIZE, 50)
-    axes.plot(fitted, law_value(law.coefficients, 0.0, fitted), **line, label=label)
-    axes.plot(below, law_value(law.coefficients, 0.0, below), **line, dashes=(3, 1.5))
-    for points, style in drawn:
-        rise = 1 + m_4 * points.disorder**m_5 * (TYPICAL_BREADTH / points.breadth) ** m_8
-        axes.errorbar(
-            sizes[points.name],
-            points.factor * rise,
-            yerr=REACH * points.error * rise,
-            **style,
-        )
-    axes.axhline(k_0, color="0.5", linewidth=0.5, zorder=1)
-    name = rf"$k_0={k_0:.2f}$, weak disorder in the infinite contact"
-    write_beside(axes, name, (1.1 * lowest, k_0), (0, 2), fontsize=6)
-    axes.set_xscale("log")
-    axes.set_xlim(lowest, highest)
-    axes.set_ylim(0.0, 1.12 * PERTURBATION_FACTOR)
+    limit = law_value(law.coefficients, 0.0, math.inf)
+    axes.plot(fitted, law_value(law.coefficients, 0.0, fitted) / limit, **line, label="law")
+    axes.plot(below, law_value(law.coefficients, 0.0, below) / limit, **line, dashes=(3, 1.5))
+    for (points, style), size in zip(drawn, sizes, strict=True):
+        infinite = law_value(law.coefficients, points.disorder, math.inf, points.breadth)
+        axes.errorbar(size, points.factor / infinite, yerr=REACH * points.error / infinite, **style)
+    axes.axhline(1.0, color="0.5", linewidth=0.5, zorder=1)
+    axes.set(xscale="log", xlim=(lowest, highest), ylim=(0.0, 1.12))
     label_decimals(axes.xaxis)
     axes.set_xlabel(r"effective size $g_\mathrm{eff}$")
-    axes.set_ylabel("$k$, freed of its fall with disorder")
+    axes.set_ylabel(r"$k$ / its limit in the infinite contact")
 
 
 def _draw_extrapolated(axes: Axes, points: LawPoints, style: dict[str, Any]) -> None:

@@ -143,6 +143,8 @@ def avalanche_figure(record: AvalancheRecord) -> Drawing:
         for axes in (*lines, *panels):
             axes.set(xscale="log", yscale="log")
         name_panels((*lines, *panels), "abcdef")
+        # Room for the legend below the points.
+        panels[0].set_ylim(panels[0].get_ylim()[0] / 50)
         # Less than two decades: powers of ten alone would be too few.
         label_decimals(lines[1].xaxis, FixedLocator(record.spring.tolist()))
         for axes in lines[1:]:

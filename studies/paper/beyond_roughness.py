@@ -15,7 +15,7 @@ from matplotlib.ticker import FixedLocator
 
 from crackfront.analysis.estimate import with_error
 from crackfront.core.arrays import Array
-from crackfront.plots.parts import label_decimals, legend_entries
+from crackfront.plots.parts import ON_WHITE, label_decimals
 from crackfront.plots.style import (
     BLUE,
     GREEN,
@@ -27,7 +27,7 @@ from crackfront.plots.style import (
     house_style,
 )
 from studies.paper.checks import Check
-from studies.paper.drawing import THEORY, name_panels
+from studies.paper.drawing import THEORY, name_panels, write_beside
 from studies.paper.figure import Figure
 from studies.paper.front_spectra import (
     RoughnessFit,
@@ -113,26 +113,23 @@ def roughness_figure(record: RoughnessRecord) -> Drawing:
     with house_style():
         figure = blank_figure(PAGE, 0.81 * PAGE)
         panels = figure.subplots(2, 2).ravel()
+        for axes in panels:
+            axes.set(xscale="log", yscale="log")
         _draw_spectra(panels[0], record)
         _draw_compensated(panels[1], record)
         _draw_differences(panels[2], record)
         _draw_lines(panels[3], record)
-        for axes in panels:
-            axes.set(xscale="log", yscale="log")
         name_panels(panels, "abcd")
+        for axes in panels[:3]:
+            axes.set_title("fronts of a sphere in retraction")
+        panels[3].set_title("straight fronts on springs")
         for axes in panels[[1, 3]]:
             label_decimals(axes.yaxis, FixedLocator([0.1, 0.2, 0.3, 0.5, 1.0, 2.0]))
-        handles, labels = legend_entries(panels[0])
-        figure.legend(handles, labels, loc="outside upper center", ncols=4, columnspacing=1.2)
         explain(
             figure,
-            "a to c: fronts of a sphere in retraction; d: straight fronts on springs; "
             "$\\kappa$: wavevector of a straight line as stiff as the mode of the front; "
-            "b: relative to the fits at their largest $\\kappa$; d: relative to the fit below "
-            "$\\ell$ at its largest $\\kappa$; $\\zeta$: roughness exponent, in grey of "
-            "depinning (broken) and of perturbation theory (full); "
-            "dotted: Larkin length $\\ell$ (c) and $\\kappa=1/\\ell$ (b, d); "
-            "bars: standard errors over surfaces, ±: 95% intervals",
+            "$\\ell$: Larkin length; $\\zeta$: roughness exponent; b, d: relative to a fit at its "
+            "largest $\\kappa$; bars: standard errors over surfaces, ±: 95% intervals",
         )
         return figure
 
@@ -141,13 +138,19 @@ def _draw_spectra(axes: Axes, record: RoughnessRecord) -> None:
     """Spectra against stiffness, and their fits."""
     cutoff = record.short_cutoff
     for index, name, colour in _KINDS:
-        disorder = rf"$w_\mathrm{{rms}} = {record.rms[index]:.2g}\,w_\mathrm{{int}}$"
-        label = f"{name} disorder, {disorder}"
-        _draw_points(axes, record, index, cutoff**3, label=label)
+        _draw_points(axes, record, index, cutoff**3)
         fit = fitted_roughness(record, index)
         line = fit.wavevector * cutoff / (2 * np.pi), fit.power / cutoff**3
-        label = rf"fit ({name}), $\zeta = {fit.exponent:.3f} \pm {fit.reach:.3f}$"
-        axes.plot(*line, color=colour, linewidth=1.2, label=label)
+        axes.plot(*line, color=colour, linewidth=1.2)
+        text = (
+            f"{name} disorder,\n"
+            rf"$w_\mathrm{{rms}} = {record.rms[index]:.2g}\,w_\mathrm{{int}}$,"
+            f"\n$\\zeta = {fit.exponent:.3f} \\pm {fit.reach:.3f}$"
+        )
+        middle = np.exp(np.mean(np.log(line), axis=1))
+        aside = (8, 6) if index == STRONG else (-8, -6)
+        look = {"ha": "left", "va": "bottom"} if index == STRONG else {"ha": "right", "va": "top"}
+        write_beside(axes, text, (middle[0], middle[1]), aside, color=colour, **look)
     axes.set_xlabel(r"stiffness $\kappa\lambda_\mathrm{s}/2\pi$")
     axes.set_ylabel(r"spectrum of the front $C/\lambda_\mathrm{s}^3$")
 
@@ -159,14 +162,13 @@ def _draw_compensated(axes: Axes, record: RoughnessRecord) -> None:
         fit = fitted_roughness(record, index)
         level = fit.power[1] * fit.wavevector[1] ** 2
         _draw_points(axes, record, index, level, 2)
-        place = cutoff / record.larkin_length[index] / (2 * np.pi)
-        axes.axvline(place, color=_COLOURS[index], **_AT_LENGTH)
+        _mark_length(axes, index, cutoff / record.larkin_length[index] / (2 * np.pi), r"$1/\ell$")
     ends = np.array([0.004, 1.0])
     end = fitted_roughness(record, STRONG).wavevector[1] * cutoff / (2 * np.pi)
     for index, exponent in enumerate(_EXPONENTS[:STRONG_LINE]):
         _draw_law(axes, index, ends, (ends / end) ** (1 - 2 * exponent), zorder=0)
-    axes.set_ylim(0.3, 2.5)
-    axes.legend(loc="lower right")
+    axes.set_ylim(0.2, 2.5)
+    axes.legend(loc="lower right", **ON_WHITE)
     axes.set_xlabel(r"stiffness $\kappa\lambda_\mathrm{s}/2\pi$")
     axes.set_ylabel(r"$C\,\kappa^2$ (relative)")
 
@@ -174,17 +176,17 @@ def _draw_compensated(axes: Axes, record: RoughnessRecord) -> None:
 def _draw_differences(axes: Axes, record: RoughnessRecord) -> None:
     """Height differences over distances, with the two power laws."""
     cutoff = record.short_cutoff
-    for index, _, colour in _KINDS:
+    for index, name, colour in _KINDS:
         lag, difference = record.lag / cutoff, record.difference[index] / cutoff
         axes.plot(lag, difference, color=colour)
+        end = lag[-1], difference[-1]
+        write_beside(axes, f"{name} disorder", end, (0, -12), color=colour, ha="right")
         part = (lag > 3) & (lag < 60)
         start = np.flatnonzero(part)[0]
         law = 1.25 * difference[start] * (lag[part] / lag[start]) ** _EXPONENTS[index]
         _draw_law(axes, index, lag[part], law)
-        place = record.larkin_length[index] / cutoff
-        axes.axvline(place, color=_COLOURS[index], **_AT_LENGTH)
-    # On the left of the Larkin length of weak disorder.
-    axes.legend(loc="lower right", bbox_to_anchor=(0.94, 0.0))
+        _mark_length(axes, index, record.larkin_length[index] / cutoff, r"$\ell$")
+    axes.legend(loc="lower right", **ON_WHITE)
     axes.set_xlabel(r"distance along the front $s/\lambda_\mathrm{s}$")
     axes.set_ylabel(r"rms difference of radii $/\lambda_\mathrm{s}$")
 
@@ -199,10 +201,23 @@ def _draw_lines(axes: Axes, record: RoughnessRecord) -> None:
         _draw_points(axes, record, index, unit / larkin, 2, label, larkin)
         line = fit.wavevector * larkin / (2 * np.pi), fit.power * fit.wavevector**2 * larkin / unit
         axes.plot(*line, color=_COLOURS[index], linewidth=1.2)
-    axes.axvline(1 / (2 * np.pi), color="0.35", **_AT_LENGTH)
+    _mark_length(axes, None, 1 / (2 * np.pi), r"$1/\ell$")
     axes.legend(loc="lower right")
     axes.set_xlabel(r"stiffness $\kappa\ell/2\pi$")
-    axes.set_ylabel(r"$C\,\kappa^2\ell$ of straight fronts (relative)")
+    axes.set_ylabel(r"$C\,\kappa^2\ell$ (relative)")
+
+
+_MIDDLE = 100.0
+"""Abscissa beyond which the name of a Larkin length is to the left of its line."""
+
+
+def _mark_length(axes: Axes, index: int | None, place: float, name: str) -> None:
+    """Dotted line at a Larkin length, with its name at the upper end; grey for all fronts."""
+    colour = "0.35" if index is None else _COLOURS[index]
+    axes.axvline(place, color=colour, linewidth=0.7, linestyle=(0, (1, 1.5)), zorder=0)
+    look: dict[str, Any] = {"xycoords": axes.get_xaxis_transform(), "color": colour, "va": "top"}
+    side = {"ha": "left"} if place < _MIDDLE else {"ha": "right"}
+    write_beside(axes, name, (place, 1.0), (3 if place < _MIDDLE else -3, -4), **look, **side)
 
 
 def _draw_points(
@@ -233,12 +248,9 @@ def _draw_points(
 def _draw_law(axes: Axes, index: int, abscissa: Array, ordinate: Array, zorder: float = 2) -> None:
     """Power law of the theory of one disorder."""
     style = THEORY if index == STRONG else THEORY | {"dashes": (None, None)}
-    label = rf"$\zeta = {_EXPONENTS[index]:g}$"
+    theory = "depinning" if index == STRONG else "perturbation theory"
+    label = rf"$\zeta = {_EXPONENTS[index]:g}$, {theory}"
     axes.plot(abscissa, ordinate, zorder=zorder, label=label, **style)
-
-
-_AT_LENGTH: dict[str, Any] = {"linewidth": 0.7, "linestyle": (0, (1, 1.5)), "zorder": 0}
-"""Of lines at a Larkin length."""
 
 
 FIGURE = Figure(

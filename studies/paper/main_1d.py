@@ -124,8 +124,8 @@ def smooth_loop_checks(loop: SmoothLoop) -> tuple[Check, ...]:
     )
 
 
-_LEFT = -0.1
-"""Where the abscissa begins (Units: reduced lateral length)."""
+_LOWEST = -0.1
+"""Where the ordinate begins (Units: reduced lateral length)."""
 
 
 def smooth_loop_figure(loop: SmoothLoop) -> Drawing:
@@ -138,32 +138,32 @@ def smooth_loop_figure(loop: SmoothLoop) -> Drawing:
             branch = loop.direction == direction
             radius, force = loop.radius[branch], loop.force[branch]
             label = rf"{name}, $w_\mathrm{{{short}}} = {adhesion:g}\,w_\mathrm{{int}}$"
-            axes.plot(radius, force, color=colour, label=label)
+            axes.plot(force, radius, color=colour, label=label)
             middle = radius.size // 2
             near = slice(middle - 1, middle + 1)
-            draw_arrow(axes, radius[near], force[near], colour)
+            draw_arrow(axes, force[near], radius[near], colour)
             end = 0 if direction > 0 else -1
             _draw_jump(axes, direction, float(radius[end]), float(force[end]), colour)
         # The lowest of all states is the pull-off force where the force is controlled.
         lowest = int(np.argmin(loop.force))
-        axes.plot([_LEFT, loop.radius[lowest]], [loop.force[lowest]] * 2, color="0.3", **DOTTED)
-        axes.plot(loop.radius[lowest], loop.force[lowest], "o", color=VERMILION, ms=3.6, zorder=5)
-        label = r"pull-off force, $-\frac{3}{2}\,\pi w_\mathrm{retr}R$"
-        write_beside(axes, label, (0.0, loop.force[lowest]), (0, 4))
-        axes.set(xlim=(_LEFT, None), ylim=(1.12 * float(np.min(loop.force)), None))
-        axes.set(xlabel=RADIUS_LABEL, ylabel=FORCE_LABEL)
-        axes.legend(loc="upper left")
+        axes.plot([loop.force[lowest]] * 2, [_LOWEST, loop.radius[lowest]], color="0.3", **DOTTED)
+        axes.plot(loop.force[lowest], loop.radius[lowest], "o", color=VERMILION, ms=3.6, zorder=5)
+        label = "pull-off force,\n" r"$-\frac{3}{2}\,\pi w_\mathrm{retr}R$"
+        write_beside(axes, label, (loop.force[lowest], 0.0), (4, 0))
+        axes.set(xlim=(1.12 * float(np.min(loop.force)), None), ylim=(_LOWEST, None))
+        axes.set(xlabel=FORCE_LABEL, ylabel=RADIUS_LABEL)
+        figure.legend(loc="outside upper center")
         return figure
 
 
 def _draw_jump(axes: Axes, direction: int, radius: float, force: float, colour: str) -> None:
     """Thin dashed arrow between no contact and the first or last state."""
-    start, end = ((0.0, 0.0), (radius, force))[::direction]
+    start, end = ((0.0, 0.0), (force, radius))[::direction]
     draw_jump(axes, start, end, colour, linewidth=0.7, mutation_scale=6, linestyle=(0, (4, 2)))
     write_beside(
         axes,
-        "jump into contact" if direction > 0 else "jump out\nof contact",
-        (radius / 2, force / 2),
+        "jump into\ncontact" if direction > 0 else "jump out\nof contact",
+        (force / 2, radius / 2),
         (4 * direction, 4 * direction),
         ha="left" if direction > 0 else "right",
         va="bottom" if direction > 0 else "top",

@@ -315,7 +315,7 @@ def _draw_release(axes: Axes, loops: RingLoops, index: int, limits: tuple[float,
             _draw_state(axes, direction, place, (8, -3) if direction > 0 else (-6, 4))
     axes.set(xlim=limits, ylim=(0.35, 2.05), xlabel=parts.RADIUS_LABEL)
     axes.set_ylabel(r"energy release rate / $w_\mathrm{int}$")
-    axes.legend(loc="upper left", ncols=2)
+    axes.legend(loc="upper left")
 
 
 def _draw_forces(axes: Axes, loops: RingLoops) -> None:
@@ -346,7 +346,7 @@ def _draw_forces(axes: Axes, loops: RingLoops) -> None:
     axes.set(
         xlim=(0, _REACH), ylim=(-2.7, 2.7), xlabel=parts.RADIUS_LABEL, ylabel=parts.FORCE_LABEL
     )
-    axes.legend(loc="upper left", ncols=2, columnspacing=1.0)
+    axes.legend(loc="upper left", ncols=2, columnspacing=1.0, fontsize=6)
 
 
 def _draw_state(

@@ -247,13 +247,19 @@ def _front_checks(loop: PinnedLoop) -> tuple[Check, ...]:
 def pinned_loop_figure(loop: PinnedLoop) -> Drawing:
     """The loop, the fronts of both branches at b = 0, and both fronts from close by."""
     with house_style():
-        figure = blank_figure(PAGE, 0.46 * PAGE)
+        figure = blank_figure(PAGE, 0.52 * PAGE)
         panels = figure.subplot_mosaic(
             [["c", "d", "approach"], ["c", "d", "retraction"]], width_ratios=(1.2, 1.1, 0.6)
         )
         works, window = (loop.approach, loop.retraction), (loop.lowest_radius, loop.highest_radius)
         draw_loop(panels["c"], loop, works, window, elastic_energy=loop.elastic_energy)
+        panels["c"].get_legend().remove()  # type: ignore[union-attr]
         _draw_fronts(panels["d"], loop)
+        handles, labels = panels["c"].get_legend_handles_labels()
+        # The fronts of the branches have the colours of c.
+        circle = panels["d"].get_legend_handles_labels()[0][-1]
+        entries = [*handles, circle], [*labels, f"{FRONTS[-1]} (d)"]
+        figure.legend(*entries, loc="outside upper center", ncols=4)
         for branch, name in enumerate(FRONTS[:2]):
             image = _draw_close(panels[name], loop, branch)
             _outline(panels["d"], loop, branch)
@@ -279,14 +285,6 @@ def _draw_fronts(axes: Axes, loop: PinnedLoop) -> None:
     for front in range(len(FRONTS)):
         _draw_front(axes, loop, front, loop.y[-1])
     label_plane(axes)
-    axes.legend(
-        loc="lower center",
-        bbox_to_anchor=(0.56, 1.0),
-        ncols=3,
-        columnspacing=0.7,
-        handlelength=1.2,
-        handletextpad=0.4,
-    )
 
 
 def _draw_close(axes: Axes, loop: PinnedLoop, branch: int) -> AxesImage:

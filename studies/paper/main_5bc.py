@@ -344,7 +344,7 @@ def _draw_perimeters(axes: Axes, contact: NanodiamondContact) -> None:
     axes.add_collection(LineCollection(list(closed), colors=BLACK, linewidths=0.3, label=label))
     around = np.concatenate([contact.arc_angle, contact.arc_angle[::-1]])
     radius = np.concatenate([contact.arc_inner, contact.arc_outer[::-1]]) * _MICRO
-    label = f"widest instability:\n{contact.widest[0] * _MICRO:.0f} µm along the perimeter"
+    label = f"widest instability:\n{contact.widest[0] * _MICRO:.0f} µm of the edge"
     outline = radius * np.cos(around), radius * np.sin(around)
     axes.fill(*outline, color=ORANGE, linewidth=0.6, zorder=3, label=label)
     reach = 1.03 * float(np.abs(lines).max())
@@ -354,7 +354,7 @@ def _draw_perimeters(axes: Axes, contact: NanodiamondContact) -> None:
 
 
 def _draw_loop(axes: Axes, contact: NanodiamondContact) -> None:
-    """Force against radius: simulation, JKR curves by it and by k = 3, measured points."""
+    """Radius against force: simulation, JKR curves by it and by k = 3, measured points."""
     surface, energy, scales = contact.work_of_adhesion, contact.elastic_energy, contact.scales
     shown = np.linspace(0, 1.08 * contact.radius.max(), 300)
     radius, force = contact.radius * _MICRO, contact.force * _MILLI
@@ -369,23 +369,23 @@ def _draw_loop(axes: Axes, contact: NanodiamondContact) -> None:
         branch = contact.direction == direction
         if direction > 0:
             branch &= contact.penetration >= contact.jump_in
-        axes.plot(radius[branch], force[branch], color=colour, linewidth=1.4, label=name, zorder=3)
+        axes.plot(force[branch], radius[branch], color=colour, linewidth=1.4, label=name, zorder=3)
         label = rf"JKR, $w_\mathrm{{{short}}}$ = {adhesion * _MILLI:.1f} mJ/m$^2$"
         style: dict[str, Any] = {"color": colour, "linewidth": 0.7}
-        axes.plot(place, smooth(adhesion), dashes=(1, 1.2), label=label, **style)
+        axes.plot(smooth(adhesion), place, dashes=(1, 1.2), label=label, **style)
         theory = surface - energy - direction * PAPER_FACTOR * energy
         label = rf"JKR, $k = {PAPER_FACTOR:g}$: {theory * _MILLI:.1f} mJ/m$^2$"
-        axes.plot(place, smooth(max(theory, 0.0)), dashes=(4, 2), label=label, zorder=1, **style)
+        axes.plot(smooth(max(theory, 0.0)), place, dashes=(4, 2), label=label, zorder=1, **style)
         measured = contact.measured_direction == direction
         if np.any(measured):
-            points = contact.measured_radius * _MICRO, contact.measured_force * _MILLI
+            points = contact.measured_force * _MILLI, contact.measured_radius * _MICRO
             points = points[0][measured], points[1][measured]
             axes.plot(*points, "D", color=colour, mfc="white", label=f"measured, {name}", zorder=4)
-    axes.set_xlim(0.75 * contact.radius[contact.direction < 0].min() * _MICRO, place[-1])
+    axes.set_ylim(0.75 * contact.radius[contact.direction < 0].min() * _MICRO, place[-1])
     low, high = force.min(), force.max()
-    axes.set_ylim(low - 0.15 * (high - low), high + 0.08 * (high - low))
-    axes.set(xlabel="mean contact radius (µm)", ylabel="normal force (mN)")
-    axes.legend(loc="upper left")
+    axes.set_xlim(low - 0.15 * (high - low), high + 0.08 * (high - low))
+    axes.set(xlabel="normal force (mN)", ylabel="mean contact radius (µm)")
+    axes.legend(loc="lower right")
 
 
 FIGURE = Figure(

@@ -254,7 +254,7 @@ def parametric_study_figure(study: ParametricStudy) -> Drawing:
             set_factor_limits(panels[name], fit)
         panels["c"].set_ylabel("mean $k$")
         # The legend of panel b serves for all panels: it also contains the pooled k.
-        figure.legend(*legend_entries(panels["b"]), loc="outside upper center", ncols=4)
+        figure.legend(*legend_entries(panels["b"]), loc="outside upper center", ncols=3)
         texts = [
             *points_explained(fit),
             *arrows_explained(fit),

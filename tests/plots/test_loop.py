@@ -73,7 +73,7 @@ def test_the_loop_lies_between_its_curves(record):
     steady = steady_adhesion(record, correlation_length=0.1)
     axes = drawn(draw_loop, record.states, *measured(steady), elastic_energy=0.01)
     for words, adhesion in (("appr", steady.w_appr), ("retr", steady.w_retr)):
-        radius, force = line_labelled(axes, f"\\mathrm{{{words}}}").get_data()
+        force, radius = line_labelled(axes, f"\\mathrm{{{words}}}").get_data()
         np.testing.assert_allclose(force, jkr.equilibrium_force(radius, adhesion))
-    places = line_labelled(axes, "approach").get_xdata()
+    places = line_labelled(axes, "approach").get_ydata()
     np.testing.assert_array_equal(places, record.states.mean_radius[record.states.direction > 0])

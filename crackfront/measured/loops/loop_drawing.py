@@ -31,7 +31,7 @@ def plot_measured_loop(loop: MeasuredLoop, axes: Axes | None = None) -> Axes:
 
 
 def loop_figure(loop: MeasuredLoop, prediction: Prediction | None = None) -> Figure:
-    """Force against contact radius, with the measured and the predicted JKR curves of each branch.
+    """Contact radius against force, with the measured and the predicted JKR curves of each branch.
 
     It is in the units of the loop, SI or reduced.
     """
@@ -57,8 +57,8 @@ def _draw_measured(axes: Axes, loop: MeasuredLoop, prediction: Prediction | None
         if not np.any(rows):
             continue
         axes.plot(
-            loop.contact_radius[rows],
             loop.force[rows],
+            loop.contact_radius[rows],
             linestyle="none",
             marker=marker,
             markersize=2,
@@ -69,14 +69,14 @@ def _draw_measured(axes: Axes, loop: MeasuredLoop, prediction: Prediction | None
         )
         measured = getattr(loop, work).value
         axes.plot(
-            radius * scales.lateral,
             scales.force * jkr.equilibrium_force(radius, measured),
+            radius * scales.lateral,
             color=colour,
             label=f"JKR, ${units.adhesion_text(measured)}$",
         )
         if prediction is not None:
             predicted = getattr(prediction, work)
-            axes.fill_between(
+            axes.fill_betweenx(
                 radius * scales.lateral,
                 scales.force * jkr.equilibrium_force(radius, max(predicted.low, 0.0)),
                 scales.force * jkr.equilibrium_force(radius, max(predicted.high, 0.0)),
@@ -86,7 +86,7 @@ def _draw_measured(axes: Axes, loop: MeasuredLoop, prediction: Prediction | None
                 label=f"predicted, {name}",
             )
     low, high = float(np.nanmin(loop.force)), float(np.nanmax(loop.force))
-    axes.set_ylim(low - 0.1 * (high - low), high + 0.1 * (high - low))
-    axes.axvspan(*loop.window, color="0.93", linewidth=0, zorder=0, label="averaged")
-    units.name(axes.xaxis, "contact radius", LATERAL)
-    units.name(axes.yaxis, "normal force", FORCE)
+    axes.set_xlim(low - 0.1 * (high - low), high + 0.1 * (high - low))
+    axes.axhspan(*loop.window, color="0.93", linewidth=0, zorder=0, label="averaged")
+    units.name(axes.xaxis, "normal force", FORCE)
+    units.name(axes.yaxis, "contact radius", LATERAL)

@@ -16,7 +16,7 @@ from crackfront.plots.style import house_style
 from crackfront.simulate.provenance import provenance, utc_now
 
 _CAPTION = (
-    "Force against contact radius of each row, the JKR curves of both works of adhesion, and the "
+    "Contact radius against force of each row, the JKR curves of both works of adhesion, and the "
     "contact radii that are averaged."
 )
 

@@ -47,7 +47,7 @@ class MeasuredLoop:
     """Whether the numbers are in reduced units instead of SI."""
 
     def plot(self, axes: Axes | None = None) -> Axes:
-        """Force against contact radius, with the JKR curves of both works of adhesion.
+        """Contact radius against force, with the JKR curves of both works of adhesion.
 
         Parameters
         ----------

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+import textwrap
 from collections.abc import Sequence
 
 import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure, FigureBase
+from matplotlib.figure import Figure, SubFigure
 
 from crackfront.core.arrays import Array
 from crackfront.measured.density.densities import Density
@@ -26,7 +28,7 @@ from crackfront.plots.density_axes import (
 )
 from crackfront.plots.force_axes import draw_forces
 from crackfront.plots.parts import ON_WHITE, label_panel, spectrum_colour, spectrum_marker
-from crackfront.plots.style import BLACK, BLUE, PAGE, blank_figure, house_style
+from crackfront.plots.style import BLACK, BLUE, PAGE, SMALLEST_FONT, blank_figure, house_style
 
 _MOST_MAPS = 4
 """Largest number of scans that are drawn as maps."""
@@ -46,6 +48,20 @@ _LATE_LIMIT = 0.4
 _LETTER_SHIFT = 12.0
 """Shift of the letter of a panel, away from the ticks of an upper axis. (Units: point)"""
 
+_SPECTRUM = "spectrum, with its 95% interval"
+_PROJECTION = "projection of the model"
+_CURVES = (_SPECTRUM, _PROJECTION)
+"""Names of the curves of densities."""
+
+_SYMBOL_WIDTH = 6
+"""Width of a symbol in a legend, with the gap to the next. (Units: characters)"""
+
+_GAP = 7
+"""Gap between the titles of maps. (Units: characters)"""
+
+_LINE_HEIGHT = 8.0
+"""Distance of lines of text. (Units: point)"""
+
 _LONGEST_SHOWN = 3.0
 """Longest wavelength of the axes over the longest trusted wavelength."""
 
@@ -64,20 +80,54 @@ def prediction_figure(surface: Surface, prediction: Prediction, panel: str | Non
             return figure
         if panel is not None:
             figure = blank_figure(0.6 * PAGE, 0.45 * PAGE)
-            _DRAWINGS[panel](figure.subplots(), surface, prediction)
+            axes = figure.subplots()
+            _DRAWINGS[panel](axes, surface, prediction)
+            if panel != "c":
+                _name_scans(figure, (axes,))
             return figure
-        figure = blank_figure(PAGE, 0.86 * PAGE)
-        above, below = figure.subfigures(2, 1, height_ratios=(0.56, 0.3), squeeze=False)[:, 0]
+        figure = blank_figure(PAGE, 0.97 * PAGE)
+        above, below = figure.subfigures(2, 1, height_ratios=(0.64, 0.33), squeeze=False)[:, 0]
         panels = above.subplot_mosaic([["a", "c"], ["b", "c"]], height_ratios=(1.35, 1))
         panels["a"].sharex(panels["b"])
         for name, draw in _DRAWINGS.items():
             draw(panels[name], surface, prediction)
             label_panel(panels[name], name, _LETTER_SHIFT)
+        _name_scans(above, (panels["a"], panels["b"]))
         panels["a"].tick_params(labelbottom=False)
         panels["a"].set_xlabel("")
         _draw_scans(below, surface, _FEWEST_MAPS)
         below.text(0.005, 0.97, "d", fontsize=9, fontweight="bold", va="top")
         return figure
+
+
+def _name_scans(figure: Figure | SubFigure, panels: Sequence[Axes]) -> None:
+    """Explain the symbols of scans above all panels, where they cover no data."""
+    entries: dict[str, Artist] = {}
+    for axes in panels:
+        handles, names = axes.get_legend_handles_labels()
+        entries |= dict(zip(names, handles, strict=True))
+    for name in _CURVES:
+        entries.pop(name, None)
+    widest = max(map(len, entries)) + _SYMBOL_WIDTH
+    columns = max(1, int(_characters(figure) / widest))
+    figure.legend(list(entries.values()), list(entries), loc="outside upper center", ncols=columns)
+
+
+def _name_curve(axes: Axes) -> None:
+    """Explain the curve of a density below it."""
+    handles, names = axes.get_legend_handles_labels()
+    chosen = [place for place, name in enumerate(names) if name in _CURVES]
+    axes.legend(
+        [handles[place] for place in chosen],
+        [names[place] for place in chosen],
+        loc="lower left",
+        **ON_WHITE,
+    )
+
+
+def _characters(figure: Figure | SubFigure) -> float:
+    """Width of a figure in characters of the smallest font."""
+    return float(figure.bbox.width / figure.dpi * 72 / (0.6 * SMALLEST_FONT))
 
 
 def _stated_figure(surface: StatedSurface, prediction: Prediction, panel: str | None) -> Figure:
@@ -135,12 +185,13 @@ def _add_scales(axes: Axes, surface: Surface) -> None:
     add_wavelengths(axes)
 
 
-def _draw_scans(figure: FigureBase, surface: MeasuredSurface, fewest: int = 1) -> None:
+def _draw_scans(figure: Figure | SubFigure, surface: MeasuredSurface, fewest: int = 1) -> None:
     """The scans as used, in a row of panels."""
     shown = surface.scans[:_MOST_MAPS]
     maps = figure.subplots(1, max(len(shown), fewest), squeeze=False)[0]
+    width = _characters(figure) / maps.size - _GAP
     for axes, scan in zip(maps, shown, strict=False):
-        draw_scan(axes, scan.measurement, scan.band.stripes)
+        draw_scan(axes, scan.measurement, scan.band.stripes, int(width))
     for axes in maps[len(shown) :]:
         axes.set_axis_off()
 
@@ -171,12 +222,11 @@ def _draw_isotropic(axes: Axes, surface: MeasuredSurface, _: Prediction) -> None
     inside = (draws.wavevector >= shown[0]) & (draws.wavevector <= shown[-1] * (1 + 1e-9))
     low, high = draws.low[inside], draws.high[inside]
     axes.fill_between(draws.wavevector[inside], low, high, color="0.8", linewidth=0, zorder=1)
-    label = "spectrum, with its 95% interval"
-    axes.plot(shown, spectrum.density(shown), color=BLACK, label=label, zorder=4)
+    axes.plot(shown, spectrum.density(shown), color=BLACK, label=_SPECTRUM, zorder=4)
     axes.set_ylim(0.02 * np.min(low), 5 * np.max(high))
     _add_scales(axes, surface)
     _draw_limits(axes, surface, named=False)
-    axes.legend(loc="lower left", **ON_WHITE)
+    _name_curve(axes)
 
 
 def _draw_limits(axes: Axes, surface: MeasuredSurface, *, named: bool) -> None:
@@ -194,12 +244,11 @@ def _draw_limits(axes: Axes, surface: MeasuredSurface, *, named: bool) -> None:
             axes.annotate(
                 limit.cause,
                 (wavevector, 1.0),
-                xytext=(shift, -2 - 7 * index),
+                xytext=(shift, -2 - _LINE_HEIGHT * index),
                 xycoords=("data", "axes fraction"),
                 textcoords="offset points",
                 ha=alignment,
                 va="top",
-                fontsize=6,
                 color=colour,
             )
 
@@ -211,12 +260,12 @@ def _draw_profiles(axes: Axes, surface: MeasuredSurface, _: Prediction) -> None:
         name = scan.measurement.path.name if scan.measurement.is_line else ""
         _draw_density(axes, index, scan.profile, name)
     projection = surface.joint.fit.projected_density(wavevector)
-    axes.plot(wavevector, projection, color=BLACK, label="projection of the model", zorder=4)
+    axes.plot(wavevector, projection, color=BLACK, label=_PROJECTION, zorder=4)
     low, high = axes.get_ylim()
-    axes.set_ylim(low, high * (high / low) ** (0.12 * len(surface.scans)))
+    axes.set_ylim(low, high * (high / low) ** (0.15 * len(surface.scans)))
     _draw_limits(axes, surface, named=True)
     axes.set_ylabel(PROFILE_LABEL)
-    axes.legend(loc="lower left", **ON_WHITE)
+    _name_curve(axes)
 
 
 def _draw_density(axes: Axes, index: int, density: Density, name: str) -> None:
@@ -226,7 +275,7 @@ def _draw_density(axes: Axes, index: int, density: Density, name: str) -> None:
 
 
 def _draw_forces(axes: Axes, _: Surface, prediction: Prediction) -> None:
-    """Force against contact radius of both branches with intervals, and of a smooth sphere."""
+    """Contact radius against force of both branches with intervals, and of a smooth sphere."""
     draw_forces(axes, prediction.scales, prediction.w_appr, prediction.w_retr)
 
 
@@ -234,8 +283,13 @@ _DRAWINGS = {"a": _draw_isotropic, "b": _draw_profiles, "c": _draw_forces}
 """Functions that draw the panels, by their letters."""
 
 
-def draw_scan(axes: Axes, measurement: Measurement, stripes: Sequence[int] = ()) -> None:
-    """A map in colours, or heights along a line; its density leaves out waves along `stripes`."""
+def draw_scan(
+    axes: Axes, measurement: Measurement, stripes: Sequence[int], title_width: int
+) -> None:
+    """A map in colours, or heights along a line; its density leaves out waves along `stripes`.
+
+    Lines of the title are at most `title_width` characters long.
+    """
     low, high = (float(end) for end in np.quantile(measurement.heights, _COLOUR_RANGE))
     unit, scale = scaled_unit("m", max(abs(low), abs(high)))
     lateral, side = scaled_unit("m", max(measurement.size))
@@ -243,13 +297,18 @@ def draw_scan(axes: Axes, measurement: Measurement, stripes: Sequence[int] = ())
     levelling = f"without {measurement.levelling}" if measurement.levelling else "as it is"
     left_out = " and ".join("xy"[axis] for axis in stripes)
     waves = f"\n(a) without waves along {left_out} alone" if stripes else ""
-    axes.set_title(f"{measurement.path.name}{channel}\n{levelling}{waves}", fontsize=6)
+    lines = f"{measurement.path.name}{channel}\n{levelling}{waves}".split("\n")
+    title = "\n".join(textwrap.fill(line, title_width) for line in lines)
+    axes.set_title(title, fontsize=SMALLEST_FONT, loc="left")
     axes.set_xlabel(f"x ({lateral})")
     label = f"height ({unit})"
     if measurement.is_line:
         places = np.arange(measurement.heights.size) * measurement.pixels[0] / side
         axes.plot(places, measurement.heights / scale, color=BLUE, linewidth=0.5)
         axes.set_xlim(0, measurement.size[0] / side)
+        # On the right, where maps have the bar of their heights.
+        axes.yaxis.set_label_position("right")
+        axes.tick_params(labelleft=False, labelright=True)
         axes.set_ylabel(label)
         return
     heights, (width, height) = measurement.heights, measurement.size
@@ -263,5 +322,5 @@ def draw_scan(axes: Axes, measurement: Measurement, stripes: Sequence[int] = ())
         vmax=high / scale,
     )
     axes.set_ylabel(f"y ({lateral})")
-    bar = axes.get_figure().colorbar(image, ax=axes, extend="both", shrink=0.9)  # type: ignore[union-attr]
-    bar.set_label(label)
+    bar = axes.inset_axes((1.05, 0.0, 0.06, 1.0))
+    axes.figure.colorbar(image, cax=bar, extend="both", label=label)

@@ -106,7 +106,7 @@ class Prediction:
         return self.size < shipped_law().size[0]
 
     def plot(self, axes: Axes | None = None) -> Axes:
-        """Draw force against contact radius of both branches, with their 95% intervals.
+        """Draw contact radius against force of both branches, with their 95% intervals.
 
         Parameters
         ----------

@@ -43,7 +43,7 @@ def run(*arguments):
 def test_a_result_draws_its_rows_on_axes(result):
     figure, axes = plt.subplots()
     assert result.plot(axes) is axes
-    assert np.nanmax(axes.get_lines()[0].get_xdata()) == pytest.approx(
+    assert np.nanmax(axes.get_lines()[0].get_ydata()) == pytest.approx(
         np.nanmax(result.contact_radius), rel=0.01
     )
     plt.close(figure)

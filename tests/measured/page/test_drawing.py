@@ -2,13 +2,14 @@
 
 import numpy as np
 import pytest
+from matplotlib.text import Text
 
 from crackfront.measured.page.prediction_figures import prediction_figure
 
 
 def test_the_figure_shows_the_measured_and_the_predicted(surface, prediction):
     upper, force, lower = prediction_figure(surface, prediction).axes[:3]
-    if upper.get_ylabel() == "" or "force" in lower.get_ylabel():
+    if "force" in lower.get_xlabel():
         force, lower = lower, force
     trusted = [scan.trusted for scan in surface.scans]
     profiles = [scan.profile for scan in surface.scans]
@@ -16,7 +17,25 @@ def test_the_figure_shows_the_measured_and_the_predicted(surface, prediction):
     for lines, densities in ((upper.lines[::2], trusted), (lower.lines, profiles)):
         for line, density in zip(lines, densities, strict=False):
             np.testing.assert_array_equal(line.get_ydata(), density.value)
-    radius, values = force.lines[1].get_data()
+    values, radius = force.lines[1].get_data()
     assert values.min() == pytest.approx(-1e6 * prediction.pull_off_force.value, rel=1e-3)
     assert radius[np.argmin(values)] < 1e6 * prediction.contact_radius
-    assert "µN" in force.get_ylabel()
+    assert "µN" in force.get_xlabel()
+
+
+def test_names_of_bars_cover_no_bar_and_titles_of_scans_stay_inside(surface, prediction):
+    figure = prediction_figure(surface, prediction)
+    figure.canvas.draw()
+    isotropic = figure.axes[0]
+    names = [text.get_window_extent() for text in isotropic.texts if "rms" in text.get_text()]
+    bars = [line for line in isotropic.lines if line.get_linewidth() > 2]
+    assert len(names) == len(bars) == 3
+    for name in names:
+        assert not any(name.overlaps(bar.get_window_extent()) for bar in bars)
+    curve = next(line for line in isotropic.lines if "spectrum" in line.get_label())
+    highest = isotropic.transData.transform(curve.get_xydata())[:, 1].max()
+    assert all(name.y0 > highest for name in names)
+    for title in figure.findobj(lambda artist: isinstance(artist, Text)):
+        if "without" in title.get_text():
+            assert title.get_window_extent().x0 >= 0
+            assert title.get_window_extent().x1 <= figure.bbox.x1

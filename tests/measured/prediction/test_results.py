@@ -69,7 +69,7 @@ def test_a_prediction_as_a_dictionary_is_json_with_all_numbers(rough):
 def test_a_prediction_draws_the_forces_of_both_branches(rough):
     result = cf.predict(rough, modulus="0.7MPa", **SPHERE)
     axes = result.plot(Figure().add_subplot())
-    lowest = [line.get_ydata().min() for line in axes.lines[:3]]
+    lowest = [line.get_xdata().min() for line in axes.lines[:3]]
     expected = [
         1.5 * np.pi * result.radius * work
         for work in (result.w_appr.value, result.w_retr.value, result.work_of_adhesion)
