@@ -123,7 +123,7 @@ def test_ranks_that_are_killed_lose_nothing_that_they_stored(
         assert process.returncode != 0
     assert not left_running(tmp_path)
     kept = stored(tmp_path)
-    assert 10 <= len(kept) < N_SIMULATION
+    assert 0 < len(kept) < N_SIMULATION
     assert table(configuration, tmp_path).equals(undisturbed)
     assert kept.items() <= stored(tmp_path).items()
 
