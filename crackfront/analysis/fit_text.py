@@ -81,8 +81,8 @@ def fit_result(fit: SweepFit) -> str:
         f"- k by the law: {by_law}; k of the paper: {PAPER_FACTOR:g}\n"
         f"- exponent of w_rms: {_exponent_entry(fit)}\n"
         f"- exponent by the law: {_law_exponent_entry(fit)}; of the paper: 2\n"
-        "- k falls with disorder and rises with the size of the contact (docs/law.md), so that it "
-        "is neither 3 nor constant, and the exponent is not 2"
+        "- by the law, k falls with disorder and rises with the size of the contact; k = 3 and the "
+        "exponent 2 are special cases (docs/law.md)"
     )
 
 
