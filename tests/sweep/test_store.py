@@ -191,6 +191,8 @@ def test_a_new_version_of_the_physics_runs_all_again_says_so_and_mixes_nothing(
     said = f"8 stored simulations belong to an older version of the physics (now {version})"
     assert said in done("plan", configuration, "--output", folder).stdout
     assert said in done("status", folder).stdout
+    status = json.loads(done("status", folder, "--json").stdout)
+    assert status["reasons_to_run_again"] == [f"{said} and run again"]
     assert simulate(configuration, folder, "--spectrum", "flat") == FLAT
     said = said.replace("8", "4")
     assert said in done("plan", configuration, "--output", folder).stdout
