@@ -22,7 +22,11 @@ DAMAGED_SUFFIX = ".damaged"
 DIGITS_IN_NAME = 16
 """Digits of the checksum of a file that end its name, before its suffix."""
 
-_NAMED = re.compile(rf"(batch|curves|checkpoint)-.*-([0-9a-f]{{{DIGITS_IN_NAME}}})\.nc")
+BATCH, MERGED, CHECKPOINT = "batch", "curves", "checkpoint"
+"""Beginnings of the names that end with a checksum: finished simulations, many of them in one file,
+and simulations that are running."""
+
+_NAMED = re.compile(rf"({BATCH}|{MERGED}|{CHECKPOINT})-.*-([0-9a-f]{{{DIGITS_IN_NAME}}})\.nc")
 """Names that end with a checksum."""
 
 _LINE = re.compile(r"([0-9a-f]{64})  (.+)\n")
@@ -56,7 +60,7 @@ def result_files(folder: Path) -> list[str]:
 def _is_result(name: str) -> bool:
     """Whether a file of this name is a result."""
     left_out = name in _EXCLUDED_FILES or name[0] == "."
-    return not left_out and not name.endswith(DAMAGED_SUFFIX) and not name.startswith("checkpoint-")
+    return not (left_out or name.endswith(DAMAGED_SUFFIX) or name.startswith(f"{CHECKPOINT}-"))
 
 
 def file_digest(path: Path) -> str:

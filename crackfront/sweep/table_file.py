@@ -26,12 +26,10 @@ from crackfront.simulate.contact import OnSprings, Schedule
 from crackfront.simulate.labels import flag_words, labelled_fields
 from crackfront.simulate.provenance import Provenance
 from crackfront.simulate.storage import UnreadableFileError, read_derived, write_derived
-from crackfront.sweep.requests import table_request
+from crackfront.surfaces.scales import CONFIGURED
+from crackfront.sweep.requests import REQUEST, table_request
 from crackfront.sweep.rows import labelled_columns
 from crackfront.sweep.sweep import Sweep
-
-TABLE_REQUEST = "request"
-"""Attribute that says what a table was asked for, by the digest of its request."""
 
 _MOST_ADHESION = 100.0
 """Works of adhesion and energies above this are damage. (Units: w_int)"""
@@ -69,7 +67,7 @@ def write_hysteresis(
         ]
         columns[variable.name] = np.concatenate(spectra)
     dataset = columns_dataset(sweep, columns, range(sweep.n_realisation))
-    request = {TABLE_REQUEST: table_request(sweep).digest}
+    request = {REQUEST: table_request(sweep).digest}
     with _small_chunk_caches():
         write_derived(path, dataset.assign_attrs(request), origin)
 
@@ -177,7 +175,7 @@ def _attributes(sweep: Sweep) -> dict[str, str | float]:
         "sweep_seed": sweep.seed,
     }
     if sweep.scales is not None:
-        attributes |= {f"scale_{name}": value for name, value in asdict(sweep.scales).items()}
+        attributes |= {f"{CONFIGURED}{name}": value for name, value in asdict(sweep.scales).items()}
         attributes |= {
             "lateral_unit_in_metres": sweep.scales.lateral,
             "vertical_unit_in_metres": sweep.scales.vertical,
