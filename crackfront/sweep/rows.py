@@ -39,9 +39,9 @@ AT_LIMIT = _status_word(Status.STEP_LIMIT)
 NO_STEADY_PART = "no_steady_part"
 """Status of a complete cycle without enough steady states."""
 
-INVALID, DEFECT = "refused", "defect"
-"""Statuses of a simulation whose surface or load cannot be simulated, and of one in which the solver
-found that its result is wrong."""
+INVALID, DEFECT = "invalid", "defect"
+"""Statuses of a simulation whose surface or load cannot be simulated, and of one whose result the
+solver found to be wrong."""
 
 CYCLE_STATUSES = tuple(map(_status_word, Status))
 """How a cycle may end; files of curves have their places."""

@@ -141,7 +141,7 @@ def test_the_status_counts_what_is_done_failed_and_left(tmp_path, copy_store):
     copy_store("rough", tmp_path)
     flat, store = sweep.shards()[0], Store(tmp_path)
     simulation = next(sweep.simulations(flat.item))
-    row = failed_row(simulation, "refused", "too rough")
+    row = failed_row(simulation, "invalid", "too rough")
     writer = BatchWriter(store.curve_folder(flat), provenance(), seconds=60)
     writer.add(FinishedSimulation(simulation, row, None, "processor"))
     writer.flush()
