@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable
-from dataclasses import astuple, fields
+from dataclasses import astuple, dataclass, fields
 from typing import NamedTuple
 
 import numpy as np
@@ -44,6 +45,9 @@ COUNTS_AT_ONCE = 2**23
 
 _SAME_SIZE = 1e-6
 """Difference of log2 of the correlation lengths up to which two spectra have the same size."""
+
+_LAW_NAMES = tuple(item.name for item in fields(LawEstimates))
+"""Names of the estimates of a spectrum."""
 
 FIT_DEFINITION = (
     "k of one simulation is (w_retr - w_appr) / (2 e_el) with e_el measured on its tile. k of a "
@@ -88,6 +92,26 @@ class _Samples(NamedTuple):
     depression: Array
     factor: Array
     factor_from_force: Array
+
+
+class _Statistic(NamedTuple):
+    """One number of every bootstrap sample, and its weight among spectra, each (n_sample,)."""
+
+    values: Array
+    weights: Array
+
+
+@dataclass(frozen=True, slots=True)
+class _SpectrumFit:
+    """Fit of one spectrum, by the names of the fields of `LawEstimates`."""
+
+    values: dict[str, float]
+    standard_errors: dict[str, float]
+    """NaN of a single realisation."""
+    weights: dict[str, float]
+    """Weights of the spectrum where several are pooled."""
+    factor_draws: Array | None
+    """k of the bootstrap samples, (n_sample, n_amplitude); None of a single realisation."""
 
 
 def fit_sweep(
@@ -138,10 +162,11 @@ def fit_sweep(
     chosen = _Samples(*(values[:, in_range] for values in samples))
     n_realisation = np.count_nonzero(np.any(np.isfinite(chosen.factor), axis=1), axis=-1)
     freedom = n_realisation - 1
-    parts, weights, draws = _fit_spectra(chosen, freedom, n_bootstrap, seed, watched)
-    spectra, shares = LawEstimates(*parts), ratio(weights, np.sum(weights, axis=1, keepdims=True))
-    pooled_laws = LawEstimates(
-        *(combination(part, freedom, share) for part, share in zip(parts, shares, strict=True))
+    fits = _fit_spectra(chosen, n_bootstrap, seed, watched)
+    spectra = _spectra_estimates(fits, freedom)
+    shares = _pooling_shares(fits)
+    pooled = LawEstimates(
+        **{name: combination(getattr(spectra, name), freedom, shares[name]) for name in _LAW_NAMES}
     )
     law = SweepLaw(table, kind, uncorrelated)
     cells = _cell_estimates(samples, 1.0 if kind == "roughness" else 0.0, law)
@@ -153,10 +178,9 @@ def fit_sweep(
         cells.size[:, in_range],
         cells.factor.value[:, in_range],
         cells.law_factor.value[:, in_range],
-        draws,
+        [fit.factor_draws for fit in fits],
         freedom,
     )
-    by_name = dict(zip([item.name for item in fields(LawEstimates)], shares, strict=True))
     return SweepFit(
         table=table,
         kind=kind,
@@ -170,13 +194,13 @@ def fit_sweep(
         n_failed=np.count_nonzero(~np.isfinite(chosen.factor), axis=(1, 2)),
         cells=cells,
         spectra=spectra,
-        pooled=pooled_laws,
+        pooled=pooled,
         size_slope=_size_slopes(table, cells),
         pooled_size_slope=_size_slope(table, spectra.factor, freedom),
         n_needed=_needed_realisations(spectra.factor, n_realisation),
-        pooled_n_needed=_needed_realisations(pooled_laws.factor, np.max(n_realisation)),
+        pooled_n_needed=_needed_realisations(pooled.factor, np.max(n_realisation)),
         law_exponent=law_exponent,
-        pooled_law_exponent=_weighted_mean(law_exponent, by_name["exponent"]),
+        pooled_law_exponent=_weighted_mean(law_exponent, shares["exponent"]),
         powers=powers,
         midpoint_largest=largest,
         midpoint_probability=probability,
@@ -233,35 +257,60 @@ def _cell_estimates(samples: _Samples, midpoint_slope: float, law: SweepLaw) -> 
 
 def _fit_spectra(
     samples: _Samples,
-    freedom: NDArray[np.int64],
     n_bootstrap: int,
     seed: int,
     watched: Callable[[list[int]], Iterable[int]],
-) -> tuple[list[Estimate], Array, list[Array | None]]:
-    """Estimates of the fields of LawEstimates for the spectra, and (field, spectrum) weights.
+) -> list[_SpectrumFit]:
+    """Fit of every spectrum, each with an independent stream of random numbers."""
+    n_spectrum = samples.factor.shape[0]
+    streams = np.random.SeedSequence(seed).spawn(n_spectrum)
+    fits = []
+    for index in watched([*range(n_spectrum)]):
+        spectrum = _Samples(*(quantity[index] for quantity in samples))
+        fits.append(_fit_spectrum(spectrum, n_bootstrap, np.random.default_rng(streams[index])))
+    return fits
 
-    Also the k of the bootstrap samples of each spectrum, (n_sample, n_amplitude), None without.
-    """
-    draws: list[Array | None] = [None] * freedom.size
-    shape = len(fields(LawEstimates)), freedom.size
-    values, errors, weights = np.empty(shape), np.full(shape, np.nan), np.empty(shape)
-    streams = np.random.SeedSequence(seed).spawn(freedom.size)
-    for index in watched([*range(freedom.size)]):
-        present = np.any(np.isfinite(samples.factor[index]), axis=0)
-        spectrum = _Samples(*(quantity[index][:, present] for quantity in samples))
-        whole = np.ones((1, np.count_nonzero(present)))
-        count = np.count_nonzero(np.isfinite(spectrum.factor), axis=1)
-        # A cell of one realisation has no scatter, which the slopes' intervals would lack.
-        sloped = count >= min(2, np.max(count, initial=0))
-        value, weight = _statistics(_means(spectrum, whole), sloped)
-        values[:, index], weights[:, index] = value[:, 0], weight[:, 0]
-        if freedom[index] > 0:
-            rng = np.random.default_rng(streams[index])
-            resampled = _resampled(spectrum, n_bootstrap, rng)
-            drawn, _ = _statistics(resampled, sloped)
-            errors[:, index], draws[index] = scatter(drawn), resampled.factor
-    estimates = [student_estimate(*row, freedom) for row in zip(values, errors, strict=True)]
-    return estimates, weights, draws
+
+def _fit_spectrum(samples: _Samples, n_bootstrap: int, rng: np.random.Generator) -> _SpectrumFit:
+    """Fit of one spectrum from the realisations with a value at any amplitude."""
+    present = np.any(np.isfinite(samples.factor), axis=0)
+    samples = _Samples(*(quantity[:, present] for quantity in samples))
+    n_present = np.count_nonzero(present)
+    count = np.count_nonzero(np.isfinite(samples.factor), axis=1)
+    # A cell of one realisation has no scatter, which the slopes' intervals would lack.
+    sloped = count >= min(2, np.max(count, initial=0))
+    statistics = _statistics(_means(samples, np.ones((1, n_present))), sloped)
+    values = {name: statistic.values[0] for name, statistic in statistics.items()}
+    weights = {
+        name: statistic.weights[0] if np.isfinite(values[name]) else 0.0
+        for name, statistic in statistics.items()
+    }
+    if n_present < 2:
+        return _SpectrumFit(values, dict.fromkeys(values, math.nan), weights, None)
+    resampled = _resampled(samples, n_bootstrap, rng)
+    drawn = _statistics(resampled, sloped)
+    errors = {name: float(scatter(statistic.values)) for name, statistic in drawn.items()}
+    return _SpectrumFit(values, errors, weights, resampled.factor)
+
+
+def _spectra_estimates(fits: list[_SpectrumFit], freedom: NDArray[np.int64]) -> LawEstimates:
+    """Estimates of the spectra, (n_spectrum,), with intervals."""
+    return LawEstimates(
+        **{
+            name: student_estimate(
+                [fit.values[name] for fit in fits],
+                [fit.standard_errors[name] for fit in fits],
+                freedom,
+            )
+            for name in _LAW_NAMES
+        }
+    )
+
+
+def _pooling_shares(fits: list[_SpectrumFit]) -> dict[str, Array]:
+    """Shares of the spectra in each pooled estimate, (n_spectrum,), by the estimate's name."""
+    weights = {name: np.array([fit.weights[name] for fit in fits]) for name in _LAW_NAMES}
+    return {name: ratio(weight, np.sum(weight)) for name, weight in weights.items()}
 
 
 def _resampled(samples: _Samples, n_bootstrap: int, rng: np.random.Generator) -> _Samples:
@@ -283,8 +332,8 @@ def _means(samples: _Samples, counts: Array) -> _Samples:
     return _Samples(*means)
 
 
-def _statistics(means: _Samples, sloped: NDArray[np.bool_]) -> tuple[Array, Array]:
-    """Fields of LawEstimates for every bootstrap sample, and weights, (n_field, n_sample).
+def _statistics(means: _Samples, sloped: NDArray[np.bool_]) -> dict[str, _Statistic]:
+    """Numbers of every bootstrap sample, by the names of the fields of `LawEstimates`.
 
     Slopes use only the amplitudes that are `sloped`.
     """
@@ -292,18 +341,16 @@ def _statistics(means: _Samples, sloped: NDArray[np.bool_]) -> tuple[Array, Arra
     positive = means.hysteresis > 0
     logarithm = np.log2(means.hysteresis, where=positive, out=np.full(positive.shape, np.nan))
     energy, equal = finite_sum(means.energy), np.ones(positive.shape[0])
-    exponent, spread = slope(doublings, logarithm)
-    disorder_slope, spread_of_factors = slope(doublings, means.factor)
-    values = (
-        finite_mean(means.factor),
-        ratio(finite_sum(means.hysteresis), 2 * energy),
-        finite_mean(means.factor_from_force),
-        exponent,
-        ratio(finite_sum(means.depression), energy),
-        disorder_slope,
-    )
-    weights = (equal, energy, equal, spread, energy, spread_of_factors)
-    return np.array(values), np.where(np.isfinite(values), weights, 0.0)
+    by_sums = ratio(finite_sum(means.hysteresis), 2 * energy)
+    midpoint_slope = ratio(finite_sum(means.depression), energy)
+    return {
+        "factor": _Statistic(finite_mean(means.factor), equal),
+        "factor_by_sums": _Statistic(by_sums, energy),
+        "factor_from_force": _Statistic(finite_mean(means.factor_from_force), equal),
+        "exponent": _Statistic(*slope(doublings, logarithm)),
+        "midpoint_slope": _Statistic(midpoint_slope, energy),
+        "disorder_slope": _Statistic(*slope(doublings, means.factor)),
+    }
 
 
 def _largest_deviation(cells: CellEstimates, in_range: NDArray[np.bool_]) -> tuple[Array, Array]:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass
+from dataclasses import MISSING, dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +13,7 @@ from crackfront.analysis.run_measures import RunMeasures
 from crackfront.analysis.steady_adhesion import SteadyMeasures
 from crackfront.core.arrays import Array
 from crackfront.core.spectrum import SelfAffineSpectrum, Spectrum
-from crackfront.core.variables import ADHESION, FORCE, LATERAL, VERTICAL, variable
+from crackfront.core.variables import ADHESION, FORCE, LATERAL, VERTICAL, variable, variables
 
 SPECTRUM, AMPLITUDE, REALISATION = "spectrum", "amplitude", "realisation"
 """Dimensions of a sweep."""
@@ -68,31 +69,38 @@ class SweepAxes:
     parameters: NDArray[np.str_] | None = variable(_SHAPE_TEXT, "1", SPECTRUM, default=None)
 
 
+COLUMNS = {item.name: item for item in (*variables(SweepAxes), *variables(SweepRow, *PLACE))}
+"""Variables of the table of a sweep, by their names."""
+
+
+def column(name: str, default: Any = MISSING) -> Any:
+    """A field of a dataclass with the unit, text and dimensions of a column of the table."""
+    item = COLUMNS[name]
+    return variable(item.long_name, item.units, *item.dims, default=default)
+
+
 @dataclass(frozen=True, slots=True)
 class SweepTable:
     """Arrays of a sweep that a fit reads, NaN if a simulation failed."""
 
-    spectrum: NDArray[np.str_] = variable("name of the spectrum", "1", SPECTRUM)
+    spectrum: NDArray[np.str_] = column("spectrum")
+    # The file of a fit states these in shorter words than the table does.
     short_cutoff: Array = variable("shortest wavelength", LATERAL, SPECTRUM)
     roll_off: Array = variable("roll-off wavelength", LATERAL, SPECTRUM)
     correlation_length: Array = variable("correlation length of w_loc", LATERAL, SPECTRUM)
     hurst: Array = variable("Hurst exponent", "1", SPECTRUM)
     amplitude: Array = variable("requested e_el", ADHESION, AMPLITUDE)
-    e_el: Array = variable("measured e_el (chemical field: w_rms^2/4)", ADHESION, *PLACE)
-    w_rms: Array = variable("measured rms of the local work of adhesion", ADHESION, *PLACE)
-    w_appr: Array = variable("work of adhesion in approach", ADHESION, *PLACE)
-    w_retr: Array = variable("work of adhesion in retraction", ADHESION, *PLACE)
-    w_appr_from_force: Array = variable(
-        "work of adhesion by a JKR fit of the approach", ADHESION, *PLACE
-    )
-    w_retr_from_force: Array = variable(
-        "work of adhesion by a JKR fit of the retraction", ADHESION, *PLACE
-    )
-    w_appr_numerical_error: Array = variable("expected error of w_appr", ADHESION, *PLACE)
-    w_retr_numerical_error: Array = variable("expected error of w_retr", ADHESION, *PLACE)
+    e_el: Array = column("e_el")
+    w_rms: Array = column("w_rms")
+    w_appr: Array = column("w_appr")
+    w_retr: Array = column("w_retr")
+    w_appr_from_force: Array = column("w_appr_from_force")
+    w_retr_from_force: Array = column("w_retr_from_force")
+    w_appr_numerical_error: Array = column("w_appr_numerical_error")
+    w_retr_numerical_error: Array = column("w_retr_numerical_error")
     contact_radius: Array = variable("middle of the steady window; else NaN", LATERAL, *PLACE)
-    spring: Array = variable("springs of a straight front, L_kappa; else NaN", LATERAL, *_CELL)
-    parameters: NDArray[np.str_] | None = variable(_SHAPE_TEXT, "1", SPECTRUM, default=None)
+    spring: Array = column("spring")
+    parameters: NDArray[np.str_] | None = column("parameters", default=None)
 
     @property
     def numerical_error(self) -> Array:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -14,12 +15,11 @@ from crackfront.core.bounds import LENGTH, check_within
 
 if TYPE_CHECKING:
     from crackfront.analysis.estimate import Estimate
-    from crackfront.analysis.law import PinningFactor
+    from crackfront.analysis.law import Departure, PinningFactor
     from crackfront.core.adhesion import FieldKind
     from crackfront.core.spectrum import SelfAffineSpectrum
 
 _FRONT, _SPHERE = "--w-rms and --g", "--spectrum, --elastic-energy and --contact-radius"
-_ERRORS = ("statistical", "numerical", "model")
 
 
 @click.command(
@@ -80,75 +80,115 @@ def law(
         )
     if w_rms is not None and g is not None:
         factor = pinning_factor(w_rms, g, field, breadth)
-        # JSON lacks infinity.
-        inputs: dict[str, Any] = {"w_rms": w_rms, "g": g if math.isfinite(g) else "inf"}
-        inputs |= {} if breadth is None else {"breadth": breadth}
-        size, shape = g, breadth
-        entries = _entries(factor.factor, factor, factor, inputs, factor.warning)
+        answer = LawAnswer(
+            k=factor.factor,
+            approach=factor,
+            retraction=factor,
+            w_rms=w_rms,
+            g=g,
+            breadth=breadth,
+            departures=shipped_law().departures_at(g, breadth),
+        )
     elif spectrum is not None and elastic_energy is not None and contact_radius is not None:
-        factors = sphere_factors(field, _shape(spectrum), elastic_energy, contact_radius)
-        size, shape = factors.size, spectral_breadth(field, _shape(spectrum))
-        inputs = {"w_rms": adhesion_rms(elastic_energy), "l_kappa": factors.spring}
-        inputs |= {"larkin_length": factors.larkin_length, "g": factors.size}
-        entries = _entries(
-            factors.both, factors.approach, factors.retraction, inputs, factors.warning
+        shape = _shape(spectrum)
+        factors = sphere_factors(field, shape, elastic_energy, contact_radius)
+        answer = LawAnswer(
+            k=factors.both,
+            approach=factors.approach,
+            retraction=factors.retraction,
+            w_rms=adhesion_rms(elastic_energy),
+            l_kappa=factors.spring,
+            larkin_length=factors.larkin_length,
+            g=factors.size,
+            departures=shipped_law().departures_at(factors.size, spectral_breadth(field, shape)),
         )
     else:
         raise ValueError(f"the options are incomplete; name {_FRONT}, or else {_SPHERE}")
-    departures = [departure.sentence for departure in shipped_law().departures_at(size, shape)]
-    entries |= {
-        "departures": departures,
-        "measured": {"w_rms": shipped_law().disorder, "g": shipped_law().size},
-    }
-    echo_answer(entries, _lines(entries), as_json=as_json)
+    ranges = {"w_rms": shipped_law().disorder, "g": shipped_law().size}
+    content = answer.content | {"measured": ranges}
+    echo_answer(content, answer.lines(ranges), as_json=as_json)
 
 
-def _entries(
-    k: Estimate[float],
-    appr: PinningFactor,
-    retr: PinningFactor,
-    inputs: dict[str, Any],
-    warning: str,
-) -> dict[str, Any]:
-    """What is known of k and of its branches at a disorder and a size, for JSON."""
-    errors = {name: (getattr(appr, name) + getattr(retr, name)) / 2 for name in _ERRORS}
-    return {
-        "k": k.value,
-        "k_low": k.low,
-        "k_high": k.high,
-        "k_appr": appr.factor.value,
-        "k_retr": retr.factor.value,
-        **inputs,
-        **errors,
-        "negative_share": appr.negative_share,
-        "warning": warning,
-    }
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LawAnswer:
+    """k of a front, or of a sphere with its lengths, as the command prints it."""
 
+    k: Estimate[float]
+    """Mean of both branches."""
+    approach: PinningFactor
+    retraction: PinningFactor
+    """The same of a front."""
+    w_rms: float
+    """(Units: w_int)"""
+    g: float
+    """Length of the springs over the Larkin length."""
+    l_kappa: float | None = None
+    larkin_length: float | None = None
+    """None of a front, which only their ratio describes. (Units: reduced lateral length)"""
+    breadth: float | None = None
+    """Breadth of the spectrum of w_loc that a front was asked for, in e-folds."""
+    departures: Sequence[Departure]
+    """Where measured k are known to lie above the law."""
 
-def _lines(entries: dict[str, Any]) -> Iterator[str]:
-    """Lines of what is known of k."""
-    interval = f"{entries['k_low']:.3g} to {entries['k_high']:.3g}"
-    yield f"k              {entries['k']:.3f} (95%: {interval})"
-    errors = ", ".join(f"{name} {entries[name]:.2g}" for name in _ERRORS)
-    yield (
-        f"               approach {entries['k_appr']:.3f}, retraction {entries['k_retr']:.3f}; "
-        f"standard errors: {errors}"
-    )
-    size = f"g {float(entries['g']):.3g}"
-    if "l_kappa" in entries:
-        size += f" = L_kappa {entries['l_kappa']:.3g} / Larkin {entries['larkin_length']:.3g}"
-    if "breadth" in entries:
-        size += f", breadth {entries['breadth']:.3g}"
-    yield f"at             w_rms {entries['w_rms']:.3g} w_int, {size}"
-    ranges = (
-        f"{name} {low:.3g} to {high:.3g}" for name, (low, high) in entries["measured"].items()
-    )
-    yield f"measured for   {', '.join(ranges)}"
-    for sentence in entries["departures"]:
-        yield f"measured k     above the law: {sentence}"
-    yield f"negative w_loc {entries['negative_share']:.2%} of the surface"
-    if entries["warning"]:
-        yield f"beyond what was measured: {entries['warning']}"
+    @property
+    def errors(self) -> dict[str, float]:
+        """Standard errors of k by their origin, means of both branches."""
+        branches = self.approach, self.retraction
+        return {
+            "statistical": sum(branch.statistical for branch in branches) / 2,
+            "numerical": sum(branch.numerical for branch in branches) / 2,
+            "model": sum(branch.model for branch in branches) / 2,
+        }
+
+    @property
+    def warning(self) -> str:
+        """Sentences on numbers outside the measured ranges; empty inside."""
+        return self.approach.warning or self.retraction.warning
+
+    @property
+    def content(self) -> dict[str, Any]:
+        """Keys and values for JSON; a front lacks lengths, a sphere a breadth."""
+        inputs = {
+            "w_rms": self.w_rms,
+            "l_kappa": self.l_kappa,
+            "larkin_length": self.larkin_length,
+            "g": self.g if math.isfinite(self.g) else "inf",  # JSON lacks infinity
+            "breadth": self.breadth,
+        }
+        return {
+            "k": self.k.value,
+            "k_low": self.k.low,
+            "k_high": self.k.high,
+            "k_appr": self.approach.factor.value,
+            "k_retr": self.retraction.factor.value,
+            **{name: value for name, value in inputs.items() if value is not None},
+            **self.errors,
+            "negative_share": self.approach.negative_share,
+            "warning": self.warning,
+            "departures": [departure.sentence for departure in self.departures],
+        }
+
+    def lines(self, ranges: Mapping[str, tuple[float, float]]) -> Iterator[str]:
+        """Lines for people; `ranges` are those in which k was measured."""
+        yield f"k              {self.k.value:.3f} (95%: {self.k.low:.3g} to {self.k.high:.3g})"
+        errors = ", ".join(f"{name} {error:.2g}" for name, error in self.errors.items())
+        yield (
+            f"               approach {self.approach.factor.value:.3f}, "
+            f"retraction {self.retraction.factor.value:.3f}; standard errors: {errors}"
+        )
+        size = f"g {self.g:.3g}"
+        if self.l_kappa is not None:
+            size += f" = L_kappa {self.l_kappa:.3g} / Larkin {self.larkin_length:.3g}"
+        if self.breadth is not None:
+            size += f", breadth {self.breadth:.3g}"
+        yield f"at             w_rms {self.w_rms:.3g} w_int, {size}"
+        measured = (f"{name} {low:.3g} to {high:.3g}" for name, (low, high) in ranges.items())
+        yield f"measured for   {', '.join(measured)}"
+        for departure in self.departures:
+            yield f"measured k     above the law: {departure.sentence}"
+        yield f"negative w_loc {self.approach.negative_share:.2%} of the surface"
+        if self.warning:
+            yield f"beyond what was measured: {self.warning}"
 
 
 def _shape(text: str) -> SelfAffineSpectrum:

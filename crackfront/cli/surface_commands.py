@@ -53,10 +53,10 @@ if TYPE_CHECKING:
     from crackfront.measured.spectrum.stated import Surface
 
 
-def _listed(
+def _list_channels_and_exit(
     context: click.Context, parameter: click.Parameter, scans: tuple[Path, ...]
 ) -> tuple[Path, ...]:
-    """The scans, unless a command is to list their channels instead of what it does."""
+    """The scans; with --list-channels, print their channels and end the command instead."""
     if context.params.get("list_channels"):
         if not scans:
             raise ValueError("--list-channels lists the channels of scans; name SCANS")
@@ -76,7 +76,12 @@ def _scans(*, required: bool) -> Callable[[Command], Command]:
             "--list-channels", is_flag=True, is_eager=True, help="Only list the channels of SCANS."
         )(command)
         scans = click.argument(
-            "scans", type=FILE, nargs=-1, required=required, is_eager=True, callback=_listed
+            "scans",
+            type=FILE,
+            nargs=-1,
+            required=required,
+            is_eager=True,
+            callback=_list_channels_and_exit,
         )
         return scans(command)
 

@@ -106,7 +106,7 @@ def plan(
         "shards": [shard.name for shard in shards],
         "unit_of_lengths": "reduced" if sweep.scales is None else "m",
         "expected": expected,
-        "doubts": warnings,
+        "warnings": warnings,
         "changed": changed,
         **asdict(_cost(missing)),
     }
@@ -383,7 +383,7 @@ def status(folder: Path, as_json: bool) -> None:
     inventories = {item.name: store.progress(sweep, item) for item in sweep.spectra}
     progress, running = _progress(inventories), store.running_shards()
     sentences = sum(inventories.values(), Inventory()).sentences()
-    content = {"spectra": progress, "running": running, "older": sentences}
+    content = {"spectra": progress, "running": running, "reasons_to_run_again": sentences}
     echo_answer(content, [*_status_lines(progress, running), *sentences], as_json=as_json)
 
 

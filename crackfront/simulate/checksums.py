@@ -22,17 +22,21 @@ DAMAGED_SUFFIX = ".damaged"
 DIGITS_IN_NAME = 16
 """Digits of the checksum of a file that end its name, before its suffix."""
 
-_NAMED = re.compile(rf"(batch|curves|checkpoint)-.*-([0-9a-f]{{{DIGITS_IN_NAME}}})\.nc")
+BATCH, MERGED, CHECKPOINT = "batch", "curves", "checkpoint"
+"""Beginnings of the names that end with a checksum: finished simulations, many of them in one file,
+and simulations that are running."""
+
+_NAMED = re.compile(rf"({BATCH}|{MERGED}|{CHECKPOINT})-.*-([0-9a-f]{{{DIGITS_IN_NAME}}})\.nc")
 """Names that end with a checksum."""
 
 _LINE = re.compile(r"([0-9a-f]{64})  (.+)\n")
 """Line of a list: a checksum, two blanks and a name."""
 
-_NO_RESULTS = {"logs", "benchmarks"}
+_EXCLUDED_FOLDERS = {"logs", "benchmarks"}
 """Folders whose files are not results and change while results are made."""
 
-_NO_RESULT = {SUMS, "report.html"}
-"""Files that are no results: the list itself, and the report of Snakemake, which is made later."""
+_EXCLUDED_FILES = {SUMS, "report.html"}
+"""The list itself, and the report of Snakemake, which is made later."""
 
 
 def result_files(folder: Path) -> list[str]:
@@ -47,7 +51,7 @@ def result_files(folder: Path) -> list[str]:
         if os.path.realpath(place) in above:
             folders.clear()  # a link that leads back
             continue
-        folders[:] = [name for name in folders if name not in _NO_RESULTS and name[0] != "."]
+        folders[:] = [name for name in folders if name not in _EXCLUDED_FOLDERS and name[0] != "."]
         paths = (Path(place, name) for name in files if _is_result(name))
         names += [path.relative_to(folder).as_posix() for path in paths if path.is_file()]
     return sorted(names)
@@ -55,8 +59,8 @@ def result_files(folder: Path) -> list[str]:
 
 def _is_result(name: str) -> bool:
     """Whether a file of this name is a result."""
-    left_out = name in _NO_RESULT or name.endswith(DAMAGED_SUFFIX) or name.startswith("checkpoint-")
-    return not left_out and name[0] != "."
+    left_out = name in _EXCLUDED_FILES or name[0] == "."
+    return not (left_out or name.endswith(DAMAGED_SUFFIX) or name.startswith(f"{CHECKPOINT}-"))
 
 
 def file_digest(path: Path) -> str:

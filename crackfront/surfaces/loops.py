@@ -13,7 +13,7 @@ from xarray import DataArray, Dataset
 
 from crackfront.analysis.estimate import with_error
 from crackfront.analysis.steady_adhesion import SteadyAdhesion, SteadyMeasures
-from crackfront.analysis.table import SweepAxes, SweepRow
+from crackfront.analysis.table import COLUMNS
 from crackfront.core.cycle.follow import Load, front_at
 from crackfront.core.cycle.load_schedule import LoadSchedule
 from crackfront.core.cycle.record import CycleRecord, Recorder
@@ -35,8 +35,6 @@ from crackfront.surfaces.loop_setup import (
 )
 from crackfront.surfaces.pressed_sphere import PressedSphere
 from crackfront.validation import Density, Finite, Fraction, Positive, Sites, checked_call, one_of
-
-_VARIABLES = {item.name: item for kind in (SweepAxes, SweepRow) for item in variables(kind)}
 
 
 @checked_call
@@ -185,10 +183,7 @@ def loop_dataset(record: CycleRecord, setup: LoopSetup) -> Dataset:
     result = _result_sentence(record, steady, setup.remark)
     sentences = {"result": result, "steady_sentence": steady.sentence}
     whole = curves.assign(
-        {
-            name: labelled(replace(_VARIABLES[name], dims=()), value)
-            for name, value in values.items()
-        }
+        {name: labelled(replace(COLUMNS[name], dims=()), value) for name, value in values.items()}
     )
     return whole.drop_attrs(deep=False).assign_attrs(sentences | curves.attrs, kind=measures.kind)
 

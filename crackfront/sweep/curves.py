@@ -26,7 +26,7 @@ from crackfront.core.cycle.record import CycleRecord
 from crackfront.core.geometry.base import State
 from crackfront.core.outcome import Status
 from crackfront.core.variables import ADHESION, ENERGY, Variable, variables
-from crackfront.simulate.checksums import stated_digest
+from crackfront.simulate.checksums import BATCH, MERGED, stated_digest
 from crackfront.simulate.labels import label
 from crackfront.simulate.provenance import Provenance
 from crackfront.simulate.run_simulation import SimulationResult
@@ -36,7 +36,7 @@ from crackfront.simulate.storage import (
     read_dataset,
     write_named_by_digest,
 )
-from crackfront.sweep.rows import STATUSES, row_columns
+from crackfront.sweep.rows import CYCLE_STATUSES, STATUSES, row_columns
 
 SIMULATION, STATE, FRONT_SITE = "simulation", "state", "front_site"
 """Dimensions of a file: simulations, the states of all, and the sites of the fronts of all."""
@@ -44,9 +44,8 @@ SIMULATION, STATE, FRONT_SITE = "simulation", "state", "front_site"
 _COUNTS = {"n_state": STATE, "n_front_site": FRONT_SITE}
 """Variables that count the entries of each simulation along a ragged dimension."""
 
-_CYCLE_STATUSES = tuple(status.name.lower() for status in Status)
 
-_FLAGS = {"status": STATUSES, "cycle_status": _CYCLE_STATUSES}
+_FLAGS = {"status": STATUSES, "cycle_status": CYCLE_STATUSES}
 """Words that the numbers in a variable stand for."""
 
 _NO_CYCLE = -1
@@ -74,9 +73,6 @@ _FRONT = Variable("front", (FRONT_SITE,), "1", "fronts of all states, in reduced
 
 PARAMETERS = "parameters_of_series"
 """Attribute of a file: the parameters of each series in it, as JSON."""
-
-BATCH, MERGED = "batch", "curves"
-"""Beginnings of the names of files."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -147,7 +143,7 @@ def _cycle_status(record: CycleRecord | None) -> int:
     """Place of the status of a cycle among all."""
     if record is None:
         return _NO_CYCLE
-    return _CYCLE_STATUSES.index(record.status.name.lower())
+    return list(Status).index(record.status)
 
 
 def _pull_off_energy(record: CycleRecord | None) -> float:
@@ -303,7 +299,7 @@ def _result(dataset: xr.Dataset, simulation: Simulation) -> SimulationResult | N
     energies, fronts = dataset.get("dissipated_energy"), dataset.get("front")
     n_site, pull_off = int(row["n_site"]), float(row["pull_off_energy"])
     record = CycleRecord(
-        status=Status[_CYCLE_STATUSES[int(row["cycle_status"])].upper()],
+        status=list(Status)[int(row["cycle_status"])],
         end_load=float(row["end_load"]),
         states=_states_of(dataset, simulation.geometry.state_type),
         dissipated_energy=None if energies is None else energies.values,

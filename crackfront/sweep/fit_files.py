@@ -17,14 +17,12 @@ from crackfront.simulate.jsonable import to_jsonable
 from crackfront.simulate.labels import labelled
 from crackfront.simulate.provenance import Provenance, utc_now
 from crackfront.simulate.storage import read_derived, write_derived, write_text
-
-_REQUEST = "request"
-"""Attribute that says what a fit was asked for, by the digest of its request."""
+from crackfront.sweep.requests import REQUEST
 
 
 def fitted_request(path: Path) -> str:
     """Digest of what a `fit.nc` was asked for; errors are as in `read_derived`."""
-    return str(read_derived(path, ()).attrs.get(_REQUEST, ""))
+    return str(read_derived(path, ()).attrs.get(REQUEST, ""))
 
 
 def write_fit(
@@ -40,7 +38,7 @@ def write_fit(
         "highest_elastic_energy": fit.highest_elastic_energy,
         "n_bootstrap": fit.n_bootstrap,
         "seed": fit.seed,
-        _REQUEST: request,
+        REQUEST: request,
         "factor_of_the_paper": PAPER_FACTOR,
         "factor_of_perturbation_theory": PERTURBATION_FACTOR,
     }

@@ -16,6 +16,9 @@ from crackfront.sweep.sweep import NamedSpectrum, Shard, Sweep
 FOLDER = "requests"
 """Folder of the requests among results."""
 
+REQUEST = "request"
+"""Attribute of a file: the digest of what it was asked for."""
+
 _DIGITS = 12
 
 

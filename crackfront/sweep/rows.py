@@ -22,16 +22,31 @@ from crackfront.simulate.numerical_errors import stated_error
 from crackfront.simulate.run_simulation import SimulationResult
 from crackfront.simulate.simulation import Simulation
 
-COMPLETE = ("lost_contact", "steady")
+
+def _status_word(status: Status) -> str:
+    """Word of a file for how a cycle ended."""
+    return status.name.lower()
+
+
+_FULL_CYCLE = _status_word(Status.LOST_CONTACT)
+
+COMPLETE = _FULL_CYCLE, _status_word(Status.STEADY)
 """Statuses of a simulation that has values: a full cycle, or the steady parts of both branches."""
 
-AT_LIMIT = Status.STEP_LIMIT.name.lower()
+AT_LIMIT = _status_word(Status.STEP_LIMIT)
 """Status of a simulation that reached its limit of sweeps, and may go on with a higher one."""
 
 NO_STEADY_PART = "no_steady_part"
 """Status of a complete cycle without enough steady states."""
 
-STATUSES = (*(status.name.lower() for status in Status), NO_STEADY_PART, "refused", "defect")
+INVALID, DEFECT = "invalid", "defect"
+"""Statuses of a simulation whose surface or load cannot be simulated, and of one whose result the
+solver found to be wrong."""
+
+CYCLE_STATUSES = tuple(map(_status_word, Status))
+"""How a cycle may end; files of curves have their places."""
+
+STATUSES = (*CYCLE_STATUSES, NO_STEADY_PART, INVALID, DEFECT)
 """What `status` may be; the file of a sweep has their places."""
 
 
@@ -42,7 +57,7 @@ def sweep_row(result: SimulationResult) -> SweepRow:
     steady = result.steady_adhesion
     status, sentence = _status(record, steady)
     complete = status in COMPLETE
-    is_cycle = status == Status.LOST_CONTACT.name.lower()
+    is_cycle = status == _FULL_CYCLE
     numerical = stated_error(simulation, steady, length) if complete else (np.nan, np.nan)
     measures: dict[str, Any] = {
         item.name: getattr(steady, item.name) if complete or item.units != ADHESION else np.nan
@@ -74,7 +89,7 @@ def failed_row(simulation: Simulation, status: str, sentence: str) -> SweepRow:
 
 def _status(record: CycleRecord, steady: SteadyAdhesion) -> tuple[str, str]:
     """How a simulation ended, in a word and in a sentence."""
-    status = record.status.name.lower()
+    status = _status_word(record.status)
     if status in COMPLETE and steady.sentence:
         return NO_STEADY_PART, steady.sentence
     return status, record.status.value

@@ -18,7 +18,7 @@ from crackfront.core.versions import PHYSICS_VERSION, ROWS_VERSION
 from crackfront.simulate.provenance import Provenance
 from crackfront.simulate.storage import write_derived
 from crackfront.sweep.curves import PARAMETERS, parameters_text
-from crackfront.sweep.requests import shard_request
+from crackfront.sweep.requests import REQUEST, shard_request
 from crackfront.sweep.rows import AT_LIMIT, COMPLETE, STATUSES
 from crackfront.sweep.sweep import Shard, Sweep
 from crackfront.sweep.table_file import columns_dataset
@@ -89,7 +89,7 @@ def write_shard(
     about = {
         "spectrum_name": shard.item.name,
         "series_of_amplitudes": _BETWEEN.join(sweep.series(shard.item)),
-        "request": shard_request(sweep, shard).digest,
+        REQUEST: shard_request(sweep, shard).digest,
         "first_realisation": np.int64(shard.realisations[0]),
         "last_realisation": np.int64(shard.realisations[-1]),
         "n_failed": np.count_nonzero(~complete, axis=(0, 2)),
@@ -113,7 +113,7 @@ def shard_summary(path: Path) -> ShardSummary:
             series=tuple(str(file.series_of_amplitudes).split(_BETWEEN)),
             physics_version=int(file.physics_version),
             rows_version=int(file.rows_version),
-            request=str(file.request),
+            request=str(file.getncattr(REQUEST)),
             n_failed=np.atleast_1d(file.n_failed),
             limit=int(file.limit),
             cpu_seconds=np.atleast_1d(file.total_cpu_seconds),

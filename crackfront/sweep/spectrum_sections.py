@@ -34,8 +34,8 @@ if TYPE_CHECKING:
     from crackfront.measured.spectrum.measured_surface import MeasuredSurface
 
 
-def _listed(value: Any) -> Any:
-    """A list, of one entry where a single text or number stands for it."""
+def _as_tuple(value: Any) -> Any:
+    """A tuple as it is; a single text or number as a tuple of one."""
     return (value,) if isinstance(value, (str, int)) else value
 
 
@@ -45,7 +45,7 @@ class SurfaceSection(Section):
     # The other keys are the fields of `ReadingOptions`.
     model_config = ConfigDict(extra="allow")
 
-    file: Annotated[tuple[InputFile, ...], BeforeValidator(_listed), Field(min_length=1)]
+    file: Annotated[tuple[InputFile, ...], BeforeValidator(_as_tuple), Field(min_length=1)]
     _options: tuple[ReadingOptions, ...] = PrivateAttr()
 
     @model_validator(mode="after")

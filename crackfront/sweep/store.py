@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from crackfront.analysis.table import SweepRow, SweepTable
 from crackfront.core.variables import variables
 from crackfront.core.versions import PHYSICS_VERSION, ROWS_VERSION
-from crackfront.simulate.checksums import forget_sums
+from crackfront.simulate.checksums import MERGED, forget_sums
 from crackfront.simulate.costs import expected_cost
 from crackfront.simulate.provenance import Provenance
 from crackfront.simulate.run_simulation import SimulationResult
@@ -35,7 +35,6 @@ from crackfront.simulate.storage import (
     write_text,
 )
 from crackfront.sweep.curves import (
-    MERGED,
     SIMULATION,
     StoredRows,
     concatenated,
@@ -54,7 +53,7 @@ from crackfront.sweep.inventory import (
     located_rows,
 )
 from crackfront.sweep.parallel import stop_is_requested
-from crackfront.sweep.requests import FOLDER, Request, shard_request, table_request
+from crackfront.sweep.requests import FOLDER, REQUEST, Request, shard_request, table_request
 from crackfront.sweep.rows import row_columns, sweep_row
 from crackfront.sweep.shards import (
     ShardSummary,
@@ -64,7 +63,7 @@ from crackfront.sweep.shards import (
     write_shard,
 )
 from crackfront.sweep.sweep import NamedSpectrum, Shard, Sweep
-from crackfront.sweep.table_file import TABLE_REQUEST, read_table, write_hysteresis
+from crackfront.sweep.table_file import read_table, write_hysteresis
 
 Announce = Callable[[str], None]
 """Called with a sentence on a damaged file, or on another process that is waited for."""
@@ -381,7 +380,7 @@ class Store:
                 "configuration of the sweep, or the workflow"
             )
         about = read_derived(self.hysteresis, ()).attrs
-        if about.get(TABLE_REQUEST) != table_request(sweep).digest:
+        if about.get(REQUEST) != table_request(sweep).digest:
             raise ValueError(
                 f"{self.hysteresis} is the table of another configuration than the one given; run "
                 "crackfront simulate and crackfront aggregate with this one, or the workflow"

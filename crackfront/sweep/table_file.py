@@ -7,7 +7,7 @@ import json
 import math
 from collections import Counter
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import asdict
+from dataclasses import MISSING, asdict, fields
 from operator import attrgetter
 from pathlib import Path
 from typing import Any
@@ -18,7 +18,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from crackfront.analysis.steady_adhesion import STEADY_DEFINITION
-from crackfront.analysis.table import SweepAxes, SweepRow, SweepTable
+from crackfront.analysis.table import COLUMNS, SweepAxes, SweepRow, SweepTable
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.core.variables import variables
@@ -26,12 +26,10 @@ from crackfront.simulate.contact import OnSprings, Schedule
 from crackfront.simulate.labels import flag_words, labelled_fields
 from crackfront.simulate.provenance import Provenance
 from crackfront.simulate.storage import UnreadableFileError, read_derived, write_derived
-from crackfront.sweep.requests import table_request
+from crackfront.surfaces.scales import CONFIGURED
+from crackfront.sweep.requests import REQUEST, table_request
 from crackfront.sweep.rows import labelled_columns
 from crackfront.sweep.sweep import Sweep
-
-TABLE_REQUEST = "request"
-"""Attribute that says what a table was asked for, by the digest of its request."""
 
 _MOST_ADHESION = 100.0
 """Works of adhesion and energies above this are damage. (Units: w_int)"""
@@ -69,7 +67,7 @@ def write_hysteresis(
         ]
         columns[variable.name] = np.concatenate(spectra)
     dataset = columns_dataset(sweep, columns, range(sweep.n_realisation))
-    request = {TABLE_REQUEST: table_request(sweep).digest}
+    request = {REQUEST: table_request(sweep).digest}
     with _small_chunk_caches():
         write_derived(path, dataset.assign_attrs(request), origin)
 
@@ -94,8 +92,10 @@ def read_table(path: Path) -> SweepTable:
     UnreadableFileError if the file is missing, truncated, or not the table of a sweep, or if a
     value exceeds what any contact can have.
     """
-    names = sorted(set(SweepTable.__dataclass_fields__) - {"contact_radius", "parameters"})
-    dataset = _read(path, (*names, *_WINDOW))
+    stored = [item for item in fields(SweepTable) if item.name in COLUMNS]
+    required = [item.name for item in stored if item.default is MISSING]
+    dataset = _read(path, (*required, *_WINDOW))
+    names = [item.name for item in stored if item.name in dataset]
     columns = {name: np.asarray(dataset[name]) for name in names}
     for name in ("e_el", "w_rms", "w_appr", "w_retr"):
         values = np.abs(columns[name])
@@ -105,8 +105,6 @@ def read_table(path: Path) -> SweepTable:
                 f"{path}: {name} is up to {largest:.3g} w_int, a value that no contact can have; "
                 "aggregate the sweep again"
             )
-    if "parameters" in dataset:  # of spectra that are not self-affine
-        columns["parameters"] = np.asarray(dataset["parameters"])
     columns["contact_radius"] = np.mean([dataset[name] for name in _WINDOW], axis=0)
     columns["spectrum"] = columns["spectrum"].astype(np.str_)
     return SweepTable(**columns)
@@ -177,7 +175,7 @@ def _attributes(sweep: Sweep) -> dict[str, str | float]:
         "sweep_seed": sweep.seed,
     }
     if sweep.scales is not None:
-        attributes |= {f"scale_{name}": value for name, value in asdict(sweep.scales).items()}
+        attributes |= {f"{CONFIGURED}{name}": value for name, value in asdict(sweep.scales).items()}
         attributes |= {
             "lateral_unit_in_metres": sweep.scales.lateral,
             "vertical_unit_in_metres": sweep.scales.vertical,

@@ -17,7 +17,7 @@ from numba.core.errors import NumbaError
 
 from crackfront.core.outcome import DefectError
 from crackfront.core.resources import TooLargeError
-from crackfront.simulate.checksums import forget_sums
+from crackfront.simulate.checksums import BATCH, CHECKPOINT, forget_sums
 from crackfront.simulate.costs import expected_cost
 from crackfront.simulate.cycle_files import read_checkpoint, write_checkpoint
 from crackfront.simulate.provenance import Provenance
@@ -31,16 +31,13 @@ from crackfront.simulate.simulation import Simulation
 from crackfront.simulate.storage import set_aside, set_aside_if_damaged
 from crackfront.sweep import parallel
 from crackfront.sweep.checkpoints import CheckpointTimer
-from crackfront.sweep.curves import BATCH, FinishedSimulation, curves_dataset, write_curves
-from crackfront.sweep.rows import failed_row, sweep_row
+from crackfront.sweep.curves import FinishedSimulation, curves_dataset, write_curves
+from crackfront.sweep.rows import DEFECT, INVALID, failed_row, sweep_row
 from crackfront.sweep.store import Store
 from crackfront.sweep.sweep import Shard
 
 _STOPPED, _NOT_STORED = "stopped", "not_stored"
 """Statuses of tasks after which a run ends; they have no row."""
-
-_CHECKPOINT = "checkpoint"
-"""Beginning of the names of the files of checkpoints."""
 
 _WRITING_ERRORS = (OSError, RuntimeError)
 """What writing a file raises where the machine cannot; netCDF has errors of its own."""
@@ -106,7 +103,7 @@ class BatchWriter:
 
 def checkpoint_files(folder: Path, simulation: Simulation) -> list[Path]:
     """Checkpoints of a simulation in the folder of its shard, the latest last."""
-    paths = folder.glob(f"{_CHECKPOINT}-{simulation.stem}-*.nc")
+    paths = folder.glob(f"{CHECKPOINT}-{simulation.stem}-*.nc")
     return sorted(paths, key=lambda path: path.stat().st_mtime)
 
 
@@ -253,7 +250,7 @@ def _write_checkpoint(folder: Path, partial: PartialRun, origin: Provenance) -> 
     """Write a checkpoint and remove earlier ones of its simulation."""
     simulation = partial.simulation
     earlier = checkpoint_files(folder, simulation)
-    latest = write_checkpoint(folder, f"{_CHECKPOINT}-{simulation.stem}", partial, origin)
+    latest = write_checkpoint(folder, f"{CHECKPOINT}-{simulation.stem}", partial, origin)
     for path in earlier:
         if path != latest:
             path.unlink(missing_ok=True)
@@ -287,7 +284,7 @@ def _run(task: _Task, idle: Callable[[], None]) -> _TaskResult:
         raise
     except _REPRODUCIBLE_ERRORS as error:
         # The surface or the load cannot be simulated, or the solver found a defect in itself.
-        status = "refused" if isinstance(error, ValueError) else "defect"
+        status = INVALID if isinstance(error, ValueError) else DEFECT
         sentence = str(error) or type(error).__name__
         row = failed_row(simulation, status, sentence)
         finished = FinishedSimulation(simulation, row, None, arithmetic)

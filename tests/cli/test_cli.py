@@ -141,7 +141,7 @@ def test_the_status_counts_what_is_done_failed_and_left(tmp_path, copy_store):
     copy_store("rough", tmp_path)
     flat, store = sweep.shards()[0], Store(tmp_path)
     simulation = next(sweep.simulations(flat.item))
-    row = failed_row(simulation, "refused", "too rough")
+    row = failed_row(simulation, "invalid", "too rough")
     writer = BatchWriter(store.curve_folder(flat), provenance(), seconds=60)
     writer.add(FinishedSimulation(simulation, row, None, "processor"))
     writer.flush()
@@ -236,7 +236,10 @@ def test_machines_read_the_plan_the_progress_and_the_fit(tmp_path, copy_store):
         assert run(command, TEST, *output[:2]).exit_code == 0
     after = json.loads(run("plan", TEST, *output).stdout)
     assert (after["missing"], after["core_seconds"]) == (0, 0)
-    spectra = json.loads(run("status", tmp_path, "--json").stdout)["spectra"]
+    assert after["warnings"] == []
+    status = json.loads(run("status", tmp_path, "--json").stdout)
+    assert status["reasons_to_run_again"] == []
+    spectra = status["spectra"]
     assert [(one["name"], one["done"], one["left"]) for one in spectra] == [
         ("flat", 4, 0),
         ("rough", 4, 0),

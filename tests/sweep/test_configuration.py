@@ -499,7 +499,7 @@ def test_a_sweep_without_a_measured_surface_imports_nothing_that_reads_scans(tmp
 
 
 def test_the_table_of_a_sweep_keeps_measured_spectra(film, tmp_path):
-    rows = [failed_row(simulation, "refused", "a test") for simulation in film.simulations()]
+    rows = [failed_row(simulation, "invalid", "a test") for simulation in film.simulations()]
     dataset = dataset_of_rows(film, rows)
     write_derived(tmp_path / "hysteresis.nc", dataset, provenance("text"))
     table = read_table(tmp_path / "hysteresis.nc")
@@ -518,7 +518,7 @@ def test_the_table_of_a_sweep_in_metres_is_converted_for_the_sphere_that_it_stat
     content["spectra"] = [{"name": "flat", "short_cutoff": 6e-6}]
     content["load"] = {"max_penetration": 3e-6, "step": 1e-6}
     sweep = load_sweep(written(tmp_path, to_yaml(content)))
-    rows = [failed_row(simulation, "refused", "a test") for simulation in sweep.simulations()]
+    rows = [failed_row(simulation, "invalid", "a test") for simulation in sweep.simulations()]
     table = dataset_of_rows(sweep, rows)
     converted = cf.in_si_units(table)
     assert converted.short_cutoff.values == pytest.approx(6e-6, rel=1e-12)

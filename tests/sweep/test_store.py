@@ -191,6 +191,8 @@ def test_a_new_version_of_the_physics_runs_all_again_says_so_and_mixes_nothing(
     said = f"8 stored simulations belong to an older version of the physics (now {version})"
     assert said in done("plan", configuration, "--output", folder).stdout
     assert said in done("status", folder).stdout
+    status = json.loads(done("status", folder, "--json").stdout)
+    assert status["reasons_to_run_again"] == [f"{said} and run again"]
     assert simulate(configuration, folder, "--spectrum", "flat") == FLAT
     said = said.replace("8", "4")
     assert said in done("plan", configuration, "--output", folder).stdout
@@ -222,8 +224,8 @@ def test_a_new_version_of_rows_remakes_them_from_states_and_runs_nothing(
 def test_a_simulation_that_fails_is_a_row_is_not_tried_again_and_costs_no_other(
     configuration, made, tmp_path, monkeypatch
 ):
-    folder, (refused_one, defect, *_) = tmp_path / "sweep", SWEEP.simulations()
-    errors = {refused_one: ValueError("too rough"), defect: DefectError("a jump")}
+    folder, (invalid, defect, *_) = tmp_path / "sweep", SWEEP.simulations()
+    errors = {invalid: ValueError("too rough"), defect: DefectError("a jump")}
 
     def fail(simulation, **options):
         if simulation in errors:
@@ -237,7 +239,7 @@ def test_a_simulation_that_fails_is_a_row_is_not_tried_again_and_costs_no_other(
     assert simulate(configuration, folder) == set()
     assert done("status", folder).stdout.splitlines()[1].split()[:4] == ["flat", "2", "2", "0"]
     told = done("aggregate", configuration, "--output", folder).stderr
-    for words in ("2 of 8 simulations", "1 refused", "too rough", "1 defect", "a jump"):
+    for words in ("2 of 8 simulations", "1 invalid", "too rough", "1 defect", "a jump"):
         assert words in told
     rows, expected = table(folder / "hysteresis.nc"), table(made.hysteresis)
     with_value = np.isfinite(rows["w_appr"])

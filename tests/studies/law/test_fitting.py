@@ -74,7 +74,7 @@ def test_the_table_of_another_configuration_is_refused(tmp_path, monkeypatch, ve
     path = Path("sweep.yaml")
     path.write_text(text)
     sweep = load_sweep(path)
-    rows = [failed_row(simulation, "refused", "a test") for simulation in sweep.simulations()]
+    rows = [failed_row(simulation, "invalid", "a test") for simulation in sweep.simulations()]
     table = dataset_of_rows(sweep, rows)
     write_derived(Path("results/sweep/hysteresis.nc"), table, provenance(text))
     path.write_text(re.sub(r"^seed: \d+", "seed: 77", text, flags=re.M))
