@@ -15,6 +15,7 @@ from typing import get_args
 
 import numpy as np
 from numpy.typing import ArrayLike
+from scipy.interpolate import interp1d
 
 from crackfront.core.adhesion import FieldKind, correlation_length, force_correlation_length
 from crackfront.core.arrays import Array
@@ -84,8 +85,7 @@ class LawInterpolation:
         energies = np.array([law.elastic_energy for law in laws])
         between = (energies > self.lowest) & (energies < self.highest)
         amplitudes = np.log([self.lowest, *energies[between], self.highest])
-        weights = _linear_weights(amplitudes, np.log(energies))
-        return np.max(np.tensordot(weights, measured, axes=1), axis=0)
+        return np.max(_interpolated(amplitudes, np.log(energies), measured), axis=0)
 
 
 @functools.cache
@@ -98,8 +98,8 @@ def law_interpolation(
     """
     shapes = (_NARROW[kind], "h03", "h08")
     measured = np.log([_relative_correlation_length(*MEASURED[shape]) for shape in shapes])
-    length = math.log(_relative_correlation_length(kind, spectrum))
-    [weights] = _linear_weights(np.array([length]), measured).tolist()
+    length = np.log(_relative_correlation_length(kind, spectrum))
+    weights = _interpolated(length, measured, np.eye(len(shapes))).tolist()
     correlated = force_correlation_length(kind, spectrum) * LAW_CUTOFF / spectrum.short_cutoff
     # Avalanches begin where the Larkin length falls to _ONSET, within a factor of 2. Below it the
     # amplitudes count up to that with as many at the cutoff of the laws; w_rms**2 = 4 e_el w_int.
@@ -114,12 +114,14 @@ def law_interpolation(
     )
 
 
-def _linear_weights(places: Array, measured: Array) -> Array:
-    """Weights of rising measured places in a linear interpolation, (n_places, n_measured).
+def _interpolated(places: ArrayLike, measured: Array, values: Array) -> Array:
+    """Values (n_measured, ...) at other places, linear between the measured ones, constant beyond.
 
-    Beyond the ends the nearest place has the weight 1.
+    The measured places increase.
     """
-    return np.transpose([np.interp(places, measured, row) for row in np.eye(measured.size)])
+    ends = values[0], values[-1]
+    interpolation = interp1d(measured, values, axis=0, bounds_error=False, fill_value=ends)
+    return np.asarray(interpolation(places))
 
 
 def _relative_correlation_length(kind: FieldKind, spectrum: Spectrum) -> float:
