@@ -38,6 +38,9 @@ _NARROW: dict[FieldKind, str] = {"chemical": "chemical", "roughness": "flat"}
 _ONSET = 0.7
 """Larkin length, in radii of the sphere, at which scatter was largest in all shapes."""
 
+_ONSET_SPREAD = 2.0
+"""Factor within which the onset of avalanches is known."""
+
 _LEEWAY = 1.05
 """Relative tolerance of e_el and correlation lengths outside the measured range."""
 
@@ -92,7 +95,15 @@ class LawInterpolation:
 def law_interpolation(
     kind: FieldKind, spectrum: Spectrum, elastic_energy: float, size: float
 ) -> LawInterpolation:
-    """Shapes with the next correlation lengths, and amplitudes with as early an onset.
+    """Measured shapes and amplitudes whose errors stand for a spectrum and an amplitude.
+
+    Shapes: the two neighbours in correlation length, interpolated linearly in its logarithm.
+
+    Amplitudes: from e_el up to the one at which the fronts of the laws have as many Larkin lengths
+    as this front, because avalanches begin along a long front at a smaller e_el. A Larkin length
+    is proportional to 1 / e_el, so that this equivalent amplitude is e_el times the length of the
+    front over the length of the laws' fronts. Amplitudes above the onset of avalanches are left
+    out.
 
     `size` is the size of the front for which settings are chosen.
     """
@@ -101,16 +112,16 @@ def law_interpolation(
     length = np.log(_relative_correlation_length(kind, spectrum))
     weights = _interpolated(length, measured, np.eye(len(shapes))).tolist()
     correlated = force_correlation_length(kind, spectrum) * LAW_CUTOFF / spectrum.short_cutoff
-    # Avalanches begin where the Larkin length falls to _ONSET, within a factor of 2. Below it the
-    # amplitudes count up to that with as many at the cutoff of the laws; w_rms**2 = 4 e_el w_int.
-    onset = 2 * math.pi * correlated / (4 * _ONSET)
-    shorter = size / LAW_SIZE
-    highest = max(elastic_energy, min(2 * elastic_energy * shorter, onset))
+    # The Larkin length at the cutoff of the laws is 2 pi correlated / (4 e_el / w_int).
+    onset_energy = 2 * math.pi * correlated / (4 * _ONSET)
+    relative_length = size / LAW_SIZE
+    equivalent_energy = elastic_energy * relative_length
+    highest = max(elastic_energy, min(_ONSET_SPREAD * equivalent_energy, onset_energy))
     return LawInterpolation(
         tuple((shape, weight) for shape, weight in zip(shapes, weights, strict=True) if weight > 0),
         elastic_energy,
         highest,
-        max(elastic_energy / highest, 1 / max(shorter, 1.0)),
+        max(elastic_energy / highest, 1 / max(relative_length, 1.0)),
     )
 
 
