@@ -12,7 +12,6 @@ from crackfront.core.synthesis import FEWEST_POINTS
 from crackfront.simulate.contact import Pressed, SurfaceLoads
 from crackfront.simulate.costs import check_sizes, expected_cost
 from crackfront.simulate.numerical_errors import missed_error
-from crackfront.simulate.settings import Settings
 from crackfront.simulate.simulation import Simulation
 from crackfront.sweep.section import ConfigurationError
 from crackfront.sweep.sweep import Sweep
@@ -52,7 +51,7 @@ def check_feasible(sweep: Sweep, path: Path) -> None:
                 if isinstance(sweep.schedule, SurfaceLoads):
                     sweep.schedule.check_resolution(simulation)
                 _check_resolution(simulation)
-                _check_tolerance_and_error(simulation, sweep.numerics.settings)
+                _check_tolerance_and_error(simulation, sweep.numerics.error)
     except ValueError as error:
         raise ConfigurationError(f"{path}: {error}") from error
 
@@ -115,7 +114,7 @@ def _check_resolution(simulation: Simulation) -> None:
         )
 
 
-def _check_tolerance_and_error(simulation: Simulation, requested: Settings | float) -> None:
+def _check_tolerance_and_error(simulation: Simulation, requested: float | None) -> None:
     """Raise ValueError if the tolerance is of no use, or the requested error cannot be reached."""
     tolerance, n_angle = simulation.solver.tolerance, simulation.resolution.n_angle
     name, elastic_energy = simulation.spectrum_name, simulation.elastic_energy
@@ -125,7 +124,7 @@ def _check_tolerance_and_error(simulation: Simulation, requested: Settings | flo
             f"numerics: tolerance is {tolerance}, below the round-off of the {n_angle} "
             f"sites of {name} ({round_off:.1e}); raise it"
         )
-    if isinstance(requested, Settings):
+    if requested is None:
         if tolerance > elastic_energy:
             raise ValueError(
                 f"numerics: tolerance is {tolerance:g}, above e_el {elastic_energy:.3g} of {name}, "

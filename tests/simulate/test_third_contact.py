@@ -273,7 +273,7 @@ SWEEP = Sweep(
     spectra=(NamedSpectrum("flat", FLAT),),
     elastic_energies=(0.04, 0.09),
     n_realisation=1,
-    numerics=Numerics(Settings(None, 2.0, 4.0, "cubic", 4.0, 1e-9), solver="reference"),
+    numerics=Numerics(settings=Settings(None, 2.0, 4.0, "cubic", 4.0, 1e-9), solver="reference"),
     schedule=CylinderCycle(max_force=2.0, step=0.1, length=4.0),
     record=("fronts", "energy"),
     failed_fraction=0.0,
