@@ -23,13 +23,13 @@ from crackfront.core.field.fields import Interpolation
 from crackfront.core.spectrum import Spectrum
 from crackfront.simulate.laws import (
     LAW_CUTOFF,
-    LAW_SIZE,
+    LAW_CUTOFFS,
     MEASURED,
     ErrorLaw,
     SettingName,
     error_laws,
     measured_energies,
-    sphere_size,
+    sphere_cutoffs,
 )
 
 _NARROW: dict[FieldKind, str] = {"chemical": "chemical", "roughness": "flat"}
@@ -58,7 +58,7 @@ class LawInterpolation:
     """Share of independent cutoffs along a front, relative to the fronts of the laws."""
 
     def errors(self, setting: SettingName, values: ArrayLike) -> Array:
-        """Errors at values of a setting on fronts of :data:`LAW_SIZE` (Units: e_el).
+        """Errors at values of a setting for :data:`LAW_CUTOFFS` (Units: e_el).
 
         Their axes are bias and scatter, approach and retraction, values.
         """
@@ -75,7 +75,7 @@ class LawInterpolation:
         return np.stack(branches, axis=1)
 
     def avalanche(self) -> float:
-        """Change of w_appr by the largest avalanche on fronts of :data:`LAW_SIZE` (Units: e_el)."""
+        """Change of w_appr by the largest avalanche for :data:`LAW_CUTOFFS` (Units: e_el)."""
         avalanche = 0.0
         for shape, weight in self.weights:
             laws = error_laws()[shape, "sites", 1]
@@ -93,7 +93,7 @@ class LawInterpolation:
 
 @functools.cache
 def law_interpolation(
-    kind: FieldKind, spectrum: Spectrum, elastic_energy: float, size: float
+    kind: FieldKind, spectrum: Spectrum, elastic_energy: float, cutoffs: float
 ) -> LawInterpolation:
     """Measured shapes and amplitudes whose errors stand for a spectrum and an amplitude.
 
@@ -105,7 +105,7 @@ def law_interpolation(
     front over the length of the laws' fronts. Amplitudes above the onset of avalanches are left
     out.
 
-    `size` is the size of the front for which settings are chosen.
+    `cutoffs` is the number of cutoffs crossed, for which settings are chosen.
     """
     shapes = (_NARROW[kind], "h03", "h08")
     measured = np.log([_relative_correlation_length(*MEASURED[shape]) for shape in shapes])
@@ -114,7 +114,7 @@ def law_interpolation(
     correlated = force_correlation_length(kind, spectrum) * LAW_CUTOFF / spectrum.short_cutoff
     # The Larkin length at the cutoff of the laws is 2 pi correlated / (4 e_el / w_int).
     onset_energy = 2 * math.pi * correlated / (4 * _ONSET)
-    relative_length = size / LAW_SIZE
+    relative_length = cutoffs / LAW_CUTOFFS
     equivalent_energy = elastic_energy * relative_length
     highest = max(elastic_energy, min(_ONSET_SPREAD * equivalent_energy, onset_energy))
     return LawInterpolation(
@@ -166,30 +166,30 @@ def combined_error(
     spectrum: Spectrum,
     elastic_energy: float,
     values: Mapping[SettingName, float],
-    size: float,
-    usual_size: float | None = None,
+    cutoffs: float,
+    usual_cutoffs: float | None = None,
 ) -> tuple[float, float]:
     """Standard errors (w_appr, w_retr) that values of all settings leave (Units: w_int).
 
     They are NaN where errors were not measured. Of interpolations, the value is the one that is
-    used; `size` is the number of states times circumference of the front over the short cutoff. The
+    used; `cutoffs` is the number of cutoffs crossed, as in :mod:`crackfront.simulate.laws`. The
     other arguments are as of :func:`crackfront.simulate.settings.chosen_settings`.
     """
     if unmeasured_reason(kind, spectrum, elastic_energy):
         return math.nan, math.nan
-    usual = sphere_size(spectrum) if usual_size is None else usual_size
+    usual = sphere_cutoffs(spectrum) if usual_cutoffs is None else usual_cutoffs
     interpolation = law_interpolation(kind, spectrum, elastic_energy, usual)
     errors = {setting: interpolation.errors(setting, value) for setting, value in values.items()}
-    approach, retraction = branch_errors(errors, size * interpolation.independent)
+    approach, retraction = branch_errors(errors, cutoffs * interpolation.independent)
     return elastic_energy * approach, elastic_energy * retraction
 
 
-def branch_errors(errors: Mapping[SettingName, Array], size: float) -> tuple[float, float]:
+def branch_errors(errors: Mapping[SettingName, Array], cutoffs: float) -> tuple[float, float]:
     """Standard errors (w_appr, w_retr) of all settings, each with (bias or scatter, branch)."""
     biases = {setting: bias for setting, (bias, _) in errors.items()}
     lowered = [biases.pop(setting) for setting in get_args(Interpolation) if setting in biases]
     raised = list(biases.values())
     bias = np.maximum(sum(lowered), sum(raised))
-    scatter = np.sqrt(sum(scatter**2 for _, scatter in errors.values()) * LAW_SIZE / size)
+    scatter = np.sqrt(sum(scatter**2 for _, scatter in errors.values()) * LAW_CUTOFFS / cutoffs)
     approach, retraction = np.hypot(bias, scatter)
     return float(approach), float(retraction)

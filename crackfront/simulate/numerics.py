@@ -43,14 +43,14 @@ class Numerics:
         kind: FieldKind,
         spectrum: Spectrum,
         elastic_energy: float,
-        usual_size: float | None = None,
+        usual_cutoffs: float | None = None,
     ) -> Settings:
         """Settings for one spectrum and amplitude.
 
-        The size is as of :func:`crackfront.simulate.settings.chosen_settings`.
+        `usual_cutoffs` is as of :func:`crackfront.simulate.settings.chosen_settings`.
         """
         if self.error is not None:
-            return chosen_settings(self.error, kind, spectrum, elastic_energy, usual_size)
+            return chosen_settings(self.error, kind, spectrum, elastic_energy, usual_cutoffs)
         return cast(Settings, self.settings)
 
     def tile_side(self, spectrum: Spectrum) -> float:

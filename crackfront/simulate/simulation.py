@@ -187,7 +187,9 @@ def simulation_of(
     `name` names the spectrum, `numerics` say how it is resolved and solved, and `record` what is
     stored in addition to the curves; the rest is as in :class:`Simulation`.
     """
-    settings = numerics.settings_of(kind, spectrum, elastic_energy, schedule.usual_size(spectrum))
+    settings = numerics.settings_of(
+        kind, spectrum, elastic_energy, schedule.usual_cutoffs(spectrum)
+    )
     return Simulation(
         spectrum_name=name,
         kind=kind,

@@ -74,8 +74,10 @@ def _check_sizes(sweep: Sweep) -> None:
     """Raise ValueError if a tile, a front or a length is beyond what any machine computes."""
     deepest = sweep.schedule.max_penetration if isinstance(sweep.schedule, Pressed) else 0.0
     for item, elastic_energy in product(sweep.spectra, sweep.elastic_energies):
-        usual_size = sweep.schedule.usual_size(item.spectrum)
-        settings = sweep.numerics.settings_of(sweep.kind, item.spectrum, elastic_energy, usual_size)
+        usual_cutoffs = sweep.schedule.usual_cutoffs(item.spectrum)
+        settings = sweep.numerics.settings_of(
+            sweep.kind, item.spectrum, elastic_energy, usual_cutoffs
+        )
         check_sizes(item.spectrum, sweep.numerics, settings, deepest)
 
 

@@ -149,8 +149,9 @@ class DisorderParameters(Section):
             realisation=realisation,
             name="flat",
         )
-        sizes, n_angle = simulation.resolution, max(simulation.resolution.n_angle, least_angles)
-        simulation = replace(simulation, resolution=replace(sizes, n_angle=n_angle))
+        resolution = simulation.resolution
+        n_angle = max(resolution.n_angle, least_angles)
+        simulation = replace(simulation, resolution=replace(resolution, n_angle=n_angle))
         compile_solver(simulation.solver.name, FullCycle)
         adhesion = simulation_adhesion(simulation)
         return RoughContact(
