@@ -128,8 +128,8 @@ def test_the_loop_of_a_simulation_is_that_of_the_library_to_round_off(surface, l
     requested = chosen_simulation("roughness", FLAT, 0.05, load, **given)
     # Sites, samples and tolerance follow from what was measured on the tile.
     measured = chosen_simulation("roughness", FLAT, float(loop.e_el), load, **given)
-    sizes = replace(measured.resolution, n_point=surface.sizes["x"], tile_side=4.0)
-    one = replace(requested, resolution=sizes, solver=measured.solver, record_fronts=True)
+    resolution = replace(measured.resolution, n_point=surface.sizes["x"], tile_side=4.0)
+    one = replace(requested, resolution=resolution, solver=measured.solver, record_fronts=True)
     record = run_simulation(one).record
     # Only the pixel differs, by round-off that fronts enlarge where they are about to jump: the
     # library takes it from the coordinates.

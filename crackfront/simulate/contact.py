@@ -11,8 +11,8 @@ file. A new kind must provide the following:
    of the key of a simulation. Keys stay the same if a later field has a default.
 3. The problem, :class:`ContactTile`: the sizes of front and tile, the work of adhesion, the field.
 4. The loads, :class:`Loads`: a run from load to load, and the shortest loads of the kind.
-5. The result, :class:`Averages`: the works of adhesion of a run, and the size of the fronts that
-   they average.
+5. The result, :class:`Averages`: the works of adhesion of a run, and the cutoffs that the
+   averaged fronts cross.
 6. The forecast, :class:`Forecast`: the number of states, which decides the cost, and the stiffness
    with which the contact restores its edge, which decides k by the law.
 7. If a contact has a largest penetration, also :class:`Pressed`: sweeps advise to penetrate deeper.
@@ -81,7 +81,7 @@ class ContactTile(ABC):
         """Sizes of front and tile that are as fine as requested; they are part of the key."""
 
     @abstractmethod
-    def tile(self, sizes: Resolution) -> tuple[tuple[int, int], tuple[float, float]]:
+    def tile(self, resolution: Resolution) -> tuple[tuple[int, int], tuple[float, float]]:
         """Points and sides of the tile along x and y, of equal pixels (Units: length)."""
 
     @abstractmethod
@@ -93,7 +93,7 @@ class ContactTile(ABC):
         """Work of adhesion on the tile of a surface."""
 
     @abstractmethod
-    def field(self, adhesion: AdhesionMap, sizes: Resolution) -> TileField:
+    def field(self, adhesion: AdhesionMap, resolution: Resolution) -> TileField:
         """Field of a tile that no front leaves under these loads."""
 
 
@@ -133,18 +133,18 @@ class Averages(ABC):
         """
 
     @abstractmethod
-    def averaged_sizes(
+    def averaged_cutoffs(
         self, steady: SteadyAdhesion, correlation_length: float, short_cutoff: float
     ) -> tuple[float, float, float]:
-        """Sizes of the fronts that w_appr and w_retr average, and the longest (Units: length).
+        """Cutoffs crossed by the fronts that w_appr and w_retr average, and the longest front.
 
-        Sizes are as in :mod:`crackfront.simulate.laws`; states closer than a correlation
-        length of w_loc count as one.
+        Cutoffs crossed are as in :mod:`crackfront.simulate.laws`; states closer than a correlation
+        length of w_loc count as one. (Units of the front: length)
         """
 
     @abstractmethod
-    def usual_size(self, spectrum: Spectrum) -> float:
-        """Size of a front for which settings are chosen, as in :mod:`crackfront.simulate.laws`."""
+    def usual_cutoffs(self, spectrum: Spectrum) -> float:
+        """Cutoffs crossed, for which settings are chosen, as in :mod:`crackfront.simulate.laws`."""
 
 
 class Forecast(ABC):
@@ -224,8 +224,8 @@ class SurfaceLoads(ABC):
     __slots__ = ()
 
     @abstractmethod
-    def usual_size(self, spectrum: Spectrum) -> float:
-        """Size of a front for which settings are chosen, as :meth:`Averages.usual_size`."""
+    def usual_cutoffs(self, spectrum: Spectrum) -> float:
+        """Cutoffs crossed, for which settings are chosen, as :meth:`Averages.usual_cutoffs`."""
 
     @abstractmethod
     def for_surface(

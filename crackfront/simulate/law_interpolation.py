@@ -15,6 +15,7 @@ from typing import get_args
 
 import numpy as np
 from numpy.typing import ArrayLike
+from scipy.interpolate import interp1d
 
 from crackfront.core.adhesion import FieldKind, correlation_length, force_correlation_length
 from crackfront.core.arrays import Array
@@ -22,13 +23,13 @@ from crackfront.core.field.fields import Interpolation
 from crackfront.core.spectrum import Spectrum
 from crackfront.simulate.laws import (
     LAW_CUTOFF,
-    LAW_SIZE,
+    LAW_CUTOFFS,
     MEASURED,
     ErrorLaw,
     SettingName,
     error_laws,
     measured_energies,
-    sphere_size,
+    sphere_cutoffs,
 )
 
 _NARROW: dict[FieldKind, str] = {"chemical": "chemical", "roughness": "flat"}
@@ -36,6 +37,9 @@ _NARROW: dict[FieldKind, str] = {"chemical": "chemical", "roughness": "flat"}
 
 _ONSET = 0.7
 """Larkin length, in radii of the sphere, at which scatter was largest in all shapes."""
+
+_ONSET_SPREAD = 2.0
+"""Factor within which the onset of avalanches is known."""
 
 _LEEWAY = 1.05
 """Relative tolerance of e_el and correlation lengths outside the measured range."""
@@ -54,7 +58,7 @@ class LawInterpolation:
     """Share of independent cutoffs along a front, relative to the fronts of the laws."""
 
     def errors(self, setting: SettingName, values: ArrayLike) -> Array:
-        """Errors at values of a setting on fronts of :data:`LAW_SIZE` (Units: e_el).
+        """Errors at values of a setting for :data:`LAW_CUTOFFS` (Units: e_el).
 
         Their axes are bias and scatter, approach and retraction, values.
         """
@@ -71,7 +75,7 @@ class LawInterpolation:
         return np.stack(branches, axis=1)
 
     def avalanche(self) -> float:
-        """Change of w_appr by the largest avalanche on fronts of :data:`LAW_SIZE` (Units: e_el)."""
+        """Change of w_appr by the largest avalanche for :data:`LAW_CUTOFFS` (Units: e_el)."""
         avalanche = 0.0
         for shape, weight in self.weights:
             laws = error_laws()[shape, "sites", 1]
@@ -84,42 +88,51 @@ class LawInterpolation:
         energies = np.array([law.elastic_energy for law in laws])
         between = (energies > self.lowest) & (energies < self.highest)
         amplitudes = np.log([self.lowest, *energies[between], self.highest])
-        weights = _linear_weights(amplitudes, np.log(energies))
-        return np.max(np.tensordot(weights, measured, axes=1), axis=0)
+        return np.max(_interpolated(amplitudes, np.log(energies), measured), axis=0)
 
 
 @functools.cache
 def law_interpolation(
-    kind: FieldKind, spectrum: Spectrum, elastic_energy: float, size: float
+    kind: FieldKind, spectrum: Spectrum, elastic_energy: float, cutoffs: float
 ) -> LawInterpolation:
-    """Shapes with the next correlation lengths, and amplitudes with as early an onset.
+    """Measured shapes and amplitudes whose errors stand for a spectrum and an amplitude.
 
-    `size` is the size of the front for which settings are chosen.
+    Shapes: the two neighbours in correlation length, interpolated linearly in its logarithm.
+
+    Amplitudes: from e_el up to the one at which the fronts of the laws have as many Larkin lengths
+    as this front, because avalanches begin along a long front at a smaller e_el. A Larkin length
+    is proportional to 1 / e_el, so that this equivalent amplitude is e_el times the length of the
+    front over the length of the laws' fronts. Amplitudes above the onset of avalanches are left
+    out.
+
+    `cutoffs` is the number of cutoffs crossed, for which settings are chosen.
     """
     shapes = (_NARROW[kind], "h03", "h08")
     measured = np.log([_relative_correlation_length(*MEASURED[shape]) for shape in shapes])
-    length = math.log(_relative_correlation_length(kind, spectrum))
-    [weights] = _linear_weights(np.array([length]), measured).tolist()
+    length = np.log(_relative_correlation_length(kind, spectrum))
+    weights = _interpolated(length, measured, np.eye(len(shapes))).tolist()
     correlated = force_correlation_length(kind, spectrum) * LAW_CUTOFF / spectrum.short_cutoff
-    # Avalanches begin where the Larkin length falls to _ONSET, within a factor of 2. Below it the
-    # amplitudes count up to that with as many at the cutoff of the laws; w_rms**2 = 4 e_el w_int.
-    onset = 2 * math.pi * correlated / (4 * _ONSET)
-    shorter = size / LAW_SIZE
-    highest = max(elastic_energy, min(2 * elastic_energy * shorter, onset))
+    # The Larkin length at the cutoff of the laws is 2 pi correlated / (4 e_el / w_int).
+    onset_energy = 2 * math.pi * correlated / (4 * _ONSET)
+    relative_length = cutoffs / LAW_CUTOFFS
+    equivalent_energy = elastic_energy * relative_length
+    highest = max(elastic_energy, min(_ONSET_SPREAD * equivalent_energy, onset_energy))
     return LawInterpolation(
         tuple((shape, weight) for shape, weight in zip(shapes, weights, strict=True) if weight > 0),
         elastic_energy,
         highest,
-        max(elastic_energy / highest, 1 / max(shorter, 1.0)),
+        max(elastic_energy / highest, 1 / max(relative_length, 1.0)),
     )
 
 
-def _linear_weights(places: Array, measured: Array) -> Array:
-    """Weights of rising measured places in a linear interpolation, (n_places, n_measured).
+def _interpolated(places: ArrayLike, measured: Array, values: Array) -> Array:
+    """Values (n_measured, ...) at other places, linear between the measured ones, constant beyond.
 
-    Beyond the ends the nearest place has the weight 1.
+    The measured places increase.
     """
-    return np.transpose([np.interp(places, measured, row) for row in np.eye(measured.size)])
+    ends = values[0], values[-1]
+    interpolation = interp1d(measured, values, axis=0, bounds_error=False, fill_value=ends)
+    return np.asarray(interpolation(places))
 
 
 def _relative_correlation_length(kind: FieldKind, spectrum: Spectrum) -> float:
@@ -153,30 +166,30 @@ def combined_error(
     spectrum: Spectrum,
     elastic_energy: float,
     values: Mapping[SettingName, float],
-    size: float,
-    usual_size: float | None = None,
+    cutoffs: float,
+    usual_cutoffs: float | None = None,
 ) -> tuple[float, float]:
     """Standard errors (w_appr, w_retr) that values of all settings leave (Units: w_int).
 
     They are NaN where errors were not measured. Of interpolations, the value is the one that is
-    used; `size` is the number of states times circumference of the front over the short cutoff. The
+    used; `cutoffs` is the number of cutoffs crossed, as in :mod:`crackfront.simulate.laws`. The
     other arguments are as of :func:`crackfront.simulate.settings.chosen_settings`.
     """
     if unmeasured_reason(kind, spectrum, elastic_energy):
         return math.nan, math.nan
-    usual = sphere_size(spectrum) if usual_size is None else usual_size
+    usual = sphere_cutoffs(spectrum) if usual_cutoffs is None else usual_cutoffs
     interpolation = law_interpolation(kind, spectrum, elastic_energy, usual)
     errors = {setting: interpolation.errors(setting, value) for setting, value in values.items()}
-    approach, retraction = branch_errors(errors, size * interpolation.independent)
+    approach, retraction = branch_errors(errors, cutoffs * interpolation.independent)
     return elastic_energy * approach, elastic_energy * retraction
 
 
-def branch_errors(errors: Mapping[SettingName, Array], size: float) -> tuple[float, float]:
+def branch_errors(errors: Mapping[SettingName, Array], cutoffs: float) -> tuple[float, float]:
     """Standard errors (w_appr, w_retr) of all settings, each with (bias or scatter, branch)."""
     biases = {setting: bias for setting, (bias, _) in errors.items()}
     lowered = [biases.pop(setting) for setting in get_args(Interpolation) if setting in biases]
     raised = list(biases.values())
     bias = np.maximum(sum(lowered), sum(raised))
-    scatter = np.sqrt(sum(scatter**2 for _, scatter in errors.values()) * LAW_SIZE / size)
+    scatter = np.sqrt(sum(scatter**2 for _, scatter in errors.values()) * LAW_CUTOFFS / cutoffs)
     approach, retraction = np.hypot(bias, scatter)
     return float(approach), float(retraction)

@@ -3,8 +3,8 @@ r"""Measured laws of the errors that the numerics leave in w_appr and w_retr, re
 `python -m studies accuracy report` fits the laws to measured errors and writes `laws.csv`. An error
 concerns the mean apparent work of adhesion of one branch, in units of e_el, and thus its factor k.
 It has a bias, equal on all surfaces, and a scatter, from avalanches that one discretisation
-triggers and another does not; the scatter falls with the root of the size, the number of cutoffs
-along the front times the number of its states. Each setting has a law of its own,
+triggers and another does not; the scatter falls with the root of the cutoffs crossed, the number of
+cutoffs along the front times the number of its states. Each setting has a law of its own,
 
 .. math:: \log e = c_0 + c_1 x,
 
@@ -30,9 +30,9 @@ from crackfront.core.adhesion import FieldKind
 from crackfront.core.arrays import Array
 from crackfront.core.spectrum import SelfAffineSpectrum, Spectrum
 
-LAW_SIZE = 4000.0
-"""Size of the fronts on which the laws were measured: states times circumference over the short
-cutoff, for eight states, cutoff 0.02 and mean radius 1.6."""
+LAW_CUTOFFS = 4000.0
+"""Cutoffs crossed by the fronts on which the laws were measured: number of states times
+circumference over the short cutoff, for eight states, cutoff 0.02 and mean radius 1.6."""
 
 LAW_CUTOFF = 0.02
 """Short cutoff of all spectra of the laws. (Units: reduced lateral length)"""
@@ -63,18 +63,18 @@ class ErrorLaw:
     scatter: tuple[float, float]
     """Coefficients (c_0, c_1) of the logarithm, as for the bias. (Units: e_el)"""
     avalanche: float
-    """Change by one avalanche, on fronts of :data:`LAW_SIZE`; equal for all settings of a shape and
-    an amplitude. (Units: e_el)"""
+    """Change by one avalanche, for :data:`LAW_CUTOFFS`; equal for all settings of a shape and an
+    amplitude. (Units: e_el)"""
 
     def parts(self, values: ArrayLike) -> Array:
-        """Bias and scatter at values of the setting, fronts of :data:`LAW_SIZE` (Units: e_el)."""
+        """Bias and scatter at values of the setting, for :data:`LAW_CUTOFFS` (Units: e_el)."""
         x = abscissa(self.setting, values)
         return np.array([np.exp(c0 + c1 * x) for c0, c1 in (self.bias, self.scatter)])
 
-    def error(self, value: float, size: float) -> float:
-        """Standard error at a value of the setting, for a front of a size, in units of e_el."""
+    def error(self, value: float, cutoffs: float) -> float:
+        """Standard error at a value of the setting, for so many cutoffs crossed (Units: e_el)."""
         bias, scatter = self.parts(value)
-        return math.hypot(bias, scatter * math.sqrt(LAW_SIZE / size))
+        return math.hypot(bias, scatter * math.sqrt(LAW_CUTOFFS / cutoffs))
 
 
 def abscissa(setting: SettingName, values: ArrayLike) -> Array:
@@ -112,6 +112,6 @@ def measured_energies() -> tuple[float, float]:
     return min(energies), max(energies)
 
 
-def sphere_size(spectrum: Spectrum) -> float:
-    """Size of a sphere's front for which settings are chosen: eight states, mean radius 1.6."""
-    return LAW_SIZE * (LAW_CUTOFF / spectrum.short_cutoff)
+def sphere_cutoffs(spectrum: Spectrum) -> float:
+    """Cutoffs crossed by the front of a usual sphere: eight states, mean radius 1.6."""
+    return LAW_CUTOFFS * (LAW_CUTOFF / spectrum.short_cutoff)

@@ -18,22 +18,22 @@ def missed_error(simulation: Simulation, requested: float) -> float:
 
 
 def numerical_error(
-    simulation: Simulation, size: float | None = None, front_length: float | None = None
+    simulation: Simulation, cutoffs: float | None = None, front_length: float | None = None
 ) -> tuple[float, float]:
     """Standard errors (w_appr, w_retr) that the numerics leave (Units: w_int).
 
-    The size of the front, as in :mod:`crackfront.simulate.laws`, is by default the usual one. By
-    default `front_length` is the length of the longest front of a smooth contact (Units: reduced
-    lateral length).
+    `cutoffs` is the number of cutoffs crossed, as in :mod:`crackfront.simulate.laws`, by default
+    the usual one. By default `front_length` is the length of the longest front of a smooth contact
+    (Units: reduced lateral length).
     """
-    sizes, cutoff = simulation.resolution, simulation.spectrum.short_cutoff
+    resolution, cutoff = simulation.resolution, simulation.spectrum.short_cutoff
     if front_length is None:
         front_length = simulation.schedule.front_length
-    usual_size = simulation.schedule.usual_size(simulation.spectrum)
+    usual_cutoffs = simulation.schedule.usual_cutoffs(simulation.spectrum)
     values: dict[SettingName, float] = {
-        "sites": sizes.n_angle * cutoff / front_length,
-        sizes.interpolation: cutoff / sizes.spacing,
-        "pixels": cutoff * sizes.n_point / sizes.tile_side,
+        "sites": resolution.n_angle * cutoff / front_length,
+        resolution.interpolation: cutoff / resolution.spacing,
+        "pixels": cutoff * resolution.n_point / resolution.tile_side,
         "tolerance": simulation.solver.tolerance,
     }
     return combined_error(
@@ -41,8 +41,8 @@ def numerical_error(
         simulation.spectrum,
         simulation.elastic_energy,
         values,
-        usual_size if size is None else size,
-        usual_size,
+        usual_cutoffs if cutoffs is None else cutoffs,
+        usual_cutoffs,
     )
 
 
@@ -53,9 +53,9 @@ def stated_error(
 
     States closer than a correlation length of w_loc count as one.
     """
-    approach_size, retraction_size, longest = simulation.schedule.averaged_sizes(
+    approach_cutoffs, retraction_cutoffs, longest = simulation.schedule.averaged_cutoffs(
         steady, correlation_length, simulation.spectrum.short_cutoff
     )
-    approach, _ = numerical_error(simulation, approach_size, longest)
-    _, retraction = numerical_error(simulation, retraction_size, longest)
+    approach, _ = numerical_error(simulation, approach_cutoffs, longest)
+    _, retraction = numerical_error(simulation, retraction_cutoffs, longest)
     return approach, retraction

@@ -19,7 +19,7 @@ from crackfront.simulate.law_interpolation import (
     law_interpolation,
     unmeasured_reason,
 )
-from crackfront.simulate.laws import LAW_SIZE, SettingName, sphere_size
+from crackfront.simulate.laws import LAW_CUTOFFS, SettingName, sphere_cutoffs
 
 _SHARES: dict[SettingName, float] = {"sites": 0.95, "cubic": 0.2, "pixels": 0.2, "tolerance": 0.1}
 """Share of each setting in a requested error, largest for the costly one; squares sum to 0.99."""
@@ -66,7 +66,7 @@ def chosen_settings(
     kind: FieldKind,
     spectrum: Spectrum,
     elastic_energy: float,
-    usual_size: float | None = None,
+    usual_cutoffs: float | None = None,
 ) -> Settings:
     """Settings that leave a requested error in w_appr and w_retr: the coarsest that the laws allow.
 
@@ -80,8 +80,8 @@ def chosen_settings(
         Shape of the spectrum. (Units: reduced lateral length)
     elastic_energy : float
         e_el / w_int.
-    usual_size : float, optional
-        Size of the front, by default :func:`crackfront.simulate.laws.sphere_size`.
+    usual_cutoffs : float, optional
+        Cutoffs crossed by the front, by default :func:`crackfront.simulate.laws.sphere_cutoffs`.
 
     Raises
     ------
@@ -90,7 +90,7 @@ def chosen_settings(
     """
     if reason := unmeasured_reason(kind, spectrum, elastic_energy):
         raise ValueError(f"error is {error:g}, but {reason}")
-    usual = sphere_size(spectrum) if usual_size is None else usual_size
+    usual = sphere_cutoffs(spectrum) if usual_cutoffs is None else usual_cutoffs
     interpolation = law_interpolation(kind, spectrum, elastic_energy, usual)
     values = _chosen_values(error, interpolation, usual * interpolation.independent)
     return Settings(
@@ -105,21 +105,21 @@ def chosen_settings(
 
 @functools.cache
 def _chosen_values(
-    error: float, interpolation: LawInterpolation, size: float
+    error: float, interpolation: LawInterpolation, cutoffs: float
 ) -> dict[SettingName, float]:
     """Coarsest values of all settings whose errors together are at most the requested one."""
     values = {setting: _allowed_values(setting) for setting in _SHARES}
     errors = {setting: interpolation.errors(setting, values[setting]) for setting in _SHARES}
-    rarity = _avalanche_margin(error, interpolation, size)
+    rarity = _avalanche_margin(error, interpolation, cutoffs)
     for setting in _SHARES:
-        errors[setting][1] *= rarity * math.sqrt(LAW_SIZE / size)
+        errors[setting][1] *= rarity * math.sqrt(LAW_CUTOFFS / cutoffs)
     low, high = _LEAST_SHARES, _MOST_SHARES
     for _ in range(_N_BISECTION):
         middle = math.sqrt(low * high)
         chosen = _coarsest(errors, error, middle)
         remaining = {setting: errors[setting][..., chosen[setting]] for setting in _SHARES}
         low, high = (
-            (middle, high) if max(branch_errors(remaining, LAW_SIZE)) <= error else (low, middle)
+            (middle, high) if max(branch_errors(remaining, LAW_CUTOFFS)) <= error else (low, middle)
         )
     chosen = _coarsest(errors, error, low)
     return {setting: float(values[setting][chosen[setting]]) for setting in _SHARES}
@@ -141,9 +141,9 @@ def _coarsest(
     return places
 
 
-def _avalanche_margin(error: float, interpolation: LawInterpolation, size: float) -> float:
+def _avalanche_margin(error: float, interpolation: LawInterpolation, cutoffs: float) -> float:
     """Factor by which scatter must be below a requested error: few surfaces have an avalanche."""
-    avalanche = interpolation.avalanche() * (LAW_SIZE / size)
+    avalanche = interpolation.avalanche() * (LAW_CUTOFFS / cutoffs)
     # The mean square of eight surfaces has the mean s^2 and, of avalanches of one size a, the
     # variance s^2 (a^2 + 2 s^2) / 8. Where the mean and three standard deviations are the bound,
     # x = s^2 is the positive root of 5/4 x^2 + 2 half x - bound^2.

@@ -162,7 +162,7 @@ def resolution(
     >>> from crackfront.simulate.sphere.full_cycle import FullCycle
     >>> flat = SelfAffineSpectrum(short_cutoff=0.1, roll_off=0.1, hurst=1.0)
     >>> settings = Settings(None, 2, 4, "cubic", 4, 1e-6)
-    >>> numerics = Numerics(settings, tile_roll_offs=10, tile_cutoffs=20)
+    >>> numerics = Numerics(settings=settings, tile_roll_offs=10, tile_cutoffs=20)
     >>> resolution(flat, numerics, settings, FullCycle(max_penetration=1.0, step=0.1))
     Resolution(n_angle=240, spacing=0.025, interpolation='cubic', tile_side=2.0, n_point=80)
     """
@@ -187,7 +187,9 @@ def simulation_of(
     `name` names the spectrum, `numerics` say how it is resolved and solved, and `record` what is
     stored in addition to the curves; the rest is as in :class:`Simulation`.
     """
-    settings = numerics.settings_of(kind, spectrum, elastic_energy, schedule.usual_size(spectrum))
+    settings = numerics.settings_of(
+        kind, spectrum, elastic_energy, schedule.usual_cutoffs(spectrum)
+    )
     return Simulation(
         spectrum_name=name,
         kind=kind,

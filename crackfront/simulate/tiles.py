@@ -48,7 +48,7 @@ class Fineness:
     settings: Settings
     """Sites, samples and points per short cutoff."""
 
-    def sizes(self, side: float, front_length: float) -> Resolution:
+    def resolution(self, side: float, front_length: float) -> Resolution:
         """Sizes on a tile of a side along the front, for a front of a length (Units: length)."""
         settings, cutoff = self.settings, self.short_cutoff
         points = math.ceil(side / cutoff * settings.pixels_per_cutoff * (1 - 1e-12))

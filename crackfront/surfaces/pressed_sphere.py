@@ -132,8 +132,8 @@ class PressedSphere(LoopContact):
         schedule = FullCycle(deepest, 1.0)  # whose step has no effect on sizes
         chosen = chosen_simulation(kind, spectrum, adhesion.e_el, schedule, error=error)
         n_point = min(adhesion.work_of_adhesion.shape)
-        sizes = replace(chosen.resolution, tile_side=n_point * adhesion.pixel, n_point=n_point)
-        simulation = replace(chosen, resolution=sizes)
+        resolution = replace(chosen.resolution, tile_side=n_point * adhesion.pixel, n_point=n_point)
+        simulation = replace(chosen, resolution=resolution)
         # Where no error is asked for, the result states the one that is left.
         if numerics.error is not None and (remaining := missed_error(simulation, error)):
             pixels = spectrum.short_cutoff / adhesion.pixel

@@ -144,7 +144,7 @@ def chosen_simulation(
 
     ValueError if the side, the tile or the front is too small or too large.
     """
-    numerics = Numerics(error)
+    numerics = Numerics(error=error)
     if side is not None:
         longest = spectrum.longest_feature
         if not longest <= side:
@@ -152,7 +152,9 @@ def chosen_simulation(
                 f"side is {side}; the tile must fit the longest waves of the spectrum, of "
                 f"{longest:g}, or its e_el is not the one that is asked for"
             )
-        numerics = Numerics(error, tile_roll_offs=0.0, tile_cutoffs=side / spectrum.short_cutoff)
+        numerics = Numerics(
+            error=error, tile_roll_offs=0.0, tile_cutoffs=side / spectrum.short_cutoff
+        )
     settings = numerics.settings_of(kind, spectrum, elastic_energy)
     check_sizes(spectrum, numerics, settings, schedule.max_penetration)
     simulation = simulation_of(

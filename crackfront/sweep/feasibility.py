@@ -12,7 +12,6 @@ from crackfront.core.synthesis import FEWEST_POINTS
 from crackfront.simulate.contact import Pressed, SurfaceLoads
 from crackfront.simulate.costs import check_sizes, expected_cost
 from crackfront.simulate.numerical_errors import missed_error
-from crackfront.simulate.settings import Settings
 from crackfront.simulate.simulation import Simulation
 from crackfront.sweep.section import ConfigurationError
 from crackfront.sweep.sweep import Sweep
@@ -52,7 +51,7 @@ def check_feasible(sweep: Sweep, path: Path) -> None:
                 if isinstance(sweep.schedule, SurfaceLoads):
                     sweep.schedule.check_resolution(simulation)
                 _check_resolution(simulation)
-                _check_tolerance_and_error(simulation, sweep.numerics.settings)
+                _check_tolerance_and_error(simulation, sweep.numerics.error)
     except ValueError as error:
         raise ConfigurationError(f"{path}: {error}") from error
 
@@ -75,8 +74,10 @@ def _check_sizes(sweep: Sweep) -> None:
     """Raise ValueError if a tile, a front or a length is beyond what any machine computes."""
     deepest = sweep.schedule.max_penetration if isinstance(sweep.schedule, Pressed) else 0.0
     for item, elastic_energy in product(sweep.spectra, sweep.elastic_energies):
-        usual_size = sweep.schedule.usual_size(item.spectrum)
-        settings = sweep.numerics.settings_of(sweep.kind, item.spectrum, elastic_energy, usual_size)
+        usual_cutoffs = sweep.schedule.usual_cutoffs(item.spectrum)
+        settings = sweep.numerics.settings_of(
+            sweep.kind, item.spectrum, elastic_energy, usual_cutoffs
+        )
         check_sizes(item.spectrum, sweep.numerics, settings, deepest)
 
 
@@ -115,7 +116,7 @@ def _check_resolution(simulation: Simulation) -> None:
         )
 
 
-def _check_tolerance_and_error(simulation: Simulation, requested: Settings | float) -> None:
+def _check_tolerance_and_error(simulation: Simulation, requested: float | None) -> None:
     """Raise ValueError if the tolerance is of no use, or the requested error cannot be reached."""
     tolerance, n_angle = simulation.solver.tolerance, simulation.resolution.n_angle
     name, elastic_energy = simulation.spectrum_name, simulation.elastic_energy
@@ -125,7 +126,7 @@ def _check_tolerance_and_error(simulation: Simulation, requested: Settings | flo
             f"numerics: tolerance is {tolerance}, below the round-off of the {n_angle} "
             f"sites of {name} ({round_off:.1e}); raise it"
         )
-    if isinstance(requested, Settings):
+    if requested is None:
         if tolerance > elastic_energy:
             raise ValueError(
                 f"numerics: tolerance is {tolerance:g}, above e_el {elastic_energy:.3g} of {name}, "

@@ -126,7 +126,8 @@ class NumericsSection(Section):
         if self.angles is not None:
             settings["angles_per_cutoff"] = 1.0  # without effect
         return Numerics(
-            settings=Settings(**settings) if self.error is None else self.error,
+            settings=Settings(**settings) if self.error is None else None,
+            error=self.error,
             tile_roll_offs=self.tile.roll_offs,
             tile_cutoffs=self.tile.cutoffs,
             max_sweeps=self.max_sweeps,

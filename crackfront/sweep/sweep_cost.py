@@ -51,7 +51,7 @@ def error_costs(sweep: Sweep, errors: Sequence[float]) -> Iterator[ErrorCost]:
     ValueError if errors were not measured for a spectrum or an amplitude of the sweep.
     """
     for error in errors:
-        other = replace(sweep, numerics=replace(sweep.numerics, settings=error))
+        other = replace(sweep, numerics=replace(sweep.numerics, settings=None, error=error))
         firsts = [first for item in other.spectra for first in other.one_per_amplitude(item)]
         yield ErrorCost(
             error,

@@ -12,7 +12,7 @@ from matplotlib.ticker import LogLocator, NullFormatter
 
 from crackfront.plots import style
 from crackfront.plots.parts import label_decimals, label_panel
-from crackfront.simulate.laws import LAW_SIZE, SETTINGS, ErrorLaw, SettingName
+from crackfront.simulate.laws import LAW_CUTOFFS, SETTINGS, ErrorLaw, SettingName
 from studies.accuracy.fitting import setting_errors
 from studies.accuracy.report import Measured
 from studies.accuracy.scenes import Scene
@@ -151,7 +151,7 @@ def _draw_laws(
             == (scene.shape, scene.elastic_energy, setting, -1)
         )
         between = np.geomspace(values.min(), values.max(), 60)
-        axes.plot(between, [law.error(x, LAW_SIZE) for x in between], color=colour)
+        axes.plot(between, [law.error(x, LAW_CUTOFFS) for x in between], color=colour)
     axes.axhline(0.01, color=style.BLACK, linewidth=0.4, dashes=(4, 2))
     axes.set_yscale("log")
     if setting != "sites":

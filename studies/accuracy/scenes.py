@@ -142,7 +142,7 @@ class Scene:
             self.spectrum,
             self.elastic_energy,
             FullCycle(1.0, self.step),
-            Numerics(settings, tile_roll_offs=1.0, tile_cutoffs=self.tile_cutoffs),
+            Numerics(settings=settings, tile_roll_offs=1.0, tile_cutoffs=self.tile_cutoffs),
             seed=_SEED,
             realisation=realisation,
             name=self.name,

@@ -112,7 +112,7 @@ def scene_rows(scenes: Sequence[Scene] = SCENES, realisations: int = 3) -> Itera
     """Scenes, simulated."""
     for scene in scenes:
         surface = scene.kind, scene.spectrum, scene.elastic_energy
-        first = simulation_of(*surface, scene.schedule, Numerics(0.015), seed=20261122)
+        first = simulation_of(*surface, scene.schedule, Numerics(error=0.015), seed=20261122)
         runs = [
             sweep_row(run_simulation(replace(first, realisation=number)))
             for number in range(realisations)

@@ -65,7 +65,7 @@ class RoughParameters(Section):
         realisation: int = 0,
     ) -> Simulation:
         """Simulation of a surface of the seed; raises if its numerics miss the error."""
-        numerics = Numerics(self.error, self.tile_roll_offs)
+        numerics = Numerics(error=self.error, tile_roll_offs=self.tile_roll_offs)
         simulation = simulation_of(
             "roughness",
             spectrum,
@@ -144,13 +144,14 @@ class DisorderParameters(Section):
             spectrum,
             elastic_energy,
             FullCycle(self.max_penetration, max(self.max_penetration, 1.0)),
-            Numerics(settings, side / self.short_cutoff, tile_cutoffs=1.0),
+            Numerics(settings=settings, tile_roll_offs=side / self.short_cutoff, tile_cutoffs=1.0),
             seed=self.seed,
             realisation=realisation,
             name="flat",
         )
-        sizes, n_angle = simulation.resolution, max(simulation.resolution.n_angle, least_angles)
-        simulation = replace(simulation, resolution=replace(sizes, n_angle=n_angle))
+        resolution = simulation.resolution
+        n_angle = max(resolution.n_angle, least_angles)
+        simulation = replace(simulation, resolution=replace(resolution, n_angle=n_angle))
         compile_solver(simulation.solver.name, FullCycle)
         adhesion = simulation_adhesion(simulation)
         return RoughContact(

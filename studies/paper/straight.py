@@ -63,7 +63,7 @@ class StraightParameters(Section):
         larkin = larkin_length(_KIND, _SPECTRUM, 2 * math.sqrt(energy))
         tolerance = precision * depth / (spring * larkin)
         settings = Settings(None, pixels, 2 * pixels, "cubic", pixels, tolerance)
-        numerics = Numerics(settings, tile_roll_offs=1.0, tile_cutoffs=_TILE_CUTOFFS)
+        numerics = Numerics(settings=settings, tile_roll_offs=1.0, tile_cutoffs=_TILE_CUTOFFS)
         load = LineLoad("larkin_length", self.length, _PERIOD, _TRANSIENT, _STEP, uncorrelated=True)
         schedule = load.for_surface(_KIND, _SPECTRUM, energy, spring, numerics)
         simulation = simulation_of(

@@ -117,7 +117,7 @@ def simulation(scene: Scene, need: Need) -> Simulation:
         scene.spectrum,
         0.05,
         scene.steady if need.load == "steady" else scene.cycle,
-        Numerics(settings, tile_cutoffs=scene.tile_cutoffs),
+        Numerics(settings=settings, tile_cutoffs=scene.tile_cutoffs),
         seed=1,
         name="surface",
         record=[name for name in ("fronts", "energy") if getattr(need, name)],

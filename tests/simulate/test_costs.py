@@ -71,10 +71,12 @@ def test_a_cycle_finds_the_states_that_were_expected(step):
 
 
 def test_more_sites_cost_more_time_and_more_points_and_fronts_more_memory():
-    sizes = ONE.resolution
+    resolution = ONE.resolution
     base = expected_cost(ONE)
-    longer = expected_cost(replace(ONE, resolution=replace(sizes, n_angle=20 * sizes.n_angle)))
-    larger = expected_cost(replace(ONE, resolution=replace(sizes, n_point=10 * sizes.n_point)))
+    finer_front = replace(resolution, n_angle=20 * resolution.n_angle)
+    larger_tile = replace(resolution, n_point=10 * resolution.n_point)
+    longer = expected_cost(replace(ONE, resolution=finer_front))
+    larger = expected_cost(replace(ONE, resolution=larger_tile))
     assert longer.seconds > 10 * base.seconds
     assert larger.memory > base.memory
     assert expected_cost(replace(ONE, record_fronts=True)).memory > base.memory

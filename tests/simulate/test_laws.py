@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.simulate.law_interpolation import combined_error
-from crackfront.simulate.laws import LAW_SIZE, SETTINGS, read_laws
+from crackfront.simulate.laws import LAW_CUTOFFS, SETTINGS, read_laws
 from crackfront.simulate.numerical_errors import numerical_error
 from crackfront.simulate.settings import chosen_settings
 from studies.accuracy.scenes import SCENES, with_setting
@@ -26,9 +26,9 @@ def chosen(scene, error):
     return chosen_settings(error, scene.kind, scene.spectrum, scene.elastic_energy)
 
 
-def stated(scene, numerics, size=LAW_SIZE):
+def stated(scene, numerics, cutoffs=LAW_CUTOFFS):
     """Stated errors of k of both branches."""
-    errors = numerical_error(scene.simulation(numerics, 0), size)
+    errors = numerical_error(scene.simulation(numerics, 0), cutoffs)
     return [error / scene.elastic_energy for error in errors]
 
 
@@ -63,9 +63,10 @@ def test_a_smaller_error_chooses_no_setting_coarser(scene):
     assert fine != coarse
 
 
-def test_bias_stays_and_scatter_falls_with_the_root_of_the_size():
+def test_bias_stays_and_scatter_falls_with_the_root_of_the_cutoffs_crossed():
     for law in read_laws():
-        small, large = (law.error(START[law.setting], size) for size in (LAW_SIZE, 4 * LAW_SIZE))
+        start = START[law.setting]
+        small, large = (law.error(start, cutoffs) for cutoffs in (LAW_CUTOFFS, 4 * LAW_CUTOFFS))
         assert small / 2 * (1 - 1e-12) <= large <= small
     huge = law.error(START[law.setting], 1e30)
     assert huge == pytest.approx(math.exp(law.bias[0] + law.bias[1] * math.log(START[law.setting])))
@@ -83,7 +84,7 @@ def test_between_measured_amplitudes_the_error_lies_between_theirs():
 def of_spectrum(spectrum, elastic_energy, kind="roughness", tolerance=1e-7):
     """Stated errors of k of both branches at numerics that leave one."""
     values = {"sites": 1.8, "cubic": 3.0, "pixels": 2.7, "tolerance": tolerance}
-    errors = combined_error(kind, spectrum, elastic_energy, values, LAW_SIZE)
+    errors = combined_error(kind, spectrum, elastic_energy, values, LAW_CUTOFFS)
     return np.array(errors) / elastic_energy
 
 
@@ -91,7 +92,7 @@ def of_spectrum(spectrum, elastic_energy, kind="roughness", tolerance=1e-7):
 def test_a_measured_scene_takes_its_own_laws(name):
     scene = SCENES[name]
     chosen_values = {"sites": 2.2, "cubic": 3.0, "pixels": 3.0, "tolerance": 1e-4}
-    errors = combined_error(scene.kind, scene.spectrum, 0.16, chosen_values, LAW_SIZE)
+    errors = combined_error(scene.kind, scene.spectrum, 0.16, chosen_values, LAW_CUTOFFS)
     for direction, error in zip((1, -1), errors, strict=True):
         own = {
             law.setting: law.parts(chosen_values[law.setting])
@@ -122,7 +123,9 @@ def test_an_error_is_refused_at_amplitudes_where_none_was_measured(elastic_energ
 
 def test_a_straight_front_asks_for_the_same_in_all_units():
     found = {
-        chosen_settings(0.03, "roughness", SelfAffineSpectrum(size, 4 * size, 0.8), 0.005, LAW_SIZE)
+        chosen_settings(
+            0.03, "roughness", SelfAffineSpectrum(size, 4 * size, 0.8), 0.005, LAW_CUTOFFS
+        )
         for size in (1e-3, 0.02, 1.0)
     }
     assert len(found) == 1

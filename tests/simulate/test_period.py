@@ -80,10 +80,10 @@ def test_a_front_begins_within_its_field_however_long_the_steps_are():
 
 
 def test_the_mirrored_surface_with_the_opposite_sign_swaps_the_branches():
-    adhesion, sizes = simulation_adhesion(ONE), ONE.resolution
+    adhesion, resolution = simulation_adhesion(ONE), ONE.resolution
     values, pixel = adhesion.work_of_adhesion, adhesion.pixel
     # Loads, samples and their mirror images are multiples of half a pixel.
-    plain = replace(ONE, resolution=replace(sizes, spacing=pixel / 2))
+    plain = replace(ONE, resolution=replace(resolution, spacing=pixel / 2))
     last = float(plain.schedule.loads[-1]) / pixel
     assert last == pytest.approx(round(last), abs=1e-9)
     places = (round(last) - np.arange(len(values))) % len(values)

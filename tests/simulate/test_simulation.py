@@ -26,7 +26,13 @@ from crackfront.simulate.sphere.steady_branches import SteadySchedule
 from crackfront.simulate.tiles import Resolution
 
 SETTINGS = Settings(None, 2, 4, "cubic", 4, 1e-6)
-NUMERICS = Numerics(SETTINGS, 10, 20, max_sweeps=100_000, solver="reference")
+NUMERICS = Numerics(
+    settings=SETTINGS,
+    tile_roll_offs=10,
+    tile_cutoffs=20,
+    max_sweeps=100_000,
+    solver="reference",
+)
 SIMULATION = Simulation(
     spectrum_name="rough",
     kind="roughness",
@@ -50,6 +56,12 @@ def test_the_tile_resolves_the_cutoff_and_holds_the_roll_off():
     assert sizes.tile_side == pytest.approx(7.0, rel=1e-15)
     assert sizes.tile_side / sizes.n_point <= 0.1 / 4
     assert sizes.spacing == 0.1 / 4
+
+
+@pytest.mark.parametrize("both_or_neither", [{}, {"settings": SETTINGS, "error": 0.03}])
+def test_numerics_need_either_settings_or_an_error(both_or_neither):
+    with pytest.raises(ValueError, match=r"settings and error; give one"):
+        Numerics(**both_or_neither)
 
 
 def test_a_flat_spectrum_gets_the_smallest_tile_in_cutoffs():

@@ -48,9 +48,9 @@ def simulation(elastic_energy=0.04, realisation=0, schedule=SCHEDULE):
 
 
 def field_of(one):
-    sizes = one.resolution
+    resolution = one.resolution
     return contact_field(
-        simulation_adhesion(one), 1.6, sizes.n_angle, sizes.spacing, band_limited=True
+        simulation_adhesion(one), 1.6, resolution.n_angle, resolution.spacing, band_limited=True
     )
 
 

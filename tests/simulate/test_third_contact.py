@@ -201,10 +201,10 @@ class CylinderCycle(Schedule):
         return self.length
 
     def resolution(self, fineness):
-        return fineness.sizes(self.length, self.length)
+        return fineness.resolution(self.length, self.length)
 
-    def tile(self, sizes):
-        return (sizes.n_point, sizes.n_point), (self.length, self.length)
+    def tile(self, resolution):
+        return (resolution.n_point, resolution.n_point), (self.length, self.length)
 
     def geometry(self, n_site):
         return Cylinder(n_site, self.length)
@@ -212,14 +212,14 @@ class CylinderCycle(Schedule):
     def adhesion(self, surface):
         return gaussian_adhesion(surface)
 
-    def field(self, adhesion, sizes):
+    def field(self, adhesion, resolution):
         strongest = float(np.max(adhesion.work_of_adhesion)) / WORK_OF_ADHESION
         return tile_field(
             adhesion,
-            self.geometry(sizes.n_angle),
-            sizes.spacing,
+            self.geometry(resolution.n_angle),
+            resolution.spacing,
             1.1 * smooth_half_width(self.max_force, strongest),
-            sizes.interpolation,
+            resolution.interpolation,
             band_limited=True,
         )
 
@@ -243,11 +243,11 @@ class CylinderCycle(Schedule):
         )
         return steady_means(states, columns, "half-widths", result.simulation.correlation_length)
 
-    def averaged_sizes(self, steady, correlation_length, short_cutoff):
+    def averaged_cutoffs(self, steady, correlation_length, short_cutoff):
         sites = self.length / short_cutoff
         return sites * steady.n_approach, sites * steady.n_retraction, self.length
 
-    def usual_size(self, spectrum):
+    def usual_cutoffs(self, spectrum):
         return 8 * self.length / spectrum.short_cutoff
 
     def expected_motion(self, surface):
@@ -273,7 +273,7 @@ SWEEP = Sweep(
     spectra=(NamedSpectrum("flat", FLAT),),
     elastic_energies=(0.04, 0.09),
     n_realisation=1,
-    numerics=Numerics(Settings(None, 2.0, 4.0, "cubic", 4.0, 1e-9), solver="reference"),
+    numerics=Numerics(settings=Settings(None, 2.0, 4.0, "cubic", 4.0, 1e-9), solver="reference"),
     schedule=CylinderCycle(max_force=2.0, step=0.1, length=4.0),
     record=("fronts", "energy"),
     failed_fraction=0.0,

@@ -15,7 +15,9 @@ from crackfront.simulate.sphere.full_cycle import FullCycle
 from crackfront.simulate.sphere.steady_branches import SteadySchedule
 from crackfront.sweep.advice import expectation
 
-NUMERICS = Numerics(Settings(None, 4, 4, "cubic", 4, 1e-5), tile_roll_offs=4, tile_cutoffs=40)
+NUMERICS = Numerics(
+    settings=Settings(None, 4, 4, "cubic", 4, 1e-5), tile_roll_offs=4, tile_cutoffs=40
+)
 SHALLOW = (FullCycle(0.1, 0.02), SteadySchedule(0.0, 0.1, 0.5, 0.05))
 
 

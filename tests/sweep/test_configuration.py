@@ -139,7 +139,7 @@ def settings_of(sweep, item, energy):
 def test_an_error_chooses_the_numerics_of_every_spectrum_and_amplitude(tmp_path):
     sweep = load_sweep(written(tmp_path, asking(0.03)))
     given = sweep.numerics
-    assert (given.settings, given.tile_cutoffs, given.max_sweeps) == (0.03, 20, 100000)
+    assert (given.error, given.tile_cutoffs, given.max_sweeps) == (0.03, 20, 100000)
     flat = sweep.named("flat")
     weak, strong = (settings_of(sweep, flat, energy) for energy in sweep.elastic_energies)
     assert strong.angles_per_cutoff > weak.angles_per_cutoff

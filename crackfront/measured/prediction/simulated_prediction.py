@@ -135,7 +135,7 @@ def _affordable(
     spectrum: TabulatedSpectrum, energy: float, contact_radius: float, seed: int
 ) -> tuple[Simulation, str]:
     """A sphere, or a straight front on its springs if the sphere is too large, and a remark."""
-    numerics = Numerics(_FACTOR_ERROR)
+    numerics = Numerics(error=_FACTOR_ERROR)
     # Large features need deeper penetration.
     largest = jkr.equilibrium_radius(_START) + _LEAST_GROWTH * spectrum.correlation_length
     deepest = max(_DEEPEST, float(jkr.equilibrium_penetration(largest)))

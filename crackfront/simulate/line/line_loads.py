@@ -42,7 +42,7 @@ from crackfront.simulate.contact import (
     Schedule,
     SurfaceLoads,
 )
-from crackfront.simulate.laws import LAW_SIZE
+from crackfront.simulate.laws import LAW_CUTOFFS
 from crackfront.simulate.numerics import Numerics
 from crackfront.simulate.tiles import (
     Fineness,
@@ -125,15 +125,15 @@ class LineSchedule(Schedule, OnSprings):
         A period has whole samples, so that a period further on all is the same. Independent sites
         lie at the points of the tile.
         """
-        sizes = fineness.sizes(self.length, self.front_length)
-        n_site = sizes.n_point if self.uncorrelated else sizes.n_angle
-        spacing = self.period / math.ceil(self.period / sizes.spacing)
-        return replace(sizes, n_angle=n_site, spacing=spacing)
+        resolution = fineness.resolution(self.length, self.front_length)
+        n_site = resolution.n_point if self.uncorrelated else resolution.n_angle
+        spacing = self.period / math.ceil(self.period / resolution.spacing)
+        return replace(resolution, n_angle=n_site, spacing=spacing)
 
-    def tile(self, sizes: Resolution) -> tuple[tuple[int, int], tuple[float, float]]:
+    def tile(self, resolution: Resolution) -> tuple[tuple[int, int], tuple[float, float]]:
         """One period along the motion and one of the front."""
-        n_period = round(self.period * sizes.n_point / sizes.tile_side)
-        return (n_period, sizes.n_point), (self.period, sizes.tile_side)
+        n_period = round(self.period * resolution.n_point / resolution.tile_side)
+        return (n_period, resolution.n_point), (self.period, resolution.tile_side)
 
     def geometry(self, n_site: int) -> Geometry:
         """Line on springs that do not pull at w_int."""
@@ -145,15 +145,15 @@ class LineSchedule(Schedule, OnSprings):
             return uncorrelated_adhesion(surface)
         return gaussian_adhesion(surface)
 
-    def field(self, adhesion: AdhesionMap, sizes: Resolution) -> TileField:
+    def field(self, adhesion: AdhesionMap, resolution: Resolution) -> TileField:
         """Field of a tile over all loads."""
         return line_field(
             adhesion,
             self.spring,
             (0.0, float(self.loads[-1])),
-            n_site=sizes.n_angle,
-            spacing=sizes.spacing,
-            interpolation=sizes.interpolation,
+            n_site=resolution.n_angle,
+            spacing=resolution.spacing,
+            interpolation=resolution.interpolation,
             band_limited=not self.uncorrelated,
         )
 
@@ -195,16 +195,16 @@ class LineSchedule(Schedule, OnSprings):
         length = result.simulation.correlation_length
         return period_adhesion(result.record, self.n_period, result.mean_adhesion, length)
 
-    def usual_size(self, spectrum: Spectrum) -> float:
-        """Size of a front for which settings are chosen, whatever its spectrum."""
-        return LAW_SIZE
+    def usual_cutoffs(self, spectrum: Spectrum) -> float:
+        """Cutoffs crossed, for which settings are chosen, whatever the spectrum."""
+        return LAW_CUTOFFS
 
-    def averaged_sizes(
+    def averaged_cutoffs(
         self, steady: SteadyAdhesion, correlation_length: float, short_cutoff: float
     ) -> tuple[float, float, float]:
-        """Sizes of the fronts of one period of the tile, equal for both branches."""
-        size = self.length / short_cutoff * (1 + self.period / correlation_length)
-        return size, size, self.length
+        """Cutoffs crossed in one period of the tile, equal for both branches."""
+        cutoffs = self.length / short_cutoff * (1 + self.period / correlation_length)
+        return cutoffs, cutoffs, self.length
 
 
 @dataclass(frozen=True, slots=True)
@@ -224,9 +224,9 @@ class LineLoad(SurfaceLoads):
     uncorrelated: bool = False
     """Whether sites are independent of each other, the limit of weak disorder."""
 
-    def usual_size(self, spectrum: Spectrum) -> float:
-        """Size of a front for which settings are chosen, whatever its spectrum."""
-        return LAW_SIZE
+    def usual_cutoffs(self, spectrum: Spectrum) -> float:
+        """Cutoffs crossed, for which settings are chosen, whatever the spectrum."""
+        return LAW_CUTOFFS
 
     def for_surface(
         self,
@@ -243,7 +243,9 @@ class LineLoad(SurfaceLoads):
         larkin = larkin_length(kind, spectrum, 2 * math.sqrt(elastic_energy))
         length = correlation_length(kind, spectrum)
         spring *= length if self.spring_unit == "correlation_length" else larkin
-        settings = numerics.settings_of(kind, spectrum, elastic_energy, self.usual_size(spectrum))
+        settings = numerics.settings_of(
+            kind, spectrum, elastic_energy, self.usual_cutoffs(spectrum)
+        )
         pixel = spectrum.short_cutoff / settings.pixels_per_cutoff
         least = numerics.tile_side(spectrum)
         rms = front_rms(force_correlation_length(kind, spectrum), spring / larkin)
@@ -258,10 +260,10 @@ class LineLoad(SurfaceLoads):
 
     def check_resolution(self, simulation: Simulation) -> None:
         """Raise ValueError if a Larkin length has few sites, or a period few states."""
-        sizes, schedule = simulation.resolution, simulation.schedule
+        resolution, schedule = simulation.resolution, simulation.schedule
         name, energy = simulation.spectrum_name, simulation.elastic_energy
         larkin = larkin_length(simulation.kind, simulation.spectrum, 2 * math.sqrt(energy))
-        site = sizes.tile_side / sizes.n_angle
+        site = resolution.tile_side / resolution.n_angle
         if larkin < 2 * site:
             raise ValueError(
                 f"numerics: the Larkin length of {name} at e_el {energy:g} is {larkin:.3g}, below "

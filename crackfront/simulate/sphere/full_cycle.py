@@ -18,7 +18,7 @@ from crackfront.core.geometry.sphere import contact_field, sphere
 from crackfront.core.solver.relax import Solver
 from crackfront.core.spectrum import Spectrum
 from crackfront.simulate.contact import ExpectedMotion, Pressed, Problem, Schedule
-from crackfront.simulate.laws import sphere_size
+from crackfront.simulate.laws import sphere_cutoffs
 from crackfront.simulate.tiles import Fineness, RandomSurface, Resolution, gaussian_adhesion
 
 if TYPE_CHECKING:
@@ -37,11 +37,14 @@ class SphereSchedule(Schedule, Pressed):
 
     def resolution(self, fineness: Fineness) -> Resolution:
         """Sizes on the least tile, which the contact may exceed."""
-        return fineness.sizes(fineness.tile_side, self.front_length)
+        return fineness.resolution(fineness.tile_side, self.front_length)
 
-    def tile(self, sizes: Resolution) -> tuple[tuple[int, int], tuple[float, float]]:
+    def tile(self, resolution: Resolution) -> tuple[tuple[int, int], tuple[float, float]]:
         """A square."""
-        return (sizes.n_point, sizes.n_point), (sizes.tile_side, sizes.tile_side)
+        return (resolution.n_point, resolution.n_point), (
+            resolution.tile_side,
+            resolution.tile_side,
+        )
 
     def geometry(self, n_site: int) -> Geometry:
         """Sphere with so many rays."""
@@ -51,14 +54,14 @@ class SphereSchedule(Schedule, Pressed):
         """Work of adhesion of a Gaussian surface."""
         return gaussian_adhesion(surface)
 
-    def field(self, adhesion: AdhesionMap, sizes: Resolution) -> TileField:
+    def field(self, adhesion: AdhesionMap, resolution: Resolution) -> TileField:
         """Field of a tile up to the largest penetration."""
         return contact_field(
             adhesion,
             self.max_penetration,
-            sizes.n_angle,
-            sizes.spacing,
-            sizes.interpolation,
+            resolution.n_angle,
+            resolution.spacing,
+            resolution.interpolation,
             band_limited=True,
         )
 
@@ -75,14 +78,14 @@ class SphereSchedule(Schedule, Pressed):
         """Means over the states of which every site has travelled a correlation length."""
         return steady_adhesion(result.record, result.simulation.correlation_length)
 
-    def usual_size(self, spectrum: Spectrum) -> float:
-        """Size of the front of a sphere of mean radius 1.6 in eight states."""
-        return sphere_size(spectrum)
+    def usual_cutoffs(self, spectrum: Spectrum) -> float:
+        """Cutoffs crossed by a sphere of mean radius 1.6 in eight states."""
+        return sphere_cutoffs(spectrum)
 
-    def averaged_sizes(
+    def averaged_cutoffs(
         self, steady: SteadyAdhesion, correlation_length: float, short_cutoff: float
     ) -> tuple[float, float, float]:
-        """Sizes of the circles of the steady window."""
+        """Cutoffs crossed by the circles of the steady window."""
         low, high = steady.lowest_radius, steady.highest_radius
         cutoffs = math.pi * (low + high) / short_cutoff
         n_independent = 1 + (high - low) / correlation_length

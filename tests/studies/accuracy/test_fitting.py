@@ -7,7 +7,7 @@ from dataclasses import asdict
 import numpy as np
 import pytest
 
-from crackfront.simulate.laws import LAW_SIZE, read_laws
+from crackfront.simulate.laws import LAW_CUTOFFS, read_laws
 from studies.accuracy.fitting import fit_laws
 from studies.accuracy.scenes import HELD_OUT, SCENES
 from studies.accuracy.study import Errors, SceneErrors, scene_errors
@@ -57,7 +57,7 @@ def test_rare_avalanches_count_with_their_mean_square():
         )
         return next(law for law in fit_laws([study]) if law.setting == "cubic")
 
-    squares = [(law(seed).error(3, LAW_SIZE) * 3**3) ** 2 for seed in range(60)]
+    squares = [(law(seed).error(3, LAW_CUTOFFS) * 3**3) ** 2 for seed in range(60)]
     assert 0.8 < np.mean(squares) < 1.25
 
 
@@ -71,8 +71,8 @@ def test_the_fit_finds_the_law_behind_the_errors():
     laws = {(law.setting, law.direction): law for law in fit_laws([synthetic_study(bias, scatter)])}
     assert laws["sites", -1].bias == pytest.approx((1, -2), abs=0.1)
     assert laws["cubic", 1].scatter == pytest.approx((math.log(0.3), -3), abs=0.2)
-    assert laws["cubic", 1].error(4, LAW_SIZE) == pytest.approx(0.3 / 64, rel=0.1)
-    assert laws["cubic", 1].error(4, 4 * LAW_SIZE) == pytest.approx(0.15 / 64, rel=0.1)
+    assert laws["cubic", 1].error(4, LAW_CUTOFFS) == pytest.approx(0.3 / 64, rel=0.1)
+    assert laws["cubic", 1].error(4, 4 * LAW_CUTOFFS) == pytest.approx(0.15 / 64, rel=0.1)
 
 
 def largest_error(name, n_realisation, requested=0.03):
