@@ -15,7 +15,6 @@ from typing import get_args
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.interpolate import interp1d
 
 from crackfront.core.adhesion import FieldKind, correlation_length, force_correlation_length
 from crackfront.core.arrays import Array
@@ -130,9 +129,11 @@ def _interpolated(places: ArrayLike, measured: Array, values: Array) -> Array:
 
     The measured places increase.
     """
-    ends = values[0], values[-1]
-    interpolation = interp1d(measured, values, axis=0, bounds_error=False, fill_value=ends)
-    return np.asarray(interpolation(places))
+
+    def at_places(column: Array) -> Array:
+        return np.interp(places, measured, column)
+
+    return np.apply_along_axis(at_places, 0, values)
 
 
 def _relative_correlation_length(kind: FieldKind, spectrum: Spectrum) -> float:
