@@ -20,11 +20,16 @@ from crackfront.cli.option_types import (
 )
 from crackfront.cli.output_files import check_overwriting, check_replaced_page, check_writable
 from crackfront.core.bounds import Range
+from crackfront.core.units import plane_strain_modulus
 from crackfront.measured.options import (
+    PredictionOptions,
     ReadingOptions,
+    SphereOptions,
+    checked_options,
     for_files,
     named_options,
     reading_options,
+    sphere_scales,
 )
 from crackfront.surfaces.written_units import si_value
 
@@ -37,6 +42,13 @@ _ERROR = Number(Range(0.0, 0.99))
 
 _COLUMNS = {"force": "force", "radius": "contact_radius", "displacement": "displacement"}
 """Options that name a column of a table, by the column."""
+
+_SPHERE_AND_PREDICTION = {
+    name
+    for record in (SphereOptions, ReadingOptions, PredictionOptions)
+    for name in record.model_fields
+}
+"""Options that do not describe the rig or its table."""
 
 _Callback = Callable[[click.Context, click.Parameter, str | None], Any]
 
@@ -65,26 +77,14 @@ def _window(
 
 @click.command(
     epilog=examples(
-        "crackfront loop examples/rig.csv --radius 100um --modulus 0.7MPa",
-        "crackfront loop examples/rig.csv --radius 100um --modulus 0.7MPa \\",
+        "crackfront loop examples/rig.csv --radius 100um --modulus 0.7MPa --poisson 0.5",
+        "crackfront loop examples/rig.csv --radius 100um --modulus 0.7MPa --poisson 0.5 \\",
         "    --scans examples/scans/nanodiamond-overview.al3d --work-of-adhesion 63mJ/m2",
         "crackfront loop cycle.nc",
     )
 )
 @click.argument("path", type=FILE, metavar="FILE")
-@click.option("--radius", callback=_in_si("m"), help="Radius of the sphere, as in 1.25mm.")
-@click.option(
-    "--modulus",
-    callback=_in_si("Pa"),
-    help="Young's modulus, as in 0.7MPa; fitted if it is left out.",
-)
-@click.option(
-    "--poisson",
-    type=Number(Range(-0.99, 0.5)),
-    default=0.5,
-    show_default=True,
-    help="Poisson's ratio.",
-)
+@options_of(SphereOptions)
 @click.option(
     "--modulus-error", type=_ERROR, default=0.0, help="Relative standard error of the modulus."
 )
@@ -116,11 +116,7 @@ def _window(
     help="Scan of the surface, for a prediction. May be repeated.",
 )
 @options_of(ReadingOptions)
-@click.option(
-    "--work-of-adhesion",
-    callback=_in_si("J/m^2"),
-    help="w_int of the prediction, as in 63mJ/m2.",
-)
+@options_of(PredictionOptions, without=("pull_off",))
 @click.option("--figure", type=FILE, help="Figure of the loop; without suffix PDF and PNG.")
 @click.option("--report", type=FILE, help="Page of HTML to send: numbers, reservations and figure.")
 @as_json
@@ -129,11 +125,7 @@ def loop(
     context: click.Context,
     /,
     path: Path,
-    radius: float | None,
-    modulus: float | None,
-    poisson: float,
     scans: tuple[Path, ...],
-    work_of_adhesion: float | None,
     figure: Path | None,
     report: Path | None,
     as_json: bool,
@@ -142,39 +134,42 @@ def loop(
     """Evaluate a measured or simulated loop of force, contact radius and displacement.
 
     FILE is a text with headings and two or three of these columns. Works of adhesion are averaged
-    over the same contact radii in both branches, as in simulations. FILE may also be a cycle in
-    netCDF that `crackfront cycle` or a sweep has written, with the works of adhesion of
-    the simulation. They are in reduced units unless the file states a sphere, or --radius,
-    --modulus and --work-of-adhesion name one.
+    over the same contact radii in both branches, as in simulations. The modulus is fitted to force
+    and contact radius unless --modulus and --poisson state it. FILE may also be a cycle in netCDF
+    that `crackfront cycle` or a sweep has written, with the works of adhesion of the simulation.
+    They are in reduced units unless the file states a sphere, or --radius, --modulus, --poisson and
+    --work-of-adhesion name one.
 
-    Options of reading, from --channel to --longest, are the same as in `crackfront predict` and
-    apply to the --scans.
+    Options of reading, from --channel to --longest, and of the theory, from --range to
+    --work-of-adhesion-error, are the same as in `crackfront predict` and apply to the prediction
+    for --scans.
     """
     from crackfront.measured.scan.netcdf import is_netcdf
 
-    if scans and work_of_adhesion is None:
-        raise ValueError("a prediction for --scans needs w_int; give --work-of-adhesion")
-    reading = _reading(scans, options)
-    rig = {name: options[name] for name in options if name not in ReadingOptions.model_fields}
+    sphere = checked_options(SphereOptions, options, "--")
     check_needed_option(context, "modulus", "poisson")
+    check_needed_option(context, "poisson", "modulus")
+    if scans and sphere.work_of_adhesion is None:
+        raise ValueError("a prediction for --scans needs w_int; give --work-of-adhesion")
+    theory = _prediction_options(scans, options)
+    rig = {name: value for name, value in options.items() if name not in _SPHERE_AND_PREDICTION}
     check_overwriting([path, *scans], {"--figure": figure, "--report": report})
     check_replaced_page("--report", report)
     for output in filter(None, (figure, report)):
         check_writable(output.parent)
-    contact_modulus = None if modulus is None else modulus / (1 - poisson**2)
     if is_netcdf(path):
         if names := [name for name, value in rig.items() if value]:
             option = option_name(names[0])
             raise ValueError(f"{path} is a simulated cycle without a rig; leave out {option}")
-        result = _simulated(path, radius, contact_modulus, work_of_adhesion, bool(scans))
+        result = _simulated(path, sphere, bool(scans))
     else:
-        if work_of_adhesion is not None and not scans:
+        if sphere.work_of_adhesion is not None and not scans:
             raise ValueError("--work-of-adhesion is of a prediction; name --scans too")
-        result = _measured(path, radius, contact_modulus, rig)
+        result = _measured(path, sphere, rig)
     prediction, failure = None, None
-    if work_of_adhesion is not None and scans:
+    if sphere.work_of_adhesion is not None and scans:
         try:
-            prediction = _prediction(scans, reading, result, work_of_adhesion)
+            prediction = _prediction(scans, theory, result, sphere.work_of_adhesion)
         except (ValueError, OSError) as error:
             failure = error  # The loop is printed and drawn all the same.
     _print(result, prediction, as_json=as_json)
@@ -194,19 +189,31 @@ def loop(
         raise failure
 
 
-def _reading(scans: tuple[Path, ...], options: dict[str, Any]) -> dict[str, Any]:
-    """Options of reading scans that the command names; ValueError without scans."""
-    names = named_options(ReadingOptions, options)
+def _prediction_options(scans: tuple[Path, ...], options: dict[str, Any]) -> dict[str, Any]:
+    """Options for scans and theory that the command names; ValueError without scans."""
+    names = [
+        name
+        for record in (ReadingOptions, PredictionOptions)
+        for name in named_options(record, options)
+    ]
     if names and not scans:
-        raise ValueError(f"{option_name(names[0])} is of scans; name --scans too")
-    reading = for_files({name: options[name] for name in names}, scans)
-    reading_options(reading, len(scans), "--")
-    return reading
+        raise ValueError(f"{option_name(names[0])} is of a prediction; name --scans too")
+    chosen = for_files({name: options[name] for name in names}, scans)
+    reading_options(chosen, len(scans), "--")
+    theory = checked_options(PredictionOptions, chosen, "--")
+    return chosen | {
+        name: getattr(theory, name) for name in named_options(PredictionOptions, chosen)
+    }
 
 
-def _measured(
-    path: Path, radius: float | None, contact_modulus: float | None, options: dict[str, Any]
-) -> MeasuredLoop:
+def _contact_modulus(sphere: SphereOptions) -> float | None:
+    """Contact modulus that a command states (Units: Pa); None to fit it."""
+    if sphere.modulus is None or sphere.poisson is None:
+        return None
+    return plane_strain_modulus(sphere.modulus, sphere.poisson)
+
+
+def _measured(path: Path, sphere: SphereOptions, options: dict[str, Any]) -> MeasuredLoop:
     """Loop of a table, with the options of the rig and of the columns."""
     from crackfront.measured.loops.analysis import analyse_loop
     from crackfront.measured.loops.loop_choice import chosen_loop
@@ -216,23 +223,17 @@ def _measured(
     heads = {name: options[option] for name, option in _COLUMNS.items() if options[option]}
     units = {name: options[f"{name}_unit"] for name in _COLUMNS if options[f"{name}_unit"]}
     recording = read_recording(path, heads, units)
-    if radius is None:
+    if sphere.radius is None:
         raise ValueError(f"{path} does not state the sphere; give its --radius, as in 1.25mm")
     rig_options = ("modulus_error", "radius_error", "stiffness", "window", "segment")
-    rig = Rig(radius, contact_modulus, **{name: options[name] for name in rig_options})
+    contact_modulus = _contact_modulus(sphere)
+    rig = Rig(sphere.radius, contact_modulus, **{name: options[name] for name in rig_options})
     recording = chosen_loop(recording.inverted(options["invert"]), options["loop"])
     return analyse_loop(recording, rig)
 
 
-def _simulated(
-    path: Path,
-    radius: float | None,
-    contact_modulus: float | None,
-    work_of_adhesion: float | None,
-    is_compared: bool,
-) -> MeasuredLoop:
-    """Loop of a simulated cycle, in SI units if its file or all three options state a sphere."""
-    from crackfront.core.units import Scales
+def _simulated(path: Path, sphere: SphereOptions, is_compared: bool) -> MeasuredLoop:
+    """Loop of a simulated cycle, in SI units if its file or the options state a sphere."""
     from crackfront.measured.loops.simulated_loop import simulated_loop
     from crackfront.simulate.storage import read_dataset
     from crackfront.surfaces.si_units import in_si_units, stated_scales
@@ -241,37 +242,32 @@ def _simulated(
     if "direction" not in cycle.variables:
         raise ValueError(f"{path} is not a cycle; name a file of crackfront cycle or of a sweep")
     is_in_si = stated_scales(cycle) is not None
-    if radius is None and contact_modulus is None:
-        if work_of_adhesion is not None and not is_compared:
+    if sphere.radius is None and sphere.modulus is None:
+        if sphere.work_of_adhesion is not None and not is_compared:
             raise ValueError(
-                "--work-of-adhesion is of a prediction; name --scans too, or --radius and "
-                "--modulus for SI units"
+                "--work-of-adhesion is of a prediction; name --scans too, or --radius, --modulus "
+                "and --poisson for SI units"
             )
         if is_compared and not is_in_si:
             raise ValueError(
-                f"{path} is in reduced units, and predictions are not; give --radius and --modulus"
+                f"{path} is in reduced units, and predictions are not; give --radius, --modulus "
+                "and --poisson"
             )
         return simulated_loop(cycle, str(path))
     if is_in_si:
-        raise ValueError(f"{path} states its sphere; leave out --radius and --modulus")
-    if radius is None or contact_modulus is None or work_of_adhesion is None:
-        raise ValueError(
-            f"{path} is in reduced units; give --radius, --modulus and --work-of-adhesion for "
-            "SI units, or leave all three out"
-        )
-    scales = Scales(radius, work_of_adhesion, contact_modulus)
-    return simulated_loop(in_si_units(cycle, scales), str(path))
+        raise ValueError(f"{path} states its sphere; leave out --radius, --modulus and --poisson")
+    return simulated_loop(in_si_units(cycle, sphere_scales(sphere, "--")), str(path))
 
 
 def _prediction(
-    scans: tuple[Path, ...], reading: dict[str, Any], loop: MeasuredLoop, work_of_adhesion: float
+    scans: tuple[Path, ...], options: dict[str, Any], loop: MeasuredLoop, work_of_adhesion: float
 ) -> Prediction:
     """Prediction for the sphere on a surface of scans, with the modulus of the loop."""
     from crackfront.core.units import Scales
     from crackfront.measured.predict import predict
 
     scales = Scales(loop.sphere_radius, work_of_adhesion, loop.contact_modulus.value)
-    prediction = predict(scans, scales, **reading)
+    prediction = predict(scans, scales, **options)
     if not prediction.applies:
         raise ValueError(f"the theory does not apply: {prediction.reason}")
     return prediction

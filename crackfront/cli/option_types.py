@@ -64,11 +64,15 @@ def examples(*lines: str) -> str:
     return "\b\nExamples:\n" + "\n".join(f"  {line}" for line in lines)
 
 
-def options_of(record: type[Options], *, required: bool = False) -> Callable[[Command], Command]:
-    """Give a command an option for every field of a record."""
+def options_of(
+    record: type[Options], *, required: bool = False, without: Iterable[str] = ()
+) -> Callable[[Command], Command]:
+    """Give a command an option for every field of a record, without some of them."""
 
     def decorated(command: Command) -> Command:
         for name, field in reversed(record.model_fields.items()):
+            if name in without:
+                continue
             marks = [mark for mark in (PER_SCAN, REPEATED) if mark in field.metadata]
             command = click.option(
                 option_name(name),
@@ -84,8 +88,8 @@ def options_of(record: type[Options], *, required: bool = False) -> Callable[[Co
 
 def check_needed_option(context: click.Context, needed: str, *names: str) -> None:
     """Raise ValueError if an option is given without another one that it needs."""
-    if not context.params[needed] and (option := _first_set(context, names)):
-        raise ValueError(f"{option} has an effect only with {option_name(needed)}")
+    if not _first_set(context, [needed]) and (option := _first_set(context, names)):
+        raise ValueError(f"{option} has an effect only with {option_name(needed)}; give both")
 
 
 def check_together(context: click.Context, decider: str, *names: str) -> None:

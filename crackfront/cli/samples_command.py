@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+import math
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -161,10 +162,12 @@ def _line(result: SampleResult, quantity: str) -> str:
     outcome = f"{result.outcome}: {reason}" if reason else result.outcome
     if result.prediction is None:
         return f"{result.sample.name}: {outcome}"
-    unit = "N" if quantity == "pull_off_force" else ENERGY
-    value = estimate_text(unit, getattr(result.prediction, quantity))
-    least = "at least " if quantity == "hysteresis" and result.prediction.at_least else ""
-    return f"{result.sample.name}: {quantity.replace('_', ' ')} {least}{value}; {outcome}"
+    estimate = getattr(result.prediction, quantity)
+    if not math.isfinite(estimate.value):
+        return f"{result.sample.name}: {outcome}"
+    name, unit = ("pull-off force", "N") if quantity == "pull_off_force" else (quantity, ENERGY)
+    least = "at least " if quantity in ("hysteresis", "e_el") and result.prediction.at_least else ""
+    return f"{result.sample.name}: {name} {least}{estimate_text(unit, estimate)}; {outcome}"
 
 
 def exit_code(outcome: str, strict: bool) -> int:

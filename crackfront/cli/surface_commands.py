@@ -226,17 +226,15 @@ def _predict(
     from crackfront.measured.prediction.prediction import check_and_predict, not_predicted
 
     verdict, prediction = check_and_predict(surface, scales, theory)
+    result = not_predicted(surface, scales, verdict) if prediction is None else prediction
     simulated = None
-    if prediction is not None:
-        outputs.say(repr(prediction))
-    if outputs.is_long or prediction is None:
-        text = report_text(surface, scales, verdict, prediction)
-        outputs.say("\n" * outputs.is_long + text)
+    outputs.say(repr(result))
+    if outputs.is_long:
+        outputs.say("\n" + report_text(surface, scales, verdict, prediction))
     if prediction is not None:
         _draw(prediction, outputs)
         simulated = _simulated(prediction, scales, outputs)
     if outputs.report is not None:
-        result = not_predicted(surface, scales, verdict) if prediction is None else prediction
         _write_report(outputs.report, result, simulated, outputs)
     if outputs.as_json:
         echo_json(machine_readable(surface, scales, verdict, prediction, simulated))

@@ -6,6 +6,8 @@ from base64 import encodebytes
 from collections.abc import Iterable, Mapping, Sequence
 from html import escape
 
+from crackfront.simulate.provenance import provenance, utc_now
+
 _STYLE = (
     "body{font:15px/1.5 sans-serif;max-width:75em;margin:2em auto;padding:0 1em;color:#222}"
     "table{border-collapse:collapse;margin:1em 0;font-size:90%}"
@@ -52,6 +54,18 @@ def html_pairs(head: tuple[str, str], rows: Mapping[str, str]) -> str:
 def html_list(sentences: Iterable[str]) -> str:
     """A list of plain sentences."""
     return f"<ul>{''.join(f'<li>{escape(sentence)}</li>' for sentence in sentences)}</ul>"
+
+
+def html_origin() -> str:
+    """Version, command and moment of a page, below a heading."""
+    origin = provenance()
+    rows = {
+        "crackfront": origin.crackfront_version,
+        "commit": origin.git_commit,
+        "command": origin.command,
+        "date": utc_now(),
+    }
+    return f"<h2>Origin</h2>\n{html_pairs(('', ''), rows)}"
 
 
 def _cells(tag: str, texts: Iterable[str]) -> str:

@@ -6,6 +6,7 @@ Functions import matplotlib only when they draw, because it is slow to import.
 from __future__ import annotations
 
 import functools
+import io
 import logging
 import textwrap
 from collections.abc import Iterator
@@ -47,6 +48,9 @@ of its size, so that this is 7 there. (Units: point)"""
 
 _SCREEN_WIDTH = 4.0
 """Width of a figure on a screen. (Units: inch)"""
+
+_PAGE_RESOLUTION = 200
+"""Resolution of figures in pages of HTML. (Units: pixels per inch)"""
 
 _SCREEN_RESOLUTION = 144
 """Resolution of pictures for a screen. (Units: pixels per inch)"""
@@ -171,6 +175,14 @@ def picture_subject(path: Path) -> str:
             return str(picture.info.get(_SUBJECTS[".png"], ""))
     except OSError:
         return ""
+
+
+def figure_png(figure: Figure) -> bytes:
+    """A figure as a PNG that a page embeds."""
+    stream = io.BytesIO()
+    with house_style():
+        figure.savefig(stream, format="png", dpi=_PAGE_RESOLUTION)
+    return stream.getvalue()
 
 
 def save_picture(figure: Figure, path: Path) -> None:

@@ -67,14 +67,17 @@ class Scales(units.Scales):
         super().__init__(
             in_si("radius", radius, "m"),
             in_si("work_of_adhesion", work_of_adhesion, "J/m^2"),
-            _stated_modulus(contact_modulus, modulus, poisson),
+            stated_modulus(contact_modulus, modulus, poisson),
         )
 
 
-def _stated_modulus(
+def stated_modulus(
     contact_modulus: float | str | None, modulus: float | str | None, poisson: float | None
 ) -> float:
-    """Contact modulus, from itself or from Young's modulus and Poisson's ratio (Units: Pa)."""
+    """Contact modulus, from itself or from Young's modulus and Poisson's ratio (Units: Pa).
+
+    ValueError unless it is stated in one way, and completely.
+    """
     if contact_modulus is not None:
         if modulus is not None or poisson is not None:
             name, value = ("poisson", poisson) if modulus is None else ("modulus", modulus)

@@ -30,7 +30,7 @@ def run(*arguments):
 
 
 def test_a_table_becomes_works_of_adhesion_and_a_figure(table, tmp_path):
-    sphere = ("--radius", "1.25mm", "--modulus", "0.7MPa")
+    sphere = ("--radius", "1.25mm", "--modulus", "0.7MPa", "--poisson", "0.5")
     done = run(table, *sphere, "--figure", tmp_path / "loop.png", "--json")
     assert done.exit_code == 0, done.output
     content = json.loads(done.stdout)
@@ -42,7 +42,7 @@ def test_a_table_becomes_works_of_adhesion_and_a_figure(table, tmp_path):
 
 
 def test_the_example_of_the_page_has_the_simulated_hysteresis():
-    options = "--radius 100um --modulus 0.7MPa"
+    options = "--radius 100um --modulus 0.7MPa --poisson 0.5"
     assert f"crackfront loop examples/rig.csv {options}" in (ROOT / "docs/loops.md").read_text()
     done = run(ROOT / "examples/rig.csv", *options.split(), "--json")
     found = json.loads(done.stdout)["hysteresis"]
@@ -56,10 +56,16 @@ def test_the_example_of_the_page_has_the_simulated_hysteresis():
         (("--radius", "1.25"), "without a unit"),
         (("--radius", "1.25mm", "--window", "50um"), "give two contact radii"),
         (("--radius", "1.25mm", "--stiffness", "3kg"), "not a unit of stiffness"),
-        (("--radius", "1.25mm", "--poisson", "0.3"), "--poisson has an effect only with --modulus"),
+        (("--radius", "1.25mm", "--poisson", "0"), "--poisson has an effect only with --modulus"),
+        (("--radius", "1.25mm", "--modulus", "1MPa"), "effect only with --poisson; give both"),
+        (("--radius", "1.25mm", "--modulus", "1MPa", "--poisson", "0.6"), "--poisson is '0.6'"),
+        (
+            ("--radius", "1.25mm", "--work-of-adhesion-error", "3mJ/m2"),
+            "--work-of-adhesion-error is of a prediction; name --scans too",
+        ),
         (("--radius", "1.25mm", "--scans", "a.al3d"), "--work-of-adhesion"),
         (("--radius", "1.25mm", "--force", "Kraft"), "lacks a column 'Kraft'"),
-        (("--radius", "1.25mm", "--size", "5"), "--size is of scans; name --scans too"),
+        (("--radius", "1.25mm", "--size", "5"), "--size is of a prediction; name --scans too"),
         (
             (*ON_SCAN, "--work-of-adhesion", "63mJ/m2", "--tip-radius", "20"),
             "--tip-radius is '20', without a unit",
@@ -81,6 +87,20 @@ def test_a_scan_beside_the_loop_gives_their_ratio(table):
     expected = content["hysteresis"]["value"] / content["predicted"]["hysteresis"]["value"]
     assert np.isclose(ratio["value"], expected)
     assert ratio["low"] < ratio["value"] < ratio["high"]
+
+
+def test_an_error_of_w_int_widens_the_prediction_as_in_predict(table):
+    sphere = (*ON_SCAN, "--work-of-adhesion", "63mJ/m2")
+    exact, uncertain = (
+        json.loads(run(table, *sphere, *error, "--json").stdout)
+        for error in ((), ("--work-of-adhesion-error", "5mJ/m2"))
+    )
+    assert uncertain["w_retr"] == exact["w_retr"]
+    widths = [
+        content["predicted"]["w_retr"]["high"] - content["predicted"]["w_retr"]["low"]
+        for content in (exact, uncertain)
+    ]
+    assert widths[1] > widths[0] + 10e-3
 
 
 def test_a_loop_whose_prediction_is_refused_is_kept(table, tmp_path):

@@ -20,9 +20,14 @@ def table(tmp_path, monkeypatch):
 def test_the_chosen_quantity_is_printed_and_why_there_is_none(table):
     options = (*SPHERE, "--no-figure", "--quantity", "pull_off_force")
     first, _, last = run("samples", table, *options).stdout.splitlines()[:3]
-    assert first.startswith("A: pull off force ")
+    assert first.startswith("A: pull-off force ")
     assert "uN" in first
     assert last.startswith("C: does not apply: full conformity")
+
+
+def test_e_el_is_printed_where_the_theory_does_not_apply_too(table):
+    options = (*SPHERE, "--no-figure", "--quantity", "e_el")
+    assert run("samples", table, *options).stdout.splitlines()[2].startswith("C: e_el ")
 
 
 def test_a_file_that_cannot_be_read_says_why(table):

@@ -116,6 +116,17 @@ def test_each_outcome_has_its_exit_code(predict, smooth):
         assert (content["prediction"] is None) == (code == 4)
 
 
+def test_a_theory_that_does_not_apply_is_a_short_page_of_reasons_and_remedies(predict):
+    page = predict(modulus="3MPa").output.splitlines()
+    assert len(page) < 8
+    assert "THE THEORY DOES NOT APPLY" in page[0]
+    assert "It would be met with a contact modulus" in page[1]
+    everything = predict("--long", modulus="3MPa").output
+    assert everything.splitlines()[: len(page)] == page
+    assert "rms of slopes" in everything
+    assert "The numbers are for an e_el of" not in everything
+
+
 def test_the_short_text_is_the_beginning_of_the_long_one(predict):
     result = predict("--long")
     assert result.exit_code == 0, result.output

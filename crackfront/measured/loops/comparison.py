@@ -15,12 +15,12 @@ from crackfront.simulate.jsonable import to_jsonable
 from crackfront.surfaces.written_units import prefixed
 
 _NOT_PREDICTED = (
-    "The predicted loop is quasi-static: no viscoelasticity, no ageing, and the preload does not "
-    "enter. Neither interval covers the errors of modulus and radius in the prediction, nor what "
-    "the model leaves out: roughness that is finer than the scans or outside of them, dissipation "
-    "at the moving edge (viscoelasticity: repeat at a tenth of the speed), changes with time in "
-    "contact (ageing, chemistry: repeat with a longer rest), and a w_int other than the given one "
-    "(measure it on a smooth surface)."
+    "The predicted loop is quasi-static and of a half-space: no viscoelasticity, no ageing, no "
+    "thin layer, and the preload does not enter. Neither interval covers the errors of modulus and "
+    "radius in the prediction, nor what the model leaves out: roughness that is finer than the "
+    "scans or outside of them, dissipation at the moving edge (viscoelasticity: repeat at a tenth "
+    "of the speed), changes with time in contact (ageing, chemistry: repeat with a longer rest), "
+    "and a w_int other than the given one (measure it on a smooth surface)."
 )
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 from collections.abc import Iterator
 from html import escape
 
@@ -11,17 +10,19 @@ from crackfront.measured.loops.loop_drawing import loop_figure
 from crackfront.measured.loops.loop_page import INTERVALS, loop_numbers
 from crackfront.measured.loops.loop_result import MeasuredLoop
 from crackfront.measured.prediction.prediction import Prediction
-from crackfront.plots.html_page import html_list, html_page, html_pairs, html_picture
-from crackfront.plots.style import house_style
-from crackfront.simulate.provenance import provenance, utc_now
+from crackfront.plots.html_page import (
+    html_list,
+    html_origin,
+    html_page,
+    html_pairs,
+    html_picture,
+)
+from crackfront.plots.style import figure_png
 
 _CAPTION = (
     "Contact radius against force of each row, the JKR curves of both works of adhesion, and the "
     "contact radii that are averaged."
 )
-
-_RESOLUTION = 200
-"""Resolution of the embedded figure. (Units: pixels per inch)"""
 
 
 def loop_report(
@@ -48,29 +49,10 @@ def _parts(loop: MeasuredLoop, prediction: Prediction | None, title: str) -> Ite
     yield f"<p>{INTERVALS}</p>"
     yield html_list(loop.remarks)
     yield "</section>"
-    yield html_picture(_png(loop, prediction), "loop", _CAPTION)
+    yield html_picture(figure_png(loop_figure(loop, prediction)), "loop", _CAPTION)
     if prediction is not None:
         heading, *lines = comparison_lines(loop, prediction)
         numbers = [line for line in lines if line.startswith(" ")]
         yield f"<h2>{escape(heading)}</h2><pre>{escape(chr(10).join(numbers))}</pre>"
         yield html_list(line for line in lines if line not in numbers)
-    yield "<h2>Origin</h2>"
-    origin = provenance()
-    yield html_pairs(
-        ("", ""),
-        {
-            "crackfront": origin.crackfront_version,
-            "commit": origin.git_commit,
-            "command": origin.command,
-            "date": utc_now(),
-        },
-    )
-
-
-def _png(loop: MeasuredLoop, prediction: Prediction | None) -> bytes:
-    """The figure of a loop as PNG."""
-    stream = io.BytesIO()
-    figure = loop_figure(loop, prediction)
-    with house_style():
-        figure.savefig(stream, format="png", dpi=_RESOLUTION)
-    return stream.getvalue()
+    yield html_origin()

@@ -12,6 +12,7 @@ from pydantic import Field
 from xarray import DataArray, Dataset
 
 from crackfront.core.arrays import Array
+from crackfront.core.bounds import POISSON
 from crackfront.measured.loops.analysis import analyse_loop
 from crackfront.measured.loops.loop_choice import chosen_loop
 from crackfront.measured.loops.loop_result import MeasuredLoop
@@ -21,9 +22,9 @@ from crackfront.measured.loops.rig import Rig
 from crackfront.measured.loops.simulated_loop import simulated_loop
 from crackfront.measured.scan.netcdf import is_netcdf
 from crackfront.simulate.storage import read_dataset
-from crackfront.surfaces.scales import in_si
+from crackfront.surfaces.scales import in_si, stated_modulus
 from crackfront.surfaces.written_units import unit_value
-from crackfront.validation import PathName, WholeNumber, checked_call
+from crackfront.validation import PathName, WholeNumber, checked_call, within
 
 _SIMULATED = {"mean_radius", "pinning_force"}
 """Variables one of which every simulated cycle has, and no measured loop."""
@@ -35,6 +36,8 @@ def measured_loop(
     *,
     radius: float | str | None = None,
     contact_modulus: float | str | None = None,
+    modulus: float | str | None = None,
+    poisson: Annotated[float, within(POISSON)] | None = None,
     modulus_error: float = 0.0,
     radius_error: float = 0.0,
     stiffness: float | str | None = None,
@@ -57,7 +60,12 @@ def measured_loop(
         Radius of the sphere, which a measured loop needs; a number of metres, or a text with a
         unit, as '1.25mm'. (Units: m)
     contact_modulus : float or str, optional
-        E' = E / (1 - nu^2); fitted to force and contact radius if it is not given. (Units: Pa)
+        E' = E / (1 - nu^2), in place of `modulus` and `poisson`; fitted to force and contact radius
+        if none of them is given. (Units: Pa)
+    modulus : float or str, optional
+        Young's modulus E, as '0.7MPa'. (Units: Pa)
+    poisson : float, optional
+        Poisson's ratio nu, as 0.5.
     modulus_error, radius_error : float, optional
         Relative standard errors of the two.
     stiffness : float or str, optional
@@ -94,7 +102,8 @@ def measured_loop(
     >>> radius = np.concatenate([np.linspace(60e-6, 150e-6, 40), np.linspace(149e-6, 60e-6, 40)])
     >>> work = np.repeat([0.03, 0.06], 40)
     >>> force = 4e6 / 3 * radius**3 / 1e-3 - np.sqrt(8 * np.pi * 1e6 * work * radius**3)
-    >>> loop = measured_loop({"force": force, "radius": radius}, radius=1e-3, contact_modulus=1e6)
+    >>> columns = {"force": force, "radius": radius}
+    >>> loop = measured_loop(columns, radius="1mm", modulus="0.75MPa", poisson=0.5)
     >>> round(loop.w_appr.value, 6), round(loop.w_retr.value, 6)
     (0.03, 0.06)
     """
@@ -104,6 +113,8 @@ def measured_loop(
         _check_no_rig(
             radius=radius,
             contact_modulus=contact_modulus,
+            modulus=modulus,
+            poisson=poisson,
             modulus_error=modulus_error or None,
             radius_error=radius_error or None,
             stiffness=stiffness,
@@ -115,12 +126,13 @@ def measured_loop(
         return simulated_loop(loop)
     if radius is None:
         raise ValueError("a measured loop does not state its sphere; give its radius in metres")
+    is_fitted = contact_modulus is None and modulus is None and poisson is None
     rig = Rig(
         radius=in_si("radius", radius, "m"),
-        contact_modulus=_optional("contact_modulus", contact_modulus, "Pa"),
+        contact_modulus=None if is_fitted else stated_modulus(contact_modulus, modulus, poisson),
         modulus_error=modulus_error,
         radius_error=radius_error,
-        stiffness=_optional("stiffness", stiffness, "N/m"),
+        stiffness=None if stiffness is None else in_si("stiffness", stiffness, "N/m"),
         window=None if window is None else _window(window),
         segment=segment,
     )
@@ -137,11 +149,6 @@ def _check_no_rig(**arguments: object) -> None:
             f"a simulated cycle states its sphere and lacks a rig; leave out {', '.join(names)} "
             "(crackfront.in_si_units gives a cycle in reduced units a sphere)"
         )
-
-
-def _optional(name: str, value: float | str | None, unit: str) -> float | None:
-    """Value in SI of an argument that may be left out."""
-    return None if value is None else in_si(name, value, unit)
 
 
 def _window(window: tuple[float | str, float | str]) -> tuple[float, float]:

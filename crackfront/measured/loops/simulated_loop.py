@@ -31,8 +31,8 @@ _ERRORS = (
     "intervals include the scatter of the states on this one surface."
 )
 _REDUCED_UNITS = (
-    "All numbers are in reduced units, R = 1, w_int = 1/pi, E' = 3/4; --radius, --modulus and "
-    "--work-of-adhesion convert them to SI."
+    "All numbers are in reduced units, R = 1, w_int = 1/pi, E' = 3/4; --radius, --modulus, "
+    "--poisson and --work-of-adhesion convert them to SI."
 )
 _OPEN = (
     "The energy lost is not known: the cycle does not lead from the first contact at penetration 0 "

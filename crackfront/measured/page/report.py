@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 from collections.abc import Iterator
 from html import escape
 
@@ -14,9 +13,14 @@ from crackfront.measured.prediction.prediction_page import NOT_MODELLED, headlin
 from crackfront.measured.prediction.remarks import remark_text
 from crackfront.measured.prediction.works_by_source import reason_for_differences
 from crackfront.measured.spectrum.stated import StatedSurface
-from crackfront.plots.html_page import html_list, html_page, html_pairs, html_picture, html_table
-from crackfront.plots.style import house_style
-from crackfront.simulate.provenance import provenance, utc_now
+from crackfront.plots.html_page import (
+    html_list,
+    html_origin,
+    html_page,
+    html_picture,
+    html_table,
+)
+from crackfront.plots.style import figure_png
 
 _CAPTION = (
     "Densities of the scans with the spectrum and the limits of the trusted waves, the predicted "
@@ -28,9 +32,6 @@ _STATED_CAPTION = "The spectrum, and the predicted force of both branches with 9
 
 _ABOVE = ("next scan", "hysteresis")
 """Subjects of notes that the page has next to the result."""
-
-_RESOLUTION = 200
-"""Resolution of the embedded figure. (Units: pixels per inch)"""
 
 
 def prediction_report(
@@ -71,7 +72,8 @@ def _parts(
     yield f"<p>{NOT_MODELLED}</p></section>"
     if with_figure:
         caption = _CAPTION if prediction.surface.scans else _STATED_CAPTION
-        yield html_picture(_png(prediction), "prediction", caption)
+        figure = prediction_figure(prediction.surface, prediction)
+        yield html_picture(figure_png(figure), "prediction", caption)
     if prediction.applies:
         yield "<h2>Works of adhesion by source</h2>"
         yield html_table(("", *ADHESIONS), source_rows(prediction))
@@ -85,8 +87,7 @@ def _parts(
     yield html_list(remark_text(item) for item in further if item.concerns not in _ABOVE)
     surface = "\n".join(surface_lines(prediction.surface))
     yield f"<h2>Surface</h2><pre>{escape(surface)}</pre>"
-    yield "<h2>Origin</h2>"
-    yield html_pairs(("", ""), _origin())
+    yield html_origin()
 
 
 def _name(prediction: Prediction) -> str:
@@ -95,23 +96,3 @@ def _name(prediction: Prediction) -> str:
     if isinstance(surface, StatedSurface):
         return surface.origin
     return " and ".join(dict.fromkeys(scan.measurement.path.name for scan in surface.scans))
-
-
-def _png(prediction: Prediction) -> bytes:
-    """The figure of a prediction as PNG."""
-    stream = io.BytesIO()
-    figure = prediction_figure(prediction.surface, prediction)
-    with house_style():
-        figure.savefig(stream, format="png", dpi=_RESOLUTION)
-    return stream.getvalue()
-
-
-def _origin() -> dict[str, str]:
-    """Version, command and moment of the page."""
-    origin = provenance()
-    return {
-        "crackfront": origin.crackfront_version,
-        "commit": origin.git_commit,
-        "command": origin.command,
-        "date": utc_now(),
-    }

@@ -108,12 +108,15 @@ def theory_verdict(
     assumption = [_ASSUMPTION] if attraction_range is None else []
     assumed_range = ASSUMED_RANGE if attraction_range is None else attraction_range
     half_space = _HALF_SPACE if thickness is None else _layer_remark(surface, scales, thickness)
+    conditions = [*condition_remarks(surface, scales, assumed_range)]
+    is_predicted = all(condition.severity != "fails" for condition in conditions)
     return Verdict(
         (
             *channel_remarks(surface),
-            *condition_remarks(surface, scales, assumed_range),
+            *conditions,
             half_space,
             *_energy_remarks(surface, scales),
+            *(_limited_energy_remarks(surface, scales) if is_predicted else ()),
             *spectrum_remarks(surface),
             *further,
             *scan_remarks(surface.scans, zero_load_radius(scales)),
@@ -356,7 +359,7 @@ def _negative_share(energy: float) -> float:
 
 
 def _energy_remarks(surface: Surface, scales: Scales) -> Iterator[Remark]:
-    """Reservations on an e_el that is uncertain, incomplete or beyond the law of k."""
+    """Reservations on an e_el that is uncertain, or may be above w_int."""
     w_int = scales.work_of_adhesion
     energy = surface.conformity_energy(scales.contact_modulus)
     shown = prefixed("J/m2", energy.value, energy.low, energy.high)
@@ -368,7 +371,14 @@ def _energy_remarks(surface: Surface, scales: Scales) -> Iterator[Remark]:
     elif energy.high > _MOST_UNCERTAIN * energy.low:
         sentence = f"The interval of e_el spans more than a factor of {_MOST_UNCERTAIN:g}: {shown}."
         yield Remark("e_el", "reservation", sentence)
-    if LARGEST_ENERGY * w_int < energy.value and energy.low < w_int:
+
+
+def _limited_energy_remarks(surface: Surface, scales: Scales) -> Iterator[Remark]:
+    """Reservation on numbers for a smaller e_el, as the surface is beyond the law of k."""
+    w_int = scales.work_of_adhesion
+    energy = surface.conformity_energy(scales.contact_modulus)
+    if LARGEST_ENERGY * w_int < energy.value:
+        shown = prefixed("J/m2", energy.value, energy.low, energy.high)
         sentence = (
             f"The numbers are for an e_el of {LARGEST_ENERGY:.2g} w_int, the largest at which the "
             f"law of k applies; the spectrum gives {shown}, {energy.value / w_int:.2g} w_int."

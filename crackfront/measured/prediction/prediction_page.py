@@ -63,6 +63,7 @@ def _lines_without_numbers(prediction: Prediction) -> Iterator[str]:
     yield f"{prediction.verdict.heading}; nothing is predicted."
     yield from map(remark_text, prediction.verdict.with_severity("fails", "undecided"))
     yield f"{'e_el':18}{_energy_text(prediction)}"
+    yield "--long prints all conditions and the surface."
 
 
 def headline_rows(prediction: Prediction) -> Iterator[tuple[str, str]]:

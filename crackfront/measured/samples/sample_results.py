@@ -10,7 +10,11 @@ from typing import Any
 from crackfront.analysis.estimate import UNKNOWN
 from crackfront.measured.page.series import PREDICTED, SeriesPoint
 from crackfront.measured.page.texts import sample_row
-from crackfront.measured.prediction.prediction import Prediction, check_and_predict
+from crackfront.measured.prediction.prediction import (
+    Prediction,
+    check_and_predict,
+    not_predicted,
+)
 from crackfront.measured.samples.sample import Sample
 from crackfront.measured.scan.psd import read_psd_file
 from crackfront.measured.spectrum.measured_surface import read_surface
@@ -36,6 +40,7 @@ class SampleResult:
     """Numbers in SI units and sentences, by the names of their columns."""
     outcome: str
     prediction: Prediction | None
+    """Its numbers but e_el are NaN if the theory does not apply; None if a file failed."""
     sample: Sample
 
     def point(self, name: str) -> SeriesPoint:
@@ -58,6 +63,8 @@ def predicted_samples(samples: Sequence[Sample]) -> Iterator[SampleResult]:
             surface = _surface(sample)
             verdict, prediction = check_and_predict(surface, sample.scales, sample.theory)
             row = sample_row(surface, sample.scales, verdict, prediction)
+            if prediction is None:
+                prediction = not_predicted(surface, sample.scales, verdict)
         except (ValueError, OSError) as error:
             row = {"outcome": "refused", "remarks": str(error)}
         row = {"sample": sample.name, "group": sample.group} | row | _measured_cells(sample)

@@ -60,9 +60,22 @@ def test_masked_rows_are_left_out_and_texts_have_units():
         assert measured_loop(one, radius=RADIUS).w_retr.value == pytest.approx(W_RETR, rel=1e-9)
 
 
+def test_youngs_modulus_and_poissons_ratio_are_the_contact_modulus():
+    columns = in_contact()
+    works = [
+        measured_loop(columns, radius=RADIUS, **modulus).w_retr.value
+        for modulus in ({"contact_modulus": 0.7e6 / 0.91}, {"modulus": "0.7MPa", "poisson": 0.3})
+    ]
+    assert works[0] == works[1]
+
+
 @pytest.mark.parametrize(
     ("given", "sentence"),
     [
+        ({"modulus": 0.7e6}, "modulus is 700000.0 and poisson is None; give both"),
+        ({"poisson": 0.5}, "modulus is None and poisson is 0.5; give both"),
+        ({"modulus": 0.7e6, "poisson": 0.6}, "poisson is 0.6"),
+        ({"modulus": 0.7e6, "contact_modulus": 1e6}, "contact_modulus is .*; give the contact"),
         ({"window": "70um:120um"}, "window is '70um:120um'; it must be a list"),
         ({"window": (7e-5, 1e-4, 2e-4)}, "window is .* at most 2 items"),
         ({"window": ("70um", "1g")}, "a contact radius of window is '1g'"),

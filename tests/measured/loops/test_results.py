@@ -68,7 +68,19 @@ def test_a_dictionary_of_a_result_is_json_of_the_command(result):
 
 def test_the_command_writes_a_page_with_numbers_remarks_and_figure(table, tmp_path):
     page = tmp_path / "page.html"
-    done = run(table, "--loop", "2", "--radius", "1.25mm", "--modulus", "0.7MPa", "--report", page)
+    done = run(
+        table,
+        "--loop",
+        "2",
+        "--radius",
+        "1.25mm",
+        "--modulus",
+        "0.7MPa",
+        "--poisson",
+        "0.5",
+        "--report",
+        page,
+    )
     assert done.exit_code == 0, done.output
     text = page.read_text()
     assert text.startswith("<!doctype html>")

@@ -88,7 +88,8 @@ def test_the_command_prints_reduced_units_and_those_of_a_sphere_that_is_named(pa
     assert content["units"] == "reduced"
     assert content["w_retr"]["value"] == pytest.approx(known, rel=1e-12)
     assert loop(path).stdout.splitlines()[2].split()[:3] == ["w_retr", f"{known:.4g}", "w_int"]
-    sphere = ("--radius", "1.25mm", "--modulus", "0.7MPa", "--work-of-adhesion", "63mJ/m2")
+    sphere = ("--radius", "1.25mm", "--modulus", "0.7MPa", "--poisson", "0.5")
+    sphere += ("--work-of-adhesion", "63mJ/m2")
     done = loop(path, *sphere, "--figure", path.with_name("loop.png"), "--json")
     assert done.exit_code == 0, done.output
     content = json.loads(done.stdout)
