@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import sys
 import time
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import closing
 from dataclasses import asdict, astuple, dataclass
 from pathlib import Path
@@ -100,6 +100,7 @@ def plan(
         "spectra": [item.name for item in sweep.spectra],
         "elastic_energies": sweep.elastic_energies,
         "realisations": sweep.n_realisation,
+        "fitted_elastic_energies": sweep.fit.chosen(sweep.elastic_energies),
         "simulations": sweep.n_simulation,
         "missing": n_missing,
         "arithmetic": sorted(set().union(*(item.arithmetic for item in progress.values()))),
@@ -179,11 +180,27 @@ def _plan_lines(
     to_run.append(_to_run("all", len(shards), everything.missing))
     header = "to run", "shards", "simulations", "core hours", "longest s", "MB a rank"
     yield from table(header, to_run)
-    energies = ", ".join(f"{energy:g}" for energy in sweep.elastic_energies)
-    yield f"\n{len(sweep.elastic_energies)} amplitudes e_el/w_int: {energies}"
-    lowest, highest = sweep.fit.lowest_elastic_energy, sweep.fit.highest_elastic_energy
-    yield f"the fit of k takes those from {lowest:g} to {highest:g}"
+    energies = sweep.elastic_energies
+    yield f"\n{counted(len(energies), 'amplitude')} e_el/w_int: {_listed(energies)}"
+    yield _fit_sentence(sweep)
     yield f"results in {store.folder}/"
+
+
+def _fit_sentence(sweep: Sweep) -> str:
+    """Which amplitudes enter the fit of k, and the range that leaves out the others."""
+    fitted, n_amplitude = sweep.fit.chosen(sweep.elastic_energies), len(sweep.elastic_energies)
+    if len(fitted) == n_amplitude:
+        return f"the fit of k takes {'it' if n_amplitude == 1 else 'all of them'}"
+    return (
+        f"the fit of k takes {len(fitted)} of {n_amplitude} amplitudes: {_listed(fitted)} "
+        f"(fit: e_el from {sweep.fit.lowest_elastic_energy:g} "
+        f"to {sweep.fit.highest_elastic_energy:g})"
+    )
+
+
+def _listed(values: Iterable[float]) -> str:
+    """Numbers with commas."""
+    return ", ".join(f"{value:g}" for value in values)
 
 
 def _cost(missing: Sequence[MissingSimulations]) -> SweepCost:
