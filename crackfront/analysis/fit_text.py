@@ -101,10 +101,8 @@ def _needed_line(fit: SweepFit) -> str:
         if width < half_width
     ]
     further = f"; {', '.join(needed)}" if needed else ""
-    realisations = counted(present, "realisation")
-    return (
-        f"- interval of this k: ±{half_width:.2g} with {realisations} of each spectrum{further}\n"
-    )
+    spectra = f"{counted(present, 'realisation')} of each spectrum"
+    return f"- 95% interval of this k: ±{half_width:.2g} with {spectra}{further}\n"
 
 
 def _exponent_entry(fit: SweepFit) -> str:

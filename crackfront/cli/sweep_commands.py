@@ -7,7 +7,7 @@ import sys
 import time
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import closing
-from dataclasses import asdict, astuple, dataclass
+from dataclasses import asdict, astuple, dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -119,7 +119,7 @@ def plan(
 
 
 def _size_sentence(sweep: Sweep, inventory: Inventory) -> str:
-    """How many simulations a sweep has, how many are to run, and how long they take here."""
+    """How many simulations a sweep has, how many are to run, and how long these take here."""
     factors = (
         (len(sweep.spectra), "spectrum", "spectra"),
         (len(sweep.elastic_energies), "amplitude", "amplitudes"),
@@ -128,7 +128,8 @@ def _size_sentence(sweep: Sweep, inventory: Inventory) -> str:
     product = " x ".join(f"{n} {singular if n == 1 else plural}" for n, singular, plural in factors)
     n_core = len(os.sched_getaffinity(0))
     seconds = _cost(inventory.missing).core_seconds / n_core
-    rest = f"{inventory.n_missing} to run, about {in_time(seconds)} on {counted(n_core, 'core')}"
+    time_here = f"about {in_time(seconds)} of simulations on {counted(n_core, 'core')}"
+    rest = f"{inventory.n_missing} to run, {time_here}"
     if not inventory.n_missing:
         rest = "all are stored"
     return f"{sweep.n_simulation} simulations = {product}; {rest}"
@@ -326,8 +327,9 @@ def _simulate(
                 cost.bytes_a_rank * busy,
                 "use fewer ranks, coarser numerics or a smaller tile",
             )
-            announce_cost(cost.core_seconds)
-            for sentence in steady_part_warnings(sweep):
+            task = counted(inventory.n_missing, "simulation")
+            announce_cost(task, cost.core_seconds, err=False)
+            for sentence in steady_part_warnings(replace(sweep, spectra=items)):
                 warn(sentence)
         lacking = [
             (shard, inventory.simulations())

@@ -63,7 +63,7 @@ def compute_figure(configuration: Path, scale: str, output: Path) -> None:
     path = output / scale / f"{configuration.stem}.nc"
     forget_sums(output)
     check_writable(path.parent)
-    announce_cost(shown.seconds(parameters))
+    announce_cost(configuration.stem, shown.seconds(parameters))
     if (sweep := getattr(parameters, "sweep", None)) is not None:
         record = shown.compute(parameters, click.echo, fit_of_sweep(Path(sweep)))
     else:
