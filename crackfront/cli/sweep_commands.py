@@ -81,7 +81,7 @@ def plan(
     Nothing is computed. Files that are found damaged are renamed to *.damaged, so that the workflow
     makes them again.
     """
-    from crackfront.sweep.advice import expectations, steady_part_warnings
+    from crackfront.sweep.advice import expectations, small_size_warnings, steady_part_warnings
     from crackfront.sweep.changed_keys import change_sentence
     from crackfront.sweep.run_sweep import opened
     from crackfront.sweep.sweep_cost import error_costs
@@ -92,7 +92,7 @@ def plan(
     progress = {item.name: store.progress(sweep, item) for item in sweep.spectra}
     missing = [item for inventory in progress.values() for item in inventory.missing]
     n_missing = sum(inventory.n_missing for inventory in progress.values())
-    warnings = [*steady_part_warnings(sweep)]
+    warnings = [*steady_part_warnings(sweep), *small_size_warnings(sweep)]
     prices = [*error_costs(sweep, errors)]
     changed = change_sentence(store.configuration, configuration)
     content = {
