@@ -136,9 +136,9 @@ def small_size_warnings(sweep: Sweep) -> Iterator[str]:
             # The Larkin length is proportional to the wavelengths.
             cutoff = _two_digits(size * lateral * item.spectrum.short_cutoff, math.floor)
             yield (
-                f"{item.name} has g = {size:.2g} at e_el {weakest:g}, the weakest of the fit: below "
-                f"{_SMALL_SIZE:g} the front hardly bends, and k is small; for g = 1 divide its "
-                f"wavelengths by {1 / size:.2g} (short_cutoff {cutoff}{unit}), or raise "
+                f"{item.name} has g = {size:.2g} at e_el {weakest:g}, the weakest of the fit: "
+                f"below {_SMALL_SIZE:g} the front hardly bends, and k is small; for g = 1 divide "
+                f"its wavelengths by {1 / size:.2g} (short_cutoff {cutoff}{unit}), or raise "
                 "fit: lowest_elastic_energy"
             )
 
