@@ -1,4 +1,4 @@
-"""Numbers and tables that studies have measured, a JSON file for each study.
+"""Numbers, tables and figures that studies have measured, a JSON file for each study.
 
 A number never becomes stale: it says where it was measured. Canaries recompute some of them every
 night (:mod:`studies.canaries`), and a release measures all of them again.
@@ -49,6 +49,20 @@ class Table(Origin):
     text: str
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StoredFigure(Origin):
+    """A figure of the gallery."""
+
+    title: str
+    picture: str
+    """Name of its picture."""
+    scale: str
+    cpu_seconds: float
+    """Processor time of its data. (Units: s)"""
+    checks: str
+    """Tables of its checks in Markdown."""
+
+
 @dataclass(frozen=True, slots=True)
 class Stored:
     """What is stored of a study, by name."""
@@ -56,6 +70,7 @@ class Stored:
     numbers: dict[str, Number] = field(default_factory=dict)
     canaries: dict[str, Number] = field(default_factory=dict)
     tables: dict[str, Table] = field(default_factory=dict)
+    figures: dict[str, StoredFigure] = field(default_factory=dict)
 
 
 def stored(study: str) -> Stored:
@@ -68,6 +83,7 @@ def stored(study: str) -> Stored:
         numbers={name: Number(**entry) for name, entry in content["numbers"].items()},
         canaries={name: Number(**entry) for name, entry in content["canaries"].items()},
         tables={name: Table(**entry) for name, entry in content["tables"].items()},
+        figures={name: StoredFigure(**entry) for name, entry in content["figures"].items()},
     )
 
 
@@ -77,6 +93,7 @@ def store(
     numbers: Mapping[str, Number] | None = None,
     canaries: Mapping[str, Number] | None = None,
     tables: Mapping[str, str] | None = None,
+    figures: Mapping[str, StoredFigure] | None = None,
     data: Mapping[str, Any] | None = None,
 ) -> None:
     """Store what a study has measured; its other entries stay.
@@ -90,6 +107,8 @@ def store(
             section[name] = replace(number, **asdict(origin))
     for name, text in (tables or {}).items():
         record.tables[name] = Table(text, **asdict(origin))
+    for name, figure in (figures or {}).items():
+        record.figures[name] = replace(figure, **asdict(origin))
     text = json.dumps(asdict(record), indent=1, ensure_ascii=False, sort_keys=True)
     write_text(STORED / f"{study}.json", text + "\n")
 

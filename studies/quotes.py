@@ -34,8 +34,10 @@ class Quote:
             record = studies.get(study, Stored())
             if number := record.numbers.get(name):
                 return _number_text(number, place["form"])
-            if table := record.tables.get(name):
-                return _cell(table.text, *cell) if cell else table.text
+            texts = {shown: figure.checks for shown, figure in record.figures.items()}
+            texts |= {shown: table.text for shown, table in record.tables.items()}
+            if text := texts.get(name):
+                return _cell(text, *cell) if cell else text
             raise ValueError(f"the study {study} has not measured {name!r}; run it with --keep")
 
         return _PLACE.sub(stored_text, self.fragment)

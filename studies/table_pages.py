@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 
-from studies.numbers import Origin, Stored, Table
+from studies.numbers import Origin, Stored, StoredFigure, Table
 from studies.pages import markdown_table
 from studies.paper.figure import FIGURES
 
@@ -67,11 +67,6 @@ _ABOUT_TABLES = {
 }
 """What the page of each study shows, and where it is explained."""
 
-_FIGURE = re.compile(
-    r"## (?P<title>.+)\n\n(?P<picture>.+)\n\n(?P<cost>.+)\.\n\n(?P<checks>[\s\S]+)"
-)
-"""Stored text of a figure: its title, its picture, what it cost and its checks."""
-
 _AGREES = "agrees"
 
 
@@ -79,15 +74,11 @@ def written_pages(studies: Mapping[str, Stored]) -> dict[Path, str]:
     """Text of every page that is written from stored tables alone, by its path."""
     pages = {}
     for study, record in studies.items():
-        figures = {name: record.tables[name] for name in FIGURES if name in record.tables}
+        figures = {name: record.figures[name] for name in FIGURES if name in record.figures}
         if figures:
             pages[GALLERY] = _gallery(figures, record.tables[_COUNTS])
-        tables = {
-            name: table
-            for name, table in sorted(record.tables.items())
-            if name not in (_COUNTS, *figures)
-        }
-        checks = (_checks_section(name, table.text) for name, table in figures.items())
+        tables = {name: table for name, table in sorted(record.tables.items()) if name != _COUNTS}
+        checks = (_checks_section(name, figure) for name, figure in figures.items())
         sections = [*(_section(name, table) for name, table in tables.items()), *checks]
         if sections:
             pages[TABLES / f"{study}.md"] = _page(
@@ -97,54 +88,45 @@ def written_pages(studies: Mapping[str, Stored]) -> dict[Path, str]:
     return pages
 
 
-def _gallery(figures: Mapping[str, Table], counts: Table) -> str:
+def _gallery(figures: Mapping[str, StoredFigure], counts: Table) -> str:
     """Page of the counts, the checks that do not agree, and all figures."""
-    differing = [row for name, table in figures.items() for row in _differing(name, table.text)]
+    differing = [row for name, figure in figures.items() for row in _differing(name, figure)]
     header = "figure | claim | expected | found | result"
     parts = [
         "# Gallery",
         counts.text,
         f"These checks do not agree:\n\n{markdown_table(header, differing)}",
         _ABOUT_GALLERY,
-        *(_picture(name, table.text) for name, table in figures.items()),
+        *(_picture(name, figure) for name, figure in figures.items()),
     ]
     return _page(parts, [counts, *figures.values()])
 
 
-def _differing(name: str, text: str) -> list[list[str]]:
+def _differing(name: str, figure: StoredFigure) -> list[list[str]]:
     """Cells of the checks of a figure that do not agree, without remarks."""
     link = f"[{name}](tables/paper.md#checks-{name})"
-    return [[link, *row[:4]] for row in _check_rows(text) if row[3] != _AGREES]
+    return [[link, *row[:4]] for row in _check_rows(figure.checks) if row[3] != _AGREES]
 
 
-def _picture(name: str, text: str) -> str:
+def _picture(name: str, figure: StoredFigure) -> str:
     """Picture of a figure below its title; its caption counts the checks."""
-    parts, rows = _figure_parts(text), _check_rows(text)
+    rows = _check_rows(figure.checks)
     agreeing = sum(row[3] == _AGREES for row in rows)
     link = f"[checks](tables/paper.md#checks-{name})"
-    caption = f"*{agreeing} of {len(rows)} {link} agree. {parts['cost']}.*"
-    return f"## {parts['title']}\n\n{parts['picture']}\n\n{caption}"
+    cost = f"Scale {figure.scale}, {figure.cpu_seconds:.0f} s of one core."
+    caption = f"*{agreeing} of {len(rows)} {link} agree. {cost}*"
+    picture = f"![{figure.title}](figures/{figure.picture})"
+    return f"## {figure.title}\n\n{picture}\n\n{caption}"
 
 
-def _checks_section(name: str, text: str) -> str:
+def _checks_section(name: str, figure: StoredFigure) -> str:
     """Checks of a figure below its name and its title."""
-    parts = _figure_parts(text)
-    return f"## Checks, {name}\n\n{parts['title']}.\n\n{parts['checks']}"
+    return f"## Checks, {name}\n\n{figure.title}.\n\n{figure.checks}"
 
 
-def _figure_parts(text: str) -> re.Match[str]:
-    """Parts of the stored text of a figure."""
-    parts = _FIGURE.fullmatch(text)
-    if parts is None:
-        raise ValueError(
-            f"{text.splitlines()[0]!r} is not a stored figure; run python -m studies paper gallery"
-        )
-    return parts
-
-
-def _check_rows(text: str) -> list[list[str]]:
+def _check_rows(checks: str) -> list[list[str]]:
     """Cells of all checks of a figure: claim, expected, found, result and remark."""
-    rows = [line[2:-2].split(" | ") for line in text.splitlines() if line.startswith("| ")]
+    rows = [line[2:-2].split(" | ") for line in checks.splitlines() if line.startswith("| ")]
     return [row for row in rows if row[0] not in ("claim", "---")]
 
 

@@ -1,10 +1,14 @@
-"""Snakemake as `make` calls it: it needs no home, and Ctrl-C is a sentence while it starts, too."""
+"""Snakemake as `make` calls it.
+
+It needs no home, Ctrl-C is a sentence while it starts, too, and it does not announce its profile.
+"""
 
 import contextlib
 import os
 import sys
 import tempfile
 from pathlib import Path
+from typing import TextIO
 
 
 def ensure_cache() -> None:
@@ -31,12 +35,19 @@ def _is_writable(folder: Path) -> bool:
         return False
 
 
+def print_unless_profile(text: str, file: TextIO) -> None:
+    """Print what the command line of Snakemake says, except which profile it uses."""
+    if not text.startswith("Using profile"):
+        print(text, file=file)
+
+
 def run() -> None:
     """Run Snakemake, and name its log if a job failed."""
-    from snakemake.cli import main
+    from snakemake import cli
 
+    cli.print = print_unless_profile
     try:
-        main()
+        cli.main()
     except SystemExit as ended:
         if ended.code:
             sys.exit("The workflow did not finish; the last log in .snakemake/log/ says more")

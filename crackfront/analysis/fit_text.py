@@ -23,6 +23,9 @@ from crackfront.core.words import counted
 ONSET = 0.5
 """Ratio of k to the largest k of its spectrum below which hysteresis has not set in."""
 
+_REACH_OF_TWO = 13
+"""Standard errors on each side of a 95% interval by Student's t with one degree of freedom."""
+
 _FACTORS = "factor", "factor_by_sums"
 """Estimates of k in the table of the law."""
 
@@ -98,10 +101,8 @@ def _needed_line(fit: SweepFit) -> str:
         if width < half_width
     ]
     further = f"; {', '.join(needed)}" if needed else ""
-    realisations = counted(present, "realisation")
-    return (
-        f"- interval of this k: ±{half_width:.2g} with {realisations} of each spectrum{further}\n"
-    )
+    spectra = f"{counted(present, 'realisation')} of each spectrum"
+    return f"- 95% interval of this k: ±{half_width:.2g} with {spectra}{further}\n"
 
 
 def _exponent_entry(fit: SweepFit) -> str:
@@ -387,6 +388,12 @@ def _gap_sentences(fit: SweepFit) -> Iterator[str]:
             )
         if fit.n_realisation[index] == 1:
             yield f"{name}: one realisation gives no interval, neither here nor in pooled results."
+    if pairs := [str(name) for name in fit.table.spectrum[fit.n_realisation == 2]]:
+        yield (
+            f"{', '.join(pairs)}: two realisations give no interval, because by Student's t with "
+            f"one degree of freedom it would reach {_REACH_OF_TWO} standard errors to both sides; "
+            "set realisations to 3 or more. The pooled k may have one, from all spectra together."
+        )
 
 
 def _exponent_sentences(fit: SweepFit) -> Iterator[str]:

@@ -61,7 +61,7 @@ def announce_compilation(*, err: bool = False) -> None:
     when_compiling(lambda: click.echo(sentence, err=err))
 
 
-def announce_cost(seconds: float, *, err: bool = True) -> None:
-    """Print how much processor time is expected, if it is more than a moment."""
+def announce_cost(task: str, seconds: float, *, err: bool = True) -> None:
+    """Print how much processor time a task is expected to take, if it is more than a moment."""
     if seconds > _MOMENT:
-        click.echo(f"about {in_time(seconds)} of processor time", err=err)
+        click.echo(f"{task}: about {in_time(seconds)} of processor time", err=err)

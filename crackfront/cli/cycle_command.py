@@ -191,7 +191,7 @@ def cycle(
     key = cycle_key(field_file, spring, loads, max_penetration, step, numerics, solver, record)
     checkpoint = CycleCheckpoint(checkpoint_path(output), key, setup.field.geometry)
     announce_compilation(err=as_json)
-    announce_cost(setup.seconds)
+    announce_cost("cycle", setup.seconds)
     recorder = _recorded(setup, solution, checkpoint, record, every_state=watch)
     loop = loop_dataset(recorder.record(), setup)
     write_dataset(output, loop, provenance())

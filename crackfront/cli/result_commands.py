@@ -95,7 +95,7 @@ def figures(configuration: Path, output: Path | None) -> None:
     try:
         result = store.result(sweep, simulation)
     except UnreadableFileError:  # as in an archive without curves
-        announce_cost(expected_cost(simulation).seconds)
+        announce_cost(simulation.label, expected_cost(simulation).seconds)
         result = run_simulation(simulation)
     forget_sums(store.folder)
     request = fit_request(sweep).digest

@@ -5,9 +5,9 @@ from __future__ import annotations
 import os
 import sys
 import time
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import closing
-from dataclasses import asdict, astuple, dataclass
+from dataclasses import asdict, astuple, dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -81,7 +81,7 @@ def plan(
     Nothing is computed. Files that are found damaged are renamed to *.damaged, so that the workflow
     makes them again.
     """
-    from crackfront.sweep.advice import expectations, steady_part_warnings
+    from crackfront.sweep.advice import expectations, small_size_warnings, steady_part_warnings
     from crackfront.sweep.changed_keys import change_sentence
     from crackfront.sweep.run_sweep import opened
     from crackfront.sweep.sweep_cost import error_costs
@@ -92,7 +92,7 @@ def plan(
     progress = {item.name: store.progress(sweep, item) for item in sweep.spectra}
     missing = [item for inventory in progress.values() for item in inventory.missing]
     n_missing = sum(inventory.n_missing for inventory in progress.values())
-    warnings = [*steady_part_warnings(sweep)]
+    warnings = [*steady_part_warnings(sweep), *small_size_warnings(sweep)]
     prices = [*error_costs(sweep, errors)]
     changed = change_sentence(store.configuration, configuration)
     content = {
@@ -100,6 +100,7 @@ def plan(
         "spectra": [item.name for item in sweep.spectra],
         "elastic_energies": sweep.elastic_energies,
         "realisations": sweep.n_realisation,
+        "fitted_elastic_energies": sweep.fit.chosen(sweep.elastic_energies),
         "simulations": sweep.n_simulation,
         "missing": n_missing,
         "arithmetic": sorted(set().union(*(item.arithmetic for item in progress.values()))),
@@ -118,7 +119,7 @@ def plan(
 
 
 def _size_sentence(sweep: Sweep, inventory: Inventory) -> str:
-    """How many simulations a sweep has, how many are to run, and how long they take here."""
+    """How many simulations a sweep has, how many are to run, and how long these take here."""
     factors = (
         (len(sweep.spectra), "spectrum", "spectra"),
         (len(sweep.elastic_energies), "amplitude", "amplitudes"),
@@ -127,7 +128,8 @@ def _size_sentence(sweep: Sweep, inventory: Inventory) -> str:
     product = " x ".join(f"{n} {singular if n == 1 else plural}" for n, singular, plural in factors)
     n_core = len(os.sched_getaffinity(0))
     seconds = _cost(inventory.missing).core_seconds / n_core
-    rest = f"{inventory.n_missing} to run, about {in_time(seconds)} on {counted(n_core, 'core')}"
+    time_here = f"about {in_time(seconds)} of simulations on {counted(n_core, 'core')}"
+    rest = f"{inventory.n_missing} to run, {time_here}"
     if not inventory.n_missing:
         rest = "all are stored"
     return f"{sweep.n_simulation} simulations = {product}; {rest}"
@@ -179,11 +181,27 @@ def _plan_lines(
     to_run.append(_to_run("all", len(shards), everything.missing))
     header = "to run", "shards", "simulations", "core hours", "longest s", "MB a rank"
     yield from table(header, to_run)
-    energies = ", ".join(f"{energy:g}" for energy in sweep.elastic_energies)
-    yield f"\n{len(sweep.elastic_energies)} amplitudes e_el/w_int: {energies}"
-    lowest, highest = sweep.fit.lowest_elastic_energy, sweep.fit.highest_elastic_energy
-    yield f"the fit of k takes those from {lowest:g} to {highest:g}"
+    energies = sweep.elastic_energies
+    yield f"\n{counted(len(energies), 'amplitude')} e_el/w_int: {_listed(energies)}"
+    yield _fit_sentence(sweep)
     yield f"results in {store.folder}/"
+
+
+def _fit_sentence(sweep: Sweep) -> str:
+    """Which amplitudes enter the fit of k, and the range that leaves out the others."""
+    fitted, n_amplitude = sweep.fit.chosen(sweep.elastic_energies), len(sweep.elastic_energies)
+    if len(fitted) == n_amplitude:
+        return f"the fit of k takes {'it' if n_amplitude == 1 else 'all of them'}"
+    return (
+        f"the fit of k takes {len(fitted)} of {n_amplitude} amplitudes: {_listed(fitted)} "
+        f"(fit: e_el from {sweep.fit.lowest_elastic_energy:g} "
+        f"to {sweep.fit.highest_elastic_energy:g})"
+    )
+
+
+def _listed(values: Iterable[float]) -> str:
+    """Numbers with commas."""
+    return ", ".join(f"{value:g}" for value in values)
 
 
 def _cost(missing: Sequence[MissingSimulations]) -> SweepCost:
@@ -309,8 +327,9 @@ def _simulate(
                 cost.bytes_a_rank * busy,
                 "use fewer ranks, coarser numerics or a smaller tile",
             )
-            announce_cost(cost.core_seconds)
-            for sentence in steady_part_warnings(sweep):
+            task = counted(inventory.n_missing, "simulation")
+            announce_cost(task, cost.core_seconds, err=False)
+            for sentence in steady_part_warnings(replace(sweep, spectra=items)):
                 warn(sentence)
         lacking = [
             (shard, inventory.simulations())

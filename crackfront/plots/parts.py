@@ -213,15 +213,15 @@ def label_decimals(axis: Axis, locator: Locator | None = None) -> None:
 
 
 def spectrum_label(table: SweepTable, index: int) -> str:
-    """Parameters of a spectrum, for a legend."""
-    cutoff = rf"$\lambda_\mathrm{{s}}={table.short_cutoff[index]:g}$"
-    if np.isnan(table.hurst[index]):
-        name = str(table.spectrum[index])
-        return f"{name_without_spring(name) if table.on_springs else name}, {cutoff}"
-    if table.roll_off[index] == table.short_cutoff[index]:
-        return f"flat, {cutoff}"
+    """Name of a spectrum in the configuration with its parameters, for a legend."""
+    name = str(table.spectrum[index])
+    name = name_without_spring(name) if table.on_springs else name
+    label = rf"{name}: $\lambda_\mathrm{{s}}={table.short_cutoff[index]:g}$"
+    is_flat = table.roll_off[index] == table.short_cutoff[index]
+    if is_flat or np.isnan(table.hurst[index]):
+        return label
     roll_off = rf"$\lambda_\mathrm{{r}}={table.roll_off[index]:g}$"
-    return f"{cutoff}, {roll_off}, $H={table.hurst[index]:g}$"
+    return f"{label}, {roll_off}, $H={table.hurst[index]:g}$"
 
 
 def name_without_spring(name: str) -> str:

@@ -144,10 +144,14 @@ def _stamped(dataset: xr.Dataset, origin: Provenance) -> xr.Dataset:
 
 
 def _encoding(values: xr.Variable) -> dict[str, Any]:
-    """How a variable is stored: HDF5 has checksums for arrays of numbers or letters alone."""
-    encoding: dict[str, Any] = {"fletcher32": True} if values.ndim else {}
+    """How a variable is stored: numbers with checksums; texts as strings, for which HDF5 has none.
+
+    Arrays of characters would have checksums, but xarray cannot transpose them before they are
+    loaded.
+    """
     if values.dtype.kind in "OU":
-        return encoding | ({"dtype": "S1"} | PACKED if values.ndim else {})
+        return {}
+    encoding: dict[str, Any] = {"fletcher32": True} if values.ndim else {}
     if np.issubdtype(values.dtype, np.floating):
         encoding |= {"_FillValue": None} | (PACKED if values.ndim > 1 else {})
     return encoding

@@ -180,7 +180,7 @@ def loop_dataset(record: CycleRecord, setup: LoopSetup) -> Dataset:
     numerical = setup.numerical_errors(steady)
     values["w_appr_numerical_error"], values["w_retr_numerical_error"] = numerical
     values |= {item.name: getattr(steady, item.name) for item in variables(SteadyMeasures)}
-    result = _result_sentence(record, steady, setup.remark)
+    result = result_sentence(record, steady, setup.remark)
     sentences = {"result": result, "steady_sentence": steady.sentence}
     whole = curves.assign(
         {name: labelled(replace(COLUMNS[name], dims=()), value) for name, value in values.items()}
@@ -188,7 +188,7 @@ def loop_dataset(record: CycleRecord, setup: LoopSetup) -> Dataset:
     return whole.drop_attrs(deep=False).assign_attrs(sentences | curves.attrs, kind=measures.kind)
 
 
-def _result_sentence(record: CycleRecord, steady: SteadyAdhesion, remark: str) -> str:
+def result_sentence(record: CycleRecord, steady: SteadyAdhesion, remark: str = "") -> str:
     """Result of a cycle in one line, with a remark on its works of adhesion."""
     states = record.states
     if states.direction.size == 0:

@@ -1,4 +1,4 @@
-"""Expected results of a sweep: k by the law, and penetrations that leave no steady part."""
+"""Expected results of a sweep: k by the law, contacts that are too small or lack a steady part."""
 
 from __future__ import annotations
 
@@ -19,6 +19,9 @@ _DOUBTFUL_STATES = FEWEST_STATES + 1
 
 _ENOUGH_STATES = FEWEST_STATES + 2
 """Expected steady states with which all of 120 simulations had a steady part."""
+
+_SMALL_SIZE = 0.5
+"""Size g below which k is less than half of k in the infinite contact."""
 
 _LAST_SITE = 1.0
 """Lag of the last site behind the mean of a front, over its rms; from 144 runs."""
@@ -118,6 +121,25 @@ def steady_part_warnings(sweep: Sweep) -> Iterator[str]:
                 f"{spectrum} may have no steady part at e_el {energies}: up to the largest "
                 f"penetration, {largest}, its front does not forget where both branches begin; "
                 f"{_remedies([*doubtful.values()], unit)}"
+            )
+
+
+def small_size_warnings(sweep: Sweep) -> Iterator[str]:
+    """A sentence for each spectrum that is too coarse for the sphere, with what helps."""
+    if not isinstance(sweep.schedule, Pressed):
+        return
+    lateral, unit = (1.0, "") if sweep.scales is None else (sweep.scales.lateral, " m")
+    for item in sweep.spectra:
+        weakest = min(sweep.fit.chosen(sweep.elastic_energies))
+        size = expectation(sweep.simulation(item, weakest, 0)).size
+        if size < _SMALL_SIZE:
+            # The Larkin length is proportional to the wavelengths.
+            cutoff = _two_digits(size * lateral * item.spectrum.short_cutoff, math.floor)
+            yield (
+                f"{item.name} has g = {size:.2g} at e_el {weakest:g}, the weakest of the fit: "
+                f"below {_SMALL_SIZE:g} the front hardly bends, and k is small; for g = 1 divide "
+                f"its wavelengths by {1 / size:.2g} (short_cutoff {cutoff}{unit}), or raise "
+                "fit: lowest_elastic_energy"
             )
 
 

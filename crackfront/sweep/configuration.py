@@ -40,7 +40,7 @@ class Configuration(Section):
     load: LoadSection
     record: tuple[Literal["fronts", "energy"], ...] = ()
     failed_fraction: Annotated[float, Field(ge=0, le=1)] = 0.1
-    fit: FitSection
+    fit: FitSection = FitSection()
 
     @model_validator(mode="after")
     def _consistent(self) -> Configuration:

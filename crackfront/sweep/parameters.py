@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
 from crackfront.core.units import Scales
 from crackfront.sweep.configuration import Configuration, load_configuration
 from crackfront.sweep.section import ConfigurationError
 from crackfront.sweep.section_checks import check_distinct
+from crackfront.sweep.sections import FitSection
 from crackfront.sweep.sweep import FitRange, NamedSpectrum, Sweep
-
-_ROUND_OFF = 1e-9
-"""Relative distance by which an amplitude may lie outside the range of the fit."""
 
 
 def load_sweep(path: Path) -> Sweep:
@@ -41,22 +39,19 @@ def configured_sweep(configuration: Configuration) -> Sweep:
     check_distinct("the name of a spectrum and its spring,", [item.name for item in spectra])
     if scales is not None and configuration.load.line is None:
         _check_lengths(configuration, scales, spectra)
+    elastic_energies = _elastic_energies(configuration, scales)
     return Sweep(
         seed=configuration.seed,
         kind=configuration.field,
         scales=scales,
         spectra=spectra,
-        elastic_energies=_elastic_energies(configuration, scales),
+        elastic_energies=elastic_energies,
         n_realisation=configuration.realisations,
         numerics=configuration.numerics.numerics(),
         schedule=configuration.load.schedule(vertical),
         record=configuration.record,
         failed_fraction=configuration.failed_fraction,
-        fit=FitRange(
-            configuration.fit.lowest_elastic_energy,
-            configuration.fit.highest_elastic_energy,
-            configuration.fit.bootstrap,
-        ),
+        fit=_fit_range(configuration.fit, elastic_energies),
     )
 
 
@@ -75,23 +70,28 @@ def _named_spectra(configuration: Configuration, lateral: float) -> Iterator[Nam
 
 
 def _elastic_energies(configuration: Configuration, scales: Scales | None) -> tuple[float, ...]:
-    """Requested e_el / w_int, of which the range of the fit must contain one."""
+    """Requested e_el / w_int."""
     measured, surface = math.nan, configuration.spectra[0].surface
     if configuration.amplitudes.measured and surface and scales:
         energy = surface.measured.conformity_energy(scales.contact_modulus).value
         measured = energy / scales.work_of_adhesion
-    elastic_energies = configuration.amplitudes.elastic_energies(measured)
-    lowest = configuration.fit.lowest_elastic_energy
-    highest = configuration.fit.highest_elastic_energy
-    if not any(
-        lowest * (1 - _ROUND_OFF) <= elastic_energy <= highest * (1 + _ROUND_OFF)
-        for elastic_energy in elastic_energies
-    ):
+    return configuration.amplitudes.elastic_energies(measured)
+
+
+def _fit_range(section: FitSection, elastic_energies: Sequence[float]) -> FitRange:
+    """Range of the fit, which must contain an amplitude; by default it contains all."""
+    lowest, highest = section.lowest_elastic_energy, section.highest_elastic_energy
+    fit = FitRange(
+        min(elastic_energies) if lowest is None else lowest,
+        max(elastic_energies) if highest is None else highest,
+        section.bootstrap,
+    )
+    if not fit.chosen(elastic_energies):
         raise ConfigurationError(
-            f"no amplitude lies in the range of the fit, e_el from {lowest:g} to {highest:g}; "
-            "widen the range"
+            "no amplitude lies in the range of the fit, e_el from "
+            f"{fit.lowest_elastic_energy:g} to {fit.highest_elastic_energy:g}; widen the range"
         )
-    return elastic_energies
+    return fit
 
 
 def _check_lengths(

@@ -19,6 +19,7 @@ from crackfront.simulate.line.line_loads import LineSchedule
 from crackfront.simulate.run_simulation import run_simulation
 from crackfront.simulate.simulation import Simulation, simulation_adhesion
 from crackfront.simulate.tiles import gaussian_values
+from crackfront.surfaces.loops import result_sentence
 from crackfront.surfaces.surface_array import surface_array
 from crackfront.sweep.parameters import load_sweep
 from crackfront.sweep.rows import sweep_row
@@ -41,7 +42,7 @@ class RowSimulation:
         return simulated_surface(self.parameters)
 
     def run(self) -> Dataset:
-        """Run it again: its states over `step`, and the values of its row.
+        """Run it again: its states over `step`, the values of its row, and `result` in words.
 
         The values are equal bit for bit to those of the table on one kind of processor with one
         set of packages. What `record` of the sweep asks for is there as well.
@@ -49,13 +50,14 @@ class RowSimulation:
         result = run_simulation(self.parameters)
         curves = cycle_dataset(result.record, self.parameters.geometry)
         row = sweep_row(result)
+        sentence = result_sentence(result.record, result.steady_adhesion)
         return curves.assign(
             {
                 item.name: labelled(item, getattr(row, item.name))
                 for item in variables(SweepRow)
                 if item.name not in curves and not item.name.startswith("status")
             }
-        )
+        ).assign_attrs(result=sentence)
 
 
 @checked_call

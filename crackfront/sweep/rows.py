@@ -106,12 +106,10 @@ def row_columns(rows: Sequence[SweepRow], shape: tuple[int, ...]) -> dict[str, N
 
 
 def labelled_columns(columns: Mapping[str, NDArray[np.generic]]) -> dict[str, xr.Variable]:
-    """Variables of a file for columns as of :func:`row_columns`; texts may be bytes of UTF-8."""
+    """Variables of a file for columns as of :func:`row_columns`."""
     labelled = {}
     for item in variables(SweepRow, *PLACE):
         values = columns[item.name]
         about = label(item, STATUSES if item.name == "status" else ())
-        if values.dtype.kind == "S":
-            about |= {"_Encoding": "utf-8"}  # as xarray writes for texts
         labelled[item.name] = xr.Variable(item.dims, values, about)
     return labelled

@@ -198,17 +198,18 @@ class LoadSection(Section):
 
 
 class FitSection(Section):
-    """Range of the fit."""
+    """Range of the fit; an end that is left out leaves out no amplitude."""
 
-    lowest_elastic_energy: Positive
-    highest_elastic_energy: Fraction
-    bootstrap: Annotated[int, within(Range(FEWEST_BOOTSTRAP, 10**7))]
+    lowest_elastic_energy: Positive | None = None
+    highest_elastic_energy: Fraction | None = None
+    bootstrap: Annotated[int, within(Range(FEWEST_BOOTSTRAP, 10**7))] = 4000
 
     @model_validator(mode="after")
     def _ordered(self) -> FitSection:
-        if self.lowest_elastic_energy > self.highest_elastic_energy:
+        lowest, highest = self.lowest_elastic_energy, self.highest_elastic_energy
+        if lowest is not None and highest is not None and lowest > highest:
             raise section_error(
-                f"lowest_elastic_energy {self.lowest_elastic_energy:g} is above "
-                f"highest_elastic_energy {self.highest_elastic_energy:g}; swap them"
+                f"lowest_elastic_energy {lowest:g} is above highest_elastic_energy {highest:g}; "
+                "swap them"
             )
         return self

@@ -12,7 +12,7 @@ import netCDF4
 import numpy as np
 from numpy.typing import NDArray
 
-from crackfront.analysis.table import PLACE, SweepRow
+from crackfront.analysis.table import SweepRow
 from crackfront.core.variables import variables
 from crackfront.core.versions import PHYSICS_VERSION, ROWS_VERSION
 from crackfront.simulate.provenance import Provenance
@@ -125,7 +125,7 @@ def shard_summary(path: Path) -> ShardSummary:
 def shard_columns(
     shard: ShardSummary, series: Sequence[str], taken: range
 ) -> dict[str, NDArray[np.generic]]:
-    """Columns of the rows of some series and realisations of a shard; texts are bytes of UTF-8.
+    """Columns of the rows of some series and realisations of a shard.
 
     They are read without xarray, which takes 0.1 s to open a file: sweeps have hundreds.
     """
@@ -134,13 +134,10 @@ def shard_columns(
     columns = {}
     with netCDF4.Dataset(shard.path) as file:
         file.set_auto_maskandscale(False)
-        file.set_auto_chartostring(False)
         for item in variables(SweepRow):
             stored = file[item.name]
             values = np.asarray(stored[:, :, taken.start - first : taken.stop - first])
-            values = np.ascontiguousarray(values[:, amplitudes])
-            is_text = stored.ndim > len(PLACE)
-            columns[item.name] = values.view(f"S{values.shape[-1]}")[..., 0] if is_text else values
+            columns[item.name] = np.ascontiguousarray(values[:, amplitudes])
     return columns
 
 

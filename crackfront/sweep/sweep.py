@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -45,6 +45,10 @@ MOST_SHARDS = 1000
 """Jobs of one sweep; a graph of more takes seconds to build and minutes to submit."""
 
 
+_ROUND_OFF = 1e-9
+"""Relative distance by which an amplitude may lie outside the range of the fit."""
+
+
 @dataclass(frozen=True, slots=True)
 class FitRange:
     """Requested e_el / w_int that enter a fit, and the number of bootstrap samples."""
@@ -52,6 +56,12 @@ class FitRange:
     lowest_elastic_energy: float
     highest_elastic_energy: float
     n_bootstrap: int
+
+    def chosen(self, elastic_energies: Iterable[float]) -> list[float]:
+        """Those of some e_el / w_int that enter the fit."""
+        lowest = self.lowest_elastic_energy * (1 - _ROUND_OFF)
+        highest = self.highest_elastic_energy * (1 + _ROUND_OFF)
+        return [energy for energy in elastic_energies if lowest <= energy <= highest]
 
 
 @dataclass(frozen=True, slots=True)

@@ -65,7 +65,7 @@ def scene(scene: str, output: Path, study: str, realisations: int) -> None:
     if scene not in SCENES:
         raise click.BadParameter(f"{scene!r} is not a scene; {nearest_name(scene, SCENES)}")
     check_writable(output)
-    announce_cost(realisations * STUDIES[study].seconds(SCENES[scene]))
+    announce_cost(f"{study} of {scene}", realisations * STUDIES[study].seconds(SCENES[scene]))
     announce_compilation()
     compile_solver("newton", FullCycle)
     errors = STUDIES[study].measured(SCENES[scene], realisations, click.echo)

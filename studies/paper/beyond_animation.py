@@ -176,7 +176,7 @@ def motion_animation(shown: AnimatedCycle) -> Animation:
 
 
 FIGURE = Figure(
-    title="Animation: the fronts of a cycle over the field, beside its loop",
+    title="Beyond the paper: animation of the fronts of a cycle over the field, with its loop",
     compute=motion,
     checks=motion_checks,
     draw=motion_figure,

@@ -103,7 +103,7 @@ def _checks(record: AvalancheRecord, index: int, name: str) -> Iterator[Check]:
         f"99% below {record.circle_length[index]:.3g}",
         f"{longest:.3g}",
         longest < record.circle_length[index],
-        "perimeter over a dG/da; the upper cut-off is that of the sphere, not of the disorder",
+        "perimeter over a dG/da; the sphere, not the disorder, sets the upper cut-off",
         expectation=_EXPECTATION,
     )
 
@@ -224,7 +224,7 @@ def _draw_extents(axes: Axes, record: AvalancheRecord) -> None:
 
 
 FIGURE = Figure(
-    title="Beyond the paper: avalanches",
+    title="Beyond the paper: sizes of the avalanches of a front",
     compute=avalanche_record,
     checks=avalanche_checks,
     draw=avalanche_figure,

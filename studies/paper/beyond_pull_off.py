@@ -214,7 +214,7 @@ def _draw_forces(axes: Axes, record: PullOff, hurst: int) -> None:
 
 
 FIGURE = Figure(
-    title="Beyond the paper: pull-off force against rms height, above and below H = 0.5",
+    title="Beyond the paper: pull-off force against rms height, for H above and below 0.5",
     compute=pull_off_forces,
     checks=pull_off_checks,
     draw=pull_off_figure,

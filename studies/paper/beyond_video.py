@@ -160,7 +160,7 @@ def video_animation(shown: Video) -> Animation:
 
 
 FIGURE = Figure(
-    title="Animation in SI units: area, perimeters and force of the contact on nanodiamond",
+    title="Beyond the paper: animation of area, perimeters and force on nanodiamond, in SI units",
     compute=video,
     checks=video_checks,
     draw=video_figure,

@@ -17,7 +17,7 @@ from crackfront.plots.style import save_figure, save_picture
 from crackfront.simulate.checksums import forget_sums
 from crackfront.simulate.provenance import provenance
 from crackfront.simulate.storage import read_attributes, write_text
-from studies.numbers import store
+from studies.numbers import StoredFigure, store
 from studies.pages import keep_option, output_option, tell
 from studies.paper.checks import Check, checks_tables, counted
 from studies.paper.drawing import save_animation
@@ -63,7 +63,7 @@ def compute_figure(configuration: Path, scale: str, output: Path) -> None:
     path = output / scale / f"{configuration.stem}.nc"
     forget_sums(output)
     check_writable(path.parent)
-    announce_cost(shown.seconds(parameters))
+    announce_cost(configuration.stem, shown.seconds(parameters))
     if (sweep := getattr(parameters, "sweep", None)) is not None:
         record = shown.compute(parameters, click.echo, fit_of_sweep(Path(sweep)))
     else:
@@ -147,14 +147,15 @@ def gallery(output: Path, pictures: Path) -> None:
             save_picture(shown.draw(record), picture)
         data, checks = read_attributes(paths[name]), shown.checks(record)
         every += checks
-        parts = [
-            f"## {shown.title}",
-            f"![{shown.title}](figures/{picture.name})",
-            f"Scale {data['scale']}, {float(data['cpu_seconds']):.0f} s of one core.",
-            "\n".join(checks_tables(checks, data["scale"])),
-        ]
+        stored_figure = StoredFigure(
+            title=shown.title,
+            picture=picture.name,
+            scale=data["scale"],
+            cpu_seconds=round(float(data["cpu_seconds"])),
+            checks="\n".join(checks_tables(checks, data["scale"])),
+        )
         data["command"] = f"make figures SCALE={data['scale']}"
-        store("paper", tables={name: "\n\n".join(parts)}, data=data)
+        store("paper", figures={name: stored_figure}, data=data)
         click.echo(f"figure: {picture}")
     if len(paths) == len(FIGURES):
         store("paper", tables={"counts": "\n".join(f"- {text}" for text in counted(every))})

@@ -116,7 +116,7 @@ def smooth_loop_checks(loop: SmoothLoop) -> tuple[Check, ...]:
             remark="lowest of the visited states; the load step leaves the difference",
         ),
         close_to(
-            "last penetration: that of pull-off, within a load step",
+            "last penetration: where a smooth contact pulls off, to within a load step",
             loop.penetration[-1],
             jkr.pull_off_penetration(loop.retraction),
             float(np.max(np.abs(np.diff(loop.penetration[retracting])))),

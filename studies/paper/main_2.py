@@ -189,7 +189,7 @@ def _limit_checks(loops: RingLoops) -> Iterator[Check]:
             extreme + direction * half,
             half * math.sqrt(half / loops.amplitude),
             units="w_int",
-            remark="the tolerance is of the next order, as a rounded extreme holds the front",
+            remark="the tolerance is of the next order, because extremes are rounded",
         )
     states = loops.loop == index
     lowest = float(loops.force[states].min())
@@ -215,7 +215,7 @@ def _case_checks(loops: RingLoops) -> Iterator[Check]:
     for wavelength, mean_hysteresis in zip(loops.case_wavelength, hysteresis, strict=True):
         name = f"amplitude {delta:g}, rings of {wavelength:g}: mean hysteresis"
         if reference := _KNOWN.get((delta, low, high, float(wavelength))):
-            remark = f"mean over b from {low:g} to {high:g}; from a program of its own"
+            remark = f"mean over b from {low:g} to {high:g}; from an independent program"
             yield near(name, mean_hysteresis, *reference, remark=remark)
         fall = stiffness * wavelength
         if wavelength == loops.case_wavelength.min():
@@ -225,7 +225,7 @@ def _case_checks(loops: RingLoops) -> Iterator[Check]:
                 2 * delta - fall,
                 fall * math.sqrt(fall / (2 * delta)),
                 remark=f"the limit d -> 0 is 2 delta = {2 * delta:g}; the tolerance is of the next "
-                "order, S d sqrt(S d / 2 delta), as a rounded extreme holds the front",
+                "order, S d sqrt(S d / 2 delta), because extremes are rounded",
             )
         if wavelength > critical:
             remark = f"no instability beyond 2 pi delta / S = {critical:.3f}"

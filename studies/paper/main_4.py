@@ -188,7 +188,7 @@ def mapping_checks(record: Mapping) -> tuple[Check, ...]:
             units="w_int",
         ),
         close_to(
-            "e_el of the tile: that of the spectrum at its modes, within 3 standard deviations",
+            "e_el of the tile: as the spectrum has at its modes, within 3 standard deviations",
             record.energy,
             record.mode_energy,
             3 * record.energy_error,

@@ -85,7 +85,7 @@ def film_scales_checks(record: FilmScales) -> tuple[Check, ...]:
         close_to("w_rms / w_int = 2 sqrt(e_el / w_int)", 2 * math.sqrt(relative), 0.84, 5e-3),
         close_to("h_rms", 1e9 * math.sqrt(record.mean_square[0]), 109, 1, units="nm"),
         Check(
-            "the half-derivative is dominated near the roll-off: its range holds it",
+            "the half-derivative is dominated near the roll-off: its range contains it",
             f"{1e6 * record.roll_off:.3g} um within",
             f"{1e6 * record.shortest[1]:.3g} to {1e6 * record.longest[1]:.3g} um",
             bool(record.shortest[1] < record.roll_off < record.longest[1]),

@@ -197,7 +197,7 @@ def _surface_checks(contact: NanodiamondContact) -> tuple[Check, ...]:
         ),
         _near("e_el of all wavelengths", 1e3 * contact.whole_elastic_energy, _PAPER_ENERGY, 0.05),
         _near(
-            "e_el of the simulated surface: that of the wavelengths that it has",
+            "e_el of the simulated surface: as the spectrum has at its wavelengths",
             1e3 * contact.elastic_energy,
             1e3 * share * contact.whole_elastic_energy,
             0.05 * _PAPER_ENERGY,
@@ -227,7 +227,7 @@ def _hysteresis_checks(contact: NanodiamondContact) -> tuple[Check, ...]:
         _near("w_retr that k = 3 predicts", surface - (1 - PAPER_FACTOR) * whole, 85.3, 0.1),
         _near("hysteresis that k = 3 predicts", 2 * PAPER_FACTOR * whole, 66.8, 0.1),
         _near(
-            "hysteresis of the simulation: that of k = 3 at its own e_el",
+            "hysteresis of the simulation: the hysteresis with k = 3 at the e_el of the tile",
             hysteresis,
             2 * PAPER_FACTOR * energy,
             2 * ONE_DIGIT * energy,

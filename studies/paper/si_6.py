@@ -157,7 +157,7 @@ def synthetic_film_checks(record: SyntheticFilm) -> tuple[Check, ...]:
             1e-9,
         ),
         close_to(
-            "e_el of the surfaces: that of their modes, within 3 standard errors",
+            "e_el of the surfaces: as the spectrum has at their modes, within 3 standard errors",
             1e3 * record.tile_energy,
             1e3 * record.mode_energy,
             3e3 * record.energy_error,
@@ -165,7 +165,7 @@ def synthetic_film_checks(record: SyntheticFilm) -> tuple[Check, ...]:
             remark=f"{record.realisations} surfaces",
         ),
         close_to(
-            "e_el from the density of the lines by the paper's conversion, over that of the maps",
+            "e_el from the density of the lines by the paper's conversion, over e_el of the maps",
             converted / record.tile_energy,
             1.0,
             scatter,
@@ -180,7 +180,7 @@ def synthetic_film_checks(record: SyntheticFilm) -> tuple[Check, ...]:
             remark="weighted by q, as e_el is; tolerance of 3 standard errors of e_el",
         ),
         close_to(
-            "density of the lines over that of the film's spectrum, in the same range",
+            "density of the lines over the density of the film's spectrum, in the same range",
             carried * spacing / float(np.trapezoid(q**2 * film, np.log(q))),
             1.0,
             0.1,
@@ -188,7 +188,7 @@ def synthetic_film_checks(record: SyntheticFilm) -> tuple[Check, ...]:
             "density of the film is not part of this repository",
         ),
         Check(
-            "the included scales hold those that carry 80% of e_el",
+            "the included scales contain those that carry 80% of e_el",
             _micrometres(record.dominant_shortest, record.dominant_longest),
             f"within {_micrometres(record.shortest, record.side)}",
             record.shortest < record.dominant_shortest and record.dominant_longest < record.side,

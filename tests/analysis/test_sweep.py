@@ -250,6 +250,19 @@ def test_one_realisation_gives_values_but_no_intervals_and_says_so(rng):
     assert "(no interval)" in fit_table(fit)
 
 
+@pytest.mark.parametrize("n_realisation", [2, 3])
+def test_spectra_lack_an_interval_with_two_realisations_and_a_note_says_how_many_give_one(
+    rng, n_realisation
+):
+    fit = fit_all(synthetic_table(rng, constant, n_realisation=n_realisation))
+    lacking = n_realisation == 2
+    assert np.all(np.isnan(fit.spectra.factor.low) == lacking)
+    assert np.isfinite(fit.pooled.factor.low)
+    notes = [note for note in fit_notes(fit) if "no interval" in note]
+    assert len(notes) == lacking
+    assert all(name in note for note in notes for name in (*fit.table.spectrum, "to 3 or more"))
+
+
 def test_a_single_amplitude_and_a_single_spectrum_give_k_but_no_trend(rng):
     table = synthetic_table(rng, constant, lengths=LENGTHS[:1], amplitudes=AMPLITUDES[-1:])
     fit = fit_all(table)

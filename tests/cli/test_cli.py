@@ -225,6 +225,22 @@ def test_the_examples_of_the_help_name_options_that_exist(name, line):
     assert given <= known
 
 
+def test_the_plan_names_the_amplitudes_of_the_fit_where_it_leaves_some_out(tmp_path):
+    configuration = tmp_path / "few.yaml"
+    configuration.write_text(TEST.read_text().replace("[0.02, 0.1]", "[0.02, 0.05, 0.1]"))
+    every = run("plan", configuration).stdout
+    assert "the fit of k takes all" in every
+    copied = configuration.read_text().replace(
+        "lowest_elastic_energy: 0.02", "lowest_elastic_energy: 0.05"
+    )
+    configuration.write_text(copied)
+    assert (
+        "the fit of k takes 2 of 3 amplitudes: 0.05, 0.1 (fit:" in run("plan", configuration).stdout
+    )
+    fitted = json.loads(run("plan", configuration, "--json").stdout)["fitted_elastic_energies"]
+    assert fitted == [0.05, 0.1]
+
+
 def test_machines_read_the_plan_the_progress_and_the_fit(tmp_path, copy_store):
     output = ("--output", tmp_path, "--json")
     before = json.loads(run("plan", TEST, *output).stdout)
@@ -236,7 +252,10 @@ def test_machines_read_the_plan_the_progress_and_the_fit(tmp_path, copy_store):
         assert run(command, TEST, *output[:2]).exit_code == 0
     after = json.loads(run("plan", TEST, *output).stdout)
     assert (after["missing"], after["core_seconds"]) == (0, 0)
-    assert after["warnings"] == []
+    assert [re.match(r"\w+ has g", one)[0] for one in after["warnings"]] == [
+        "flat has g",
+        "rough has g",
+    ]
     status = json.loads(run("status", tmp_path, "--json").stdout)
     assert status["reasons_to_run_again"] == []
     spectra = status["spectra"]

@@ -79,7 +79,7 @@ class Told(BaseException):
     """A case that has told that it takes long."""
 
 
-def announcement(seconds, **_):
+def announcement(task, seconds, **_):
     """What stands in for the announcement of a cost: nobody waits for it here."""
     if seconds > SECONDS / 4:
         raise Told

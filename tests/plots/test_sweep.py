@@ -70,6 +70,14 @@ def test_the_theory_lines_lie_where_theory_says(table, fit):
     np.testing.assert_allclose(hysteresis, fit.pooled.factor.value * variance / 2)
 
 
+@pytest.mark.parametrize("draw", [hysteresis_figure, factor_figure])
+def test_the_legend_names_every_spectrum_as_the_configuration_does(table, fit, draw):
+    [legend] = draw(fit).legends
+    texts = [entry.get_text() for entry in legend.get_texts()]
+    for name in table.spectrum:
+        assert sum(text.startswith(f"{name}: ") for text in texts) == 1
+
+
 def curves(axes, colour):
     """Lines of a colour without an entry in the legend or markers, the curves of the law."""
     lines = [line for line in axes.get_lines() if to_hex(line.get_color()) == colour.lower()]

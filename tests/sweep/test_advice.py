@@ -13,7 +13,9 @@ from crackfront.simulate.settings import Settings
 from crackfront.simulate.simulation import simulation_of
 from crackfront.simulate.sphere.full_cycle import FullCycle
 from crackfront.simulate.sphere.steady_branches import SteadySchedule
-from crackfront.sweep.advice import expectation
+from crackfront.sweep.advice import expectation, expectations, small_size_warnings
+from crackfront.sweep.parameters import load_sweep
+from tests.places import TEST
 
 NUMERICS = Numerics(
     settings=Settings(None, 4, 4, "cubic", 4, 1e-5), tile_roll_offs=4, tile_cutoffs=40
@@ -74,6 +76,27 @@ def test_a_plan_does_not_advise_far_more_than_is_needed():
     needed = expectation(one).needed_penetration
     slightly_less = replace(one, schedule=replace(shallow, max_penetration=needed / 1.3))
     assert expectation(slightly_less).needed_penetration is not None
+
+
+def test_wavelengths_that_a_plan_advises_for_a_small_contact_give_it_the_size_1(tmp_path):
+    coarse = load_sweep(TEST)
+    warnings = dict(zip(("flat", "rough"), small_size_warnings(coarse), strict=True))
+    configuration = tmp_path / "finer.yaml"
+    text = TEST.read_text()
+    for name, lengths in (("flat", (0.1,)), ("rough", (0.1, 0.2))):
+        divisor = float(re.search(r"divide its wavelengths by ([\d.]+)", warnings[name])[1])
+        cutoff = float(re.search(r"short_cutoff ([\d.]+)\)", warnings[name])[1])
+        assert cutoff == pytest.approx(0.1 / divisor, rel=0.1)
+        line = next(line for line in text.splitlines() if f"name: {name}" in line)
+        finer = line
+        for length in lengths:
+            finer = finer.replace(f": {length},", f": {length / divisor},")
+        text = text.replace(line, finer)
+    configuration.write_text(text)
+    fine = load_sweep(configuration)
+    assert not [*small_size_warnings(fine)]
+    for weakest, *_ in expectations(fine).values():
+        assert weakest.size == pytest.approx(1.0, rel=0.05)
 
 
 def test_a_steady_load_that_failed_names_keys_that_it_has():

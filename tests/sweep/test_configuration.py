@@ -87,6 +87,20 @@ def test_an_rms_is_converted_to_the_energy_of_full_conformity(tmp_path):
     assert energies == pytest.approx((0.01, 0.09), rel=1e-15)
 
 
+@pytest.mark.parametrize(
+    ("fit", "fitted"),
+    [
+        ("fit: {lowest_elastic_energy: 0.05}", [0.1]),
+        ("fit: {highest_elastic_energy: 0.05, bootstrap: 500}", [0.02]),
+        ("fit: {bootstrap: 500}", [0.02, 0.1]),
+        ("", [0.02, 0.1]),
+    ],
+)
+def test_a_fit_takes_all_amplitudes_unless_an_end_leaves_some_out(tmp_path, fit, fitted):
+    sweep = load_sweep(written(tmp_path, GOOD[: GOOD.index("fit:")] + fit))
+    assert sweep.fit.chosen(sweep.elastic_energies) == fitted
+
+
 def test_lengths_in_metres_are_those_of_the_reduced_sweep(tmp_path):
     scales = Scales(radius=1.25e-3, work_of_adhesion=63e-3, contact_modulus=0.93e6)
     content = from_yaml(GOOD)

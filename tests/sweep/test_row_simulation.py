@@ -1,5 +1,6 @@
 """A row of a sweep's table is run again, bit for bit."""
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -45,6 +46,11 @@ def test_a_row_is_repeated_bit_for_bit_with_what_was_recorded(table):
         np.testing.assert_array_equal(again[name], row[name])
     assert again.sizes["step"] == row.n_step
     assert {"radius", "position"} & again.variables.keys()
+    works = re.findall(r"(w_\w+|hysteresis) ([\d.-]+)", again.attrs["result"])
+    assert {name: float(value) for name, value in works} == {
+        name: pytest.approx(row[name].item(), abs=5e-4)
+        for name in ("w_appr", "w_retr", "hysteresis")
+    }
 
 
 def test_the_surface_of_a_row_is_the_one_that_it_was_simulated_on(table):

@@ -17,7 +17,13 @@ from numba.core.errors import NumbaError
 from crackfront.core.outcome import DefectError
 from crackfront.core.resources import TooLargeError
 from crackfront.core.versions import PHYSICS_VERSION, ROWS_VERSION
-from crackfront.simulate.checksums import is_whole
+from crackfront.simulate.checksums import (
+    DIGITS_IN_NAME,
+    digest_path,
+    file_digest,
+    is_whole,
+    sums_text,
+)
 from crackfront.simulate.costs import expected_cost
 from crackfront.simulate.cycle_files import write_checkpoint
 from crackfront.simulate.provenance import Provenance, provenance
@@ -430,6 +436,31 @@ def test_a_damaged_table_is_set_aside_and_aggregated_again(configuration, folder
     assert "workflow" in result.stderr
     assert not (folder / "fit.nc").exists()
     assert aggregated(configuration, folder).identical(first)
+
+
+def store_texts_as_characters(path):
+    """Rewrite a file as earlier versions wrote it, with texts as arrays of characters."""
+    dataset = xr.load_dataset(path)
+    texts = [name for name, values in dataset.variables.items() if values.dtype.kind in "OU"]
+    assert texts
+    dataset.to_netcdf(path, encoding={name: {"dtype": "S1", "zlib": True} for name in texts})
+    return file_digest(path)
+
+
+@pytest.mark.parametrize("kept", ["rows", "curves"])
+def test_results_with_texts_as_characters_are_read_and_grow(configuration, made, folder, kept):
+    for curves in [*folder.glob("curves/*/*.nc")]:
+        digest = store_texts_as_characters(curves)[:DIGITS_IN_NAME]
+        curves.rename(curves.with_stem(f"{curves.stem.rpartition('-')[0]}-{digest}"))
+    for rows in [*folder.glob("shards/*.nc")]:
+        digest_path(rows).write_text(sums_text({rows.name: store_texts_as_characters(rows)}))
+        if kept == "curves":
+            rows.unlink()
+    (folder / "hysteresis.nc").unlink()
+    change(configuration, "realisations: 2", "realisations: 3")
+    assert len(simulate(configuration, folder)) == 4
+    grown = aggregated(configuration, folder).sel(realisation=[0, 1])
+    assert grown.identical(table(made.hysteresis))
 
 
 def test_a_damaged_fit_is_set_aside_and_not_shown(configuration, folder):

@@ -9,7 +9,7 @@ import pytest
 from tests.places import ROOT
 
 
-def plan(folder, **environment):
+def plan(folder, profile=ROOT / "workflow/profiles/default", **environment):
     """Result of Snakemake's plan as `make` asks for it, without the caches of this user."""
     names = ("HOME", "XDG_CACHE_HOME", "NUMBA_CACHE_DIR")
     kept = {name: value for name, value in os.environ.items() if name not in names}
@@ -17,7 +17,7 @@ def plan(folder, **environment):
         [
             *(sys.executable, str(ROOT / "workflow/run.py")),
             *("--snakefile", str(ROOT / "Snakefile")),
-            *("--profile", str(ROOT / "workflow/profiles/default"), "--directory", str(folder)),
+            *("--profile", str(profile), "--directory", str(folder)),
             *("--config", f"sweep={ROOT / 'config/test.yaml'}", "--dry-run"),
         ],
         capture_output=True,
@@ -26,6 +26,15 @@ def plan(folder, **environment):
         check=False,
         env=kept | environment,
     )
+
+
+def test_make_shows_errors_of_a_profile_but_does_not_announce_it(tmp_path):
+    done = plan(tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert "profile" not in done.stderr
+    missing = plan(tmp_path, profile=tmp_path / "nowhere")
+    assert missing.returncode == 1
+    assert "no profile.yaml" in missing.stderr
 
 
 @pytest.mark.slow

@@ -26,8 +26,9 @@ def test_commands_compute_draw_check_and_keep_a_figure(tmp_path, monkeypatch):
     assert "4 of 4 agree, 0 differ" in (output / "checks.md").read_text().splitlines()[2]
     monkeypatch.chdir(tmp_path)
     assert run("gallery", "--output", output).exit_code == 0
-    kept = stored("paper").tables["main-1d"]
-    assert "![Main Fig. 1d" in kept.text
+    kept = stored("paper").figures["main-1d"]
+    assert (kept.title[:12], kept.picture, kept.scale) == ("Main Fig. 1d", "main-1d.png", "quick")
+    assert kept.checks.count("agrees") == 4
     assert Path("docs/experiments/figures/main-1d.png").stat().st_size > 1000
 
 

@@ -33,8 +33,8 @@ def test_a_film_of_half_the_plateau_fails_the_numbers_of_the_paper(scales):
 def test_synthetic_surfaces_have_the_density_of_their_spectrum(synthetic):
     # The cutoff is longer here than the scales that carry e_el, and that is said.
     assert failed(synthetic) == [
-        "density of the lines over that of the film's spectrum, in the same range",
-        "the included scales hold those that carry 80% of e_el",
+        "density of the lines over the density of the film's spectrum, in the same range",
+        "the included scales contain those that carry 80% of e_el",
     ]
 
 
