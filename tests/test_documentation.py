@@ -12,7 +12,6 @@ from matplotlib import pyplot
 import crackfront as cf
 from crackfront import __all__
 from crackfront.cli import main
-from crackfront.measured.options import ReadingOptions
 from crackfront.simulate.checksums import digest_path, file_digest, sums_text
 from crackfront.sweep.configuration import Configuration
 from studies.__main__ import STUDIES
@@ -172,8 +171,7 @@ def test_every_key_of_a_configuration_has_a_meaning_and_no_other_key():
     }
     page = (ROOT / "config/README.md").read_text()
     told = set(re.findall(r"^\| (\w+) \| `(\w+)` \| \w.* \|$", page, re.MULTILINE))
-    options = {("Surface", name) for name in ReadingOptions.model_fields}
-    assert keys - options == told
+    assert keys == told
 
 
 def test_the_page_of_the_reference_names_the_whole_library():

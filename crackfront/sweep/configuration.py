@@ -50,7 +50,7 @@ class Configuration(Section):
                 "amplitudes.elastic_energy is meaningless for a chemical field; give "
                 "amplitudes.work_of_adhesion_rms"
             )
-        measured = [item.name for item in self.spectra if item.surface is not None]
+        measured = [item.name for item in self.spectra if item.in_metres is not None]
         if measured and self.scales is None:
             raise section_error(
                 f"spectrum {measured[0]!r} describes a surface in metres; give the section scales"
@@ -70,7 +70,7 @@ class Configuration(Section):
         if self.amplitudes.measured and not len(measured) == len(self.spectra) == 1:
             raise section_error(
                 "amplitudes.measured are multiples of the heights of one surface; give one "
-                "spectrum with a section surface"
+                "spectrum with a section surface or density"
             )
         return self
 

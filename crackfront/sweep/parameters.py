@@ -76,9 +76,9 @@ def _named_spectra(configuration: Configuration, lateral: float) -> Iterator[Nam
 
 def _elastic_energies(configuration: Configuration, scales: Scales | None) -> tuple[float, ...]:
     """Requested e_el / w_int, of which the range of the fit must contain one."""
-    measured, surface = math.nan, configuration.spectra[0].surface
-    if configuration.amplitudes.measured and surface and scales:
-        energy = surface.measured.conformity_energy(scales.contact_modulus).value
+    measured, section = math.nan, configuration.spectra[0].in_metres
+    if configuration.amplitudes.measured and section and scales:
+        energy = section.measured.conformity_energy(scales.contact_modulus).value
         measured = energy / scales.work_of_adhesion
     elastic_energies = configuration.amplitudes.elastic_energies(measured)
     lowest = configuration.fit.lowest_elastic_energy

@@ -1,4 +1,4 @@
-"""Sections of the spectra of a configuration: self-affine, a table, or a measured surface."""
+"""Sections of the spectra of a configuration: self-affine, a table, or from files."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from pydantic import (
 )
 
 from crackfront.core.arguments import nearest_name
-from crackfront.core.spectrum import SelfAffineSpectrum, TabulatedSpectrum
+from crackfront.core.spectrum import SelfAffineSpectrum, Spectrum, TabulatedSpectrum
 from crackfront.sweep.section import (
     ConfigurationError,
     InputFile,
@@ -30,8 +30,10 @@ from crackfront.validation import Positive
 
 # Imported where a configuration names a measured surface.
 if TYPE_CHECKING:
-    from crackfront.measured.options import ReadingOptions
-    from crackfront.measured.spectrum.measured_surface import MeasuredSurface
+    from crackfront.measured.options import Options, PsdOptions, ReadingOptions
+    from crackfront.measured.scan.psd import Psd
+    from crackfront.measured.spectrum.measured_surface import MeasuredSurface, RoughSurface
+    from crackfront.measured.spectrum.stated import StatedSurface
 
 
 def _as_tuple(value: Any) -> Any:
@@ -39,11 +41,48 @@ def _as_tuple(value: Any) -> Any:
     return (value,) if isinstance(value, (str, int)) else value
 
 
-class SurfaceSection(Section):
-    """Measurements of a surface, and the options by which they are read."""
+class FileSection(Section):
+    """Files that state a surface in metres, and the options by which they are read."""
 
-    # The other keys are the fields of `ReadingOptions`.
+    # The other keys are options of the reader.
     model_config = ConfigDict(extra="allow")
+
+    @property
+    def measured(self) -> RoughSurface:
+        """The surface; its files are read when it is first used."""
+        raise NotImplementedError
+
+    @property
+    def checksum(self) -> str:
+        """Eight digits that change with any of the files."""
+        raise NotImplementedError
+
+    def table(self) -> TabulatedSpectrum:
+        """Spectrum of the surface (Units: m)."""
+        raise NotImplementedError
+
+    def shape(self) -> tuple[TabulatedSpectrum, str]:
+        """Spectrum in metres, and eight digits that change with any of the files.
+
+        Five digits of each number, so that simulations keep their names whatever the round-off.
+        """
+        table = self.table()
+        lengths, densities = (
+            tuple(float(f"{value:.5g}") for value in values)
+            for values in (table.wavelengths, table.identity[1])
+        )
+        return TabulatedSpectrum(lengths, densities), self.checksum
+
+    def _check_names(self, options: type[Options]) -> None:
+        """Raise if a key is not an option of the reader."""
+        for key in self.model_extra or {}:
+            if key not in options.model_fields:
+                hint = nearest_name(key, options.model_fields, "the keys here are")
+                raise section_error(f"unknown key {key}; {hint}")
+
+
+class SurfaceSection(FileSection):
+    """Measurements of a surface, and the options by which they are read."""
 
     file: Annotated[tuple[InputFile, ...], BeforeValidator(_as_tuple), Field(min_length=1)]
     _options: tuple[ReadingOptions, ...] = PrivateAttr()
@@ -52,11 +91,8 @@ class SurfaceSection(Section):
     def _readable(self, info: ValidationInfo) -> SurfaceSection:
         from crackfront.measured.options import ReadingOptions, reading_options
 
-        options, keys = self.model_extra or {}, ReadingOptions.model_fields
-        for key in options:
-            if key not in keys:
-                hint = nearest_name(key, keys, "the keys here are")
-                raise section_error(f"unknown key {key}; {hint}")
+        self._check_names(ReadingOptions)
+        options = self.model_extra or {}
         masks = _located_masks(options.get("mask"), info)
         try:
             self._options = tuple(reading_options(options | {"mask": masks}, len(self.file)))
@@ -71,17 +107,55 @@ class SurfaceSection(Section):
 
         return read_surface(self.file, self._options)
 
-    def shape(self) -> tuple[TabulatedSpectrum, str]:
-        """Spectrum in metres, and eight digits that change with any of the files.
+    @property
+    def checksum(self) -> str:
+        """Eight digits that change with any of the files."""
+        return self.measured.checksum
 
-        Five digits of each number, so that simulations keep their names whatever the round-off.
-        """
-        table = self.measured.joint.spectrum
-        lengths, densities = (
-            tuple(float(f"{value:.5g}") for value in values)
-            for values in (table.wavelengths, table.identity[1])
-        )
-        return TabulatedSpectrum(lengths, densities), self.measured.checksum
+    def table(self) -> TabulatedSpectrum:
+        """Joint spectrum of all files (Units: m)."""
+        return self.measured.spectrum
+
+
+class DensitySection(FileSection):
+    """A spectral density that another program exported, and the options by which it is read."""
+
+    file: InputFile
+    _options: PsdOptions = PrivateAttr()
+
+    @model_validator(mode="after")
+    def _readable(self) -> DensitySection:
+        from crackfront.measured.options import PsdOptions, checked_options
+
+        self._check_names(PsdOptions)
+        try:
+            self._options = checked_options(PsdOptions, self.model_extra or {})
+        except (TypeError, ValueError) as error:
+            raise section_error(str(error)) from error
+        return self
+
+    @functools.cached_property
+    def _psd(self) -> Psd:
+        """Density of the file, which is read when it is first used."""
+        from crackfront.measured.scan.psd import read_psd_file
+
+        return read_psd_file(self.file, self._options)
+
+    @functools.cached_property
+    def measured(self) -> StatedSurface:
+        """A surface of this density."""
+        from crackfront.measured.spectrum.stated import density_surface
+
+        return density_surface(self._psd)
+
+    @property
+    def checksum(self) -> str:
+        """Eight digits that change with the file."""
+        return self._psd.checksum
+
+    def table(self) -> TabulatedSpectrum:
+        """Isotropic density (Units: m)."""
+        return self.measured.spectrum
 
 
 def _located_masks(masks: Any, info: ValidationInfo) -> Any:
@@ -117,49 +191,63 @@ class SpectrumSection(Section):
     roll_off: Positive | None = None
     hurst: float | None = None
     surface: SurfaceSection | None = None
+    density: DensitySection | None = None
     table: TableSection | None = None
 
     @model_validator(mode="after")
     def _complete(self) -> SpectrumSection:
-        if sections := self._sections():
-            overruled = "short_cutoff", "roll_off", "hurst", *sections[1:]
-            check_not_overruled(self, sections[0], overruled)
+        if sections := self._shape_sections():
+            overruled = "short_cutoff", "roll_off", "hurst", *[*sections][1:]
+            check_not_overruled(self, next(iter(sections)), overruled)
             return self
-        if self.short_cutoff is not None:
-            check_makes(self._self_affine)
         needed = ("short_cutoff",) if self._is_flat else ("short_cutoff", "hurst")
         if missing := missing_keys(self, needed):
             raise section_error(
-                f"key {', '.join(missing)} is missing; add it, or a table or surface"
+                f"key {', '.join(missing)} is missing; add it, or one of {', '.join(_SHAPES)}"
             )
+        check_makes(self._self_affine)
         return self
+
+    @property
+    def in_metres(self) -> FileSection | None:
+        """The section that states a surface in metres, if there is one."""
+        return self.surface or self.density
 
     def named(self, position: int, lateral: float) -> NamedSpectrum:
         """Spectrum at a position of the list, with its lengths divided by a unit."""
-        for key in self._sections():
+        shape, ending = self._shape(position)
+        name = f"{self.name}-{ending}" if ending else self.name
+        return NamedSpectrum(name, shape.in_units(lateral))
+
+    def _shape(self, position: int) -> tuple[Spectrum, str]:
+        """Spectrum in the unit of length of the configuration, and what its name ends with."""
+        for key, section in self._shape_sections().items():
             try:
-                spectrum, ending = getattr(self, key).shape()
+                return section.shape()
             except (OSError, ValueError) as error:
                 reason = str(error)
                 if isinstance(error, OSError):
                     reason = f"{error.filename} cannot be read: {error.strerror}"
                 raise ConfigurationError(f"spectra[{position}].{key}: {reason}") from error
-            name = f"{self.name}-{ending}" if ending else self.name
-            return NamedSpectrum(name, spectrum.in_units(lateral))
-        return NamedSpectrum(self.name, self._self_affine().in_units(lateral))
+        return self._self_affine(), ""
 
     def _self_affine(self) -> SelfAffineSpectrum:
         """Spectrum of the parameters, in the unit of length of the configuration."""
-        short_cutoff: Any = self.short_cutoff
-        roll_off = short_cutoff if self.roll_off is None else self.roll_off
+        assert self.short_cutoff is not None, "required where no section states the shape"
+        roll_off = self.short_cutoff if self.roll_off is None else self.roll_off
         hurst = 1.0 if self.hurst is None else self.hurst  # without effect if flat
-        return SelfAffineSpectrum(short_cutoff, roll_off, hurst)
+        return SelfAffineSpectrum(self.short_cutoff, roll_off, hurst)
 
     @property
     def _is_flat(self) -> bool:
         """Whether there is a short cutoff, and no longer roll-off."""
         return self.short_cutoff is not None and self.roll_off in (None, self.short_cutoff)
 
-    def _sections(self) -> list[str]:
-        """Keys of the sections that are given: shapes other than self-affine ones."""
-        return [key for key, value in self if isinstance(value, Section)]
+    def _shape_sections(self) -> dict[str, FileSection | TableSection]:
+        """Sections that are given, by their keys: shapes other than self-affine ones."""
+        sections = {key: getattr(self, key) for key in _SHAPES}
+        return {key: section for key, section in sections.items() if section is not None}
+
+
+_SHAPES = "surface", "density", "table"
+"""Keys of the sections of shapes other than self-affine ones."""
