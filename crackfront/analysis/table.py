@@ -127,12 +127,25 @@ class SweepTable:
         columns = self.short_cutoff, self.roll_off, self.hurst
         return SelfAffineSpectrum(*(float(values[index]) for values in columns))
 
+    def is_covered(self, index: int) -> bool:
+        """Whether the law of k was measured on surfaces as of an entry: on isotropic ones."""
+        return self.shape_of(index).is_isotropic
+
     @property
     def shape(self) -> Array:
         """Number of each spectrum's shape, (n_spectrum,); spectra of one shape differ in size."""
-        octaves = np.round(np.log2(self.roll_off / self.short_cutoff), 9)
-        hurst = np.where(octaves > 0, self.hurst, 0.0)
-        return np.asarray(np.unique(np.stack([octaves, hurst]), axis=1, return_inverse=True)[1])
+        keys = [self._shape_key(index) for index in range(self.spectrum.size)]
+        distinct = [*dict.fromkeys(keys)]
+        return np.array([distinct.index(key) for key in keys])
+
+    def _shape_key(self, index: int) -> tuple[object, ...]:
+        """What two entries share if their surfaces differ in size alone."""
+        spectrum = self.shape_of(index)
+        lengths, numbers = spectrum.identity
+        octaves = np.round(np.log2(np.array(lengths) / spectrum.short_cutoff), 9)
+        if isinstance(spectrum, SelfAffineSpectrum) and not np.any(octaves):
+            numbers = ()  # a flat spectrum lacks a Hurst exponent
+        return *octaves.tolist(), *numbers
 
     @property
     def family(self) -> Array:

@@ -174,6 +174,9 @@ def _plan_lines(
         spectra,
     )
     yield "s is w_rms/w_int, g the size, and k what the law expects at the largest load"
+    if names := [item.name for item in sweep.spectra if not item.is_covered]:
+        listed = ", ".join(names)
+        yield f"the law of k does not cover {listed}: it was measured on isotropic spectra"
     yield from filter(None, (*everything.sentences(), mixture_sentence(everything.arithmetic)))
     yield ""
     to_run.append(_to_run("all", len(shards), everything.missing))

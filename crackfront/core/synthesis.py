@@ -66,8 +66,8 @@ def gaussian_field(
     for first in range(-highest_x, highest_x + 1, height):
         rows = np.arange(first, min(first + height, highest_x + 1))
         noise = rng.standard_normal((rows.size, 2, columns.size))
-        wavevector = step * np.hypot(rows[:, None] * (l_y / l_x), columns)
-        amplitude = np.sqrt(spectrum.density(wavevector) / 2) / math.sqrt(l_x * l_y)
+        density = spectrum.density_of_modes(step, rows[:, None] * (l_y / l_x), columns)
+        amplitude = np.sqrt(density / 2) / math.sqrt(l_x * l_y)
         resolved = np.abs(rows) <= kept_x
         row_modes = (noise[:, 0] + 1j * noise[:, 1]) * amplitude
         modes[rows[resolved], : kept_y + 1] = row_modes[resolved, : kept_y + 1]

@@ -215,7 +215,7 @@ def label_decimals(axis: Axis, locator: Locator | None = None) -> None:
 def spectrum_label(table: SweepTable, index: int) -> str:
     """Parameters of a spectrum, for a legend."""
     cutoff = rf"$\lambda_\mathrm{{s}}={table.short_cutoff[index]:g}$"
-    if np.isnan(table.hurst[index]):
+    if np.isnan(table.hurst[index]) or not table.is_covered(index):
         name = str(table.spectrum[index])
         return f"{name_without_spring(name) if table.on_springs else name}, {cutoff}"
     if table.roll_off[index] == table.short_cutoff[index]:

@@ -144,6 +144,8 @@ def unmeasured_reason(kind: FieldKind, spectrum: Spectrum, elastic_energy: float
     """Why no errors were measured for a spectrum and amplitude; empty if they were."""
     low, high = measured_energies()
     remedy = "give the resolution and the tolerance instead"
+    if not spectrum.is_isotropic:
+        return f"errors were measured for isotropic spectra alone; {remedy}"
     if not low / _LEEWAY <= elastic_energy <= high * _LEEWAY:
         return (
             f"errors were measured for e_el/w_int from {low:g} to {high:g}, not at "

@@ -30,10 +30,12 @@ class Expectation:
 
     disorder: float
     """w_rms / w_int."""
-    size: float
-    """g, L_kappa over the Larkin length, of a sphere at its largest penetration."""
+    size: float | None
+    """g, L_kappa over the Larkin length, of a sphere at its largest penetration; None of an
+    anisotropic spectrum, whose Larkin length depends on the direction of the front."""
     factor: float | None
-    """k by the law; None near pull-off, where the edge is unstable."""
+    """k by the law; None near pull-off, where the edge is unstable, and if the law does not cover
+    the surface."""
     needed_penetration: float | None = None
     """Set if the largest one may leave no steady part. (Units: reduced vertical length, or as in
     the configuration)"""
@@ -47,6 +49,8 @@ def expectation(simulation: Simulation) -> Expectation:
     """What the realisations of a simulation are expected to find."""
     kind, spectrum, energy = simulation.kind, simulation.spectrum, simulation.elastic_energy
     schedule, disorder = simulation.schedule, 2 * math.sqrt(energy)
+    if not spectrum.is_isotropic:
+        return Expectation(disorder, None, None)
     try:
         factors = factors_on_springs(kind, spectrum, energy, schedule.spring_at)
     except ValueError:

@@ -60,6 +60,12 @@ class Configuration(Section):
                 f"spectrum {measured[0]!r} is the spectrum of heights; field must be roughness"
             )
         line = self.load.line
+        anisotropic = [item.name for item in self.spectra if item.anisotropy is not None]
+        if line is not None and anisotropic:
+            raise section_error(
+                f"spectrum {anisotropic[0]!r} is anisotropic, and load.line chooses its tiles and "
+                "loads by laws of isotropic spectra; remove anisotropy, or simulate spheres"
+            )
         if line is not None and line.uncorrelated and self.numerics.error is not None:
             raise section_error(
                 f"numerics.error is {self.numerics.error:g}, which chooses other pixels for each "

@@ -16,7 +16,12 @@ from pydantic import (
 )
 
 from crackfront.core.arguments import nearest_name
-from crackfront.core.spectrum import SelfAffineSpectrum, Spectrum, TabulatedSpectrum
+from crackfront.core.spectrum import (
+    AnisotropicSpectrum,
+    SelfAffineSpectrum,
+    Spectrum,
+    TabulatedSpectrum,
+)
 from crackfront.sweep.section import (
     ConfigurationError,
     InputFile,
@@ -26,7 +31,7 @@ from crackfront.sweep.section import (
 )
 from crackfront.sweep.section_checks import check_makes, check_not_overruled, missing_keys
 from crackfront.sweep.sweep import NamedSpectrum
-from crackfront.validation import Positive
+from crackfront.validation import Finite, Positive
 
 # Imported where a configuration names a measured surface.
 if TYPE_CHECKING:
@@ -179,6 +184,13 @@ class TableSection(Section):
         return TabulatedSpectrum(self.wavelengths, self.densities), ""
 
 
+class AnisotropySection(Section):
+    """Stretch of a spectrum, as in `AnisotropicSpectrum`."""
+
+    ratio: Annotated[float, Field(gt=1, le=100)]
+    angle: Finite = 0.0
+
+
 class SpectrumSection(Section):
     """Shape of one spectrum: self-affine by its parameters, or another by its own section.
 
@@ -193,6 +205,7 @@ class SpectrumSection(Section):
     surface: SurfaceSection | None = None
     density: DensitySection | None = None
     table: TableSection | None = None
+    anisotropy: AnisotropySection | None = None
 
     @model_validator(mode="after")
     def _complete(self) -> SpectrumSection:
@@ -215,9 +228,11 @@ class SpectrumSection(Section):
 
     def named(self, position: int, lateral: float) -> NamedSpectrum:
         """Spectrum at a position of the list, with its lengths divided by a unit."""
-        shape, ending = self._shape(position)
+        spectrum, ending = self._shape(position)
         name = f"{self.name}-{ending}" if ending else self.name
-        return NamedSpectrum(name, shape.in_units(lateral))
+        if self.anisotropy is not None:
+            spectrum = AnisotropicSpectrum(spectrum, self.anisotropy.ratio, self.anisotropy.angle)
+        return NamedSpectrum(name, spectrum.in_units(lateral))
 
     def _shape(self, position: int) -> tuple[Spectrum, str]:
         """Spectrum in the unit of length of the configuration, and what its name ends with."""

@@ -28,6 +28,11 @@ class NamedSpectrum:
     spectrum: Spectrum
     spring: float = math.nan
 
+    @property
+    def is_covered(self) -> bool:
+        """Whether the law of k was measured on such surfaces."""
+        return self.spectrum.is_isotropic
+
 
 @dataclass(frozen=True, slots=True)
 class Shard:

@@ -1,13 +1,19 @@
 """Spectra of configurations that are not self-affine, and surfaces that are not Gaussian."""
 
+import json
 from pathlib import Path
 
 import numpy as np
 import pytest
+import xarray as xr
 
 import crackfront as cf
+from crackfront.simulate.simulation import simulation_adhesion
+from crackfront.simulate.tiles import gaussian_values as surface_values
+from crackfront.sweep.feasibility import check_feasible
 from crackfront.sweep.parameters import load_sweep
 from crackfront.sweep.section import ConfigurationError, movable_text
+from tests.commands import done
 from tests.places import ROOT
 from tests.yaml_texts import from_yaml, to_yaml
 
@@ -31,7 +37,7 @@ def in_metres(folder, spectrum, **changes):
 def message_of(path):
     """What a configuration cannot be used for."""
     with pytest.raises(ConfigurationError) as caught:
-        load_sweep(path)
+        check_feasible(load_sweep(path), path)
     return str(caught.value)
 
 
@@ -100,3 +106,89 @@ def test_a_density_in_metres_needs_a_sphere(tmp_path):
     sentence = message_of(configuration(tmp_path, {"density": {"file": "density.csv"}}))
     assert "spectrum 's'" in sentence
     assert "give the section scales" in sentence
+
+
+WIDE = from_yaml((ROOT / "config/test.yaml").read_text("utf-8"))["numerics"]
+WIDE |= {"tile": {"roll_offs": 10, "cutoffs": 160}}
+GROOVES = {"short_cutoff": 0.2, "anisotropy": {"ratio": 4.0, "angle": 30.0}}
+
+
+def realisations(path):
+    """Works of adhesion of all realisations of the first amplitude, and the requested e_el."""
+    sweep = load_sweep(path)
+    [item] = sweep.spectra
+    energy = sweep.elastic_energies[0]
+    simulations = [s for s in sweep.simulations(item) if s.elastic_energy == energy]
+    return [simulation_adhesion(simulation) for simulation in simulations], energy
+
+
+@pytest.mark.parametrize("ratio", [None, 2.0, 8.0])
+def test_an_anisotropic_surface_has_the_energy_that_is_requested(tmp_path, ratio):
+    spectrum = {"short_cutoff": 0.1}
+    if ratio:
+        spectrum["anisotropy"] = {"ratio": ratio, "angle": 40.0}
+    maps, energy = realisations(configuration(tmp_path, spectrum, numerics=WIDE, realisations=4))
+    assert np.mean([item.e_el for item in maps]) == pytest.approx(energy, rel=0.02)
+    for item in maps:
+        assert item.w_rms**2 == pytest.approx(4 * item.e_el, rel=1e-9)
+
+
+def test_waves_are_longer_along_the_grooves_than_across_by_the_ratio(tmp_path):
+    sweep = load_sweep(configuration(tmp_path, GROOVES, numerics=WIDE))
+    surface = next(sweep.simulations()).surface
+    slopes = np.gradient(surface_values(surface), surface.pixel)
+    angle = np.radians(30.0)
+    along = np.cos(angle) * slopes[0] + np.sin(angle) * slopes[1]
+    across = np.cos(angle) * slopes[1] - np.sin(angle) * slopes[0]
+    assert np.std(across) / np.std(along) == pytest.approx(4.0, rel=0.1)
+
+
+def test_simulations_change_with_the_ratio_and_the_angle(tmp_path):
+    series = set()
+    stretches = [{"ratio": 2.0}, {"ratio": 3.0}, {"ratio": 2.0, "angle": 10.0}]
+    for anisotropy in [None, *stretches]:
+        spectrum = {"short_cutoff": 0.1} | ({"anisotropy": anisotropy} if anisotropy else {})
+        series.add(next(load_sweep(configuration(tmp_path, spectrum)).simulations()).series)
+    assert len(series) == 4
+
+
+def test_a_sweep_of_anisotropic_surfaces_has_values_but_no_k_by_the_law(tmp_path):
+    path = configuration(tmp_path, GROOVES)
+    table = cf.run_sweep(path, tmp_path / "results", progress=False)
+    assert np.all(np.isfinite(table.w_retr))
+    assert np.all(np.isnan(table.w_appr_numerical_error))
+    plan = json.loads(done("plan", path, "--output", tmp_path / "results", "--json").stdout)
+    assert [cell["factor"] for cell in plan["expected"]["s"]] == [None, None]
+    assert plan["missing"] == 0
+    done("fit", path, "--output", tmp_path / "results")
+    fit = xr.load_dataset(tmp_path / "results/fit.nc")
+    assert np.all(np.isfinite(fit.factor.sel(bound="value")))
+    assert np.all(np.isnan(fit.cell_law_factor))
+    assert "does not cover s" in (tmp_path / "results/fit.md").read_text()
+    row = table.isel(spectrum=0, amplitude=0, realisation=1)
+    simulation = cf.simulation(row)
+    assert simulation.surface.attrs["anisotropy"] == 4.0
+    assert float(simulation.run().w_appr) == float(row.w_appr)
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"numerics": {"error": 0.03}}, ("error is 0.03", "isotropic", "give the resolution")),
+        ({"anisotropy": {"ratio": 0.5}}, ("anisotropy.ratio", "0.5", "1")),
+        ({"anisotropy": {"angle": 30.0}}, ("anisotropy.ratio is missing",)),
+    ],
+)
+def test_anisotropy_that_cannot_be_simulated_is_named_with_a_remedy(tmp_path, changes, words):
+    numerics = changes.pop("numerics", None)
+    kept = {"tile": {"roll_offs": 4, "cutoffs": 20}, "max_sweeps": 9, "solver": "newton"}
+    others = {"numerics": numerics | kept} if numerics else {}
+    sentence = message_of(configuration(tmp_path, GROOVES | changes, **others))
+    assert [word for word in words if word not in sentence] == []
+
+
+def test_straight_fronts_need_isotropic_spectra(tmp_path):
+    line = from_yaml((ROOT / "tests/line-test.yaml").read_text("utf-8"))["load"]
+    sentence = message_of(configuration(tmp_path, GROOVES, load=line))
+    assert "spectrum 's' is anisotropic" in sentence
+    assert "remove anisotropy" in sentence
