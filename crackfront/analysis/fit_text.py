@@ -23,6 +23,9 @@ from crackfront.core.words import counted
 ONSET = 0.5
 """Ratio of k to the largest k of its spectrum below which hysteresis has not set in."""
 
+MEASURED_ON = "it was measured on Gaussian surfaces of isotropic spectra"
+"""What the law of k covers."""
+
 _FACTORS = "factor", "factor_by_sums"
 """Estimates of k in the table of the law."""
 
@@ -337,8 +340,8 @@ def _uncovered_sentences(fit: SweepFit) -> Iterator[str]:
     names = [str(name) for index, name in enumerate(table.spectrum) if not table.is_covered(index)]
     if names:
         yield (
-            f"The law of k was measured on isotropic spectra and does not cover "
-            f"{', '.join(names)}, which have no k by the law and no numerical error."
+            f"The law of k does not cover {', '.join(names)}: {MEASURED_ON}. They have neither a k "
+            "by the law nor a numerical error."
         )
 
 

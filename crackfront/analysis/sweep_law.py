@@ -19,6 +19,7 @@ from crackfront.analysis.law_spheres import sphere_estimates
 from crackfront.analysis.table import SweepTable
 from crackfront.core.adhesion import FieldKind, adhesion_rms, larkin_length
 from crackfront.core.arrays import Array
+from crackfront.core.spectrum import Spectrum
 
 LARGE = 1.0
 """Size g above which measured k are compared with the law."""
@@ -56,10 +57,17 @@ class SweepLaw:
         They are NaN if a number is out of range, a sphere is too close to pull-off, or the law does
         not cover the spectrum.
         """
-        if not self.table.is_covered(index):
-            unknown = np.full(energies.shape, np.nan)
+        spectrum, unknown = self.table.shape_of(index), np.full(energies.shape, np.nan)
+        if not spectrum.is_isotropic:
             return Estimate(unknown, unknown, unknown, unknown), unknown
-        spectrum = self.table.shape_of(index)
+        factors, sizes = self._factors(spectrum, energies, supports)
+        is_covered = self.table.is_covered(index)
+        return factors if is_covered else factors.each(lambda _: unknown), sizes
+
+    def _factors(
+        self, spectrum: Spectrum, energies: Array, supports: Array
+    ) -> tuple[Estimate, Array]:
+        """Factors and sizes of :meth:`factors`, of Gaussian surfaces of an isotropic spectrum."""
         if not self.table.on_springs:
             return sphere_estimates(self.kind, spectrum, energies, supports)
         valid = (energies > 0) & (energies < 1) & (supports > 0) & (supports < math.inf)

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from crackfront.analysis.run_measures import RunMeasures
 from crackfront.analysis.steady_adhesion import SteadyMeasures
 from crackfront.core.arrays import Array
-from crackfront.core.spectrum import SelfAffineSpectrum, Spectrum
+from crackfront.core.spectrum import ENSEMBLE, SelfAffineSpectrum, Spectrum
 from crackfront.core.variables import ADHESION, FORCE, LATERAL, VERTICAL, variable, variables
 
 SPECTRUM, AMPLITUDE, REALISATION = "spectrum", "amplitude", "realisation"
@@ -24,7 +24,7 @@ PLACE = SPECTRUM, AMPLITUDE, REALISATION
 _CELL = SPECTRUM, AMPLITUDE
 """Dimensions of what all realisations share."""
 
-_SHAPE_TEXT = "JSON of a spectrum's parameters in reduced units, where not all are self-affine"
+_SHAPE_TEXT = "JSON of parameters in reduced units, where not all are self-affine and Gaussian"
 
 
 @dataclass(frozen=True)
@@ -128,8 +128,14 @@ class SweepTable:
         return SelfAffineSpectrum(*(float(values[index]) for values in columns))
 
     def is_covered(self, index: int) -> bool:
-        """Whether the law of k was measured on surfaces as of an entry: on isotropic ones."""
-        return self.shape_of(index).is_isotropic
+        """Whether the law of k was measured on such surfaces: Gaussian and isotropic ones."""
+        return self.shape_of(index).is_isotropic and not self.ensemble(index)
+
+    def ensemble(self, index: int) -> str:
+        """What the surfaces of an entry are besides their spectrum; empty if they are Gaussian."""
+        if self.parameters is None:
+            return ""
+        return str(json.loads(str(self.parameters[index])).get(ENSEMBLE, ""))
 
     @property
     def shape(self) -> Array:
@@ -145,7 +151,7 @@ class SweepTable:
         octaves = np.round(np.log2(np.array(lengths) / spectrum.short_cutoff), 9)
         if isinstance(spectrum, SelfAffineSpectrum) and not np.any(octaves):
             numbers = ()  # a flat spectrum lacks a Hurst exponent
-        return *octaves.tolist(), *numbers
+        return *octaves.tolist(), *numbers, self.ensemble(index)
 
     @property
     def family(self) -> Array:

@@ -21,6 +21,9 @@ from crackfront.core.arguments import check_numbers, check_positive
 from crackfront.core.arrays import Array
 from crackfront.core.units import CONTACT_MODULUS
 
+ENSEMBLE = "ensemble"
+"""Key next to the parameters of a spectrum: a description of surfaces that are not Gaussian."""
+
 
 class Spectrum(ABC):
     """2D spectrum of a rough surface: what any shape has in common.

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from scipy.fft import irfft, irfft2
+from scipy.fft import irfft, irfft2, rfft2
 
 from crackfront.core.arrays import Array
 from crackfront.core.spectrum import Spectrum
@@ -97,6 +97,19 @@ def _modes(short_cutoff: float, n_point: int, length: float) -> tuple[int, int]:
             f"{short_cutoff:.6g}; enlarge the tile"
         )
     return highest, min(highest, (n_point - 1) // 2)
+
+
+def resampled(values: Array, shape: tuple[int, int]) -> Array:
+    """Periodic field on another grid of the same tile, by its modes.
+
+    Modes on the Nyquist wavevector of either grid, or beyond, are left out.
+    """
+    modes = rfft2(values, norm="forward")
+    kept_x, kept_y = ((min(pair) - 1) // 2 for pair in zip(values.shape, shape, strict=True))
+    finer = np.zeros((shape[0], shape[1] // 2 + 1), dtype=complex)
+    finer[: kept_x + 1, : kept_y + 1] = modes[: kept_x + 1, : kept_y + 1]
+    finer[-kept_x:, : kept_y + 1] = modes[-kept_x:, : kept_y + 1]
+    return np.asarray(irfft2(finer, s=shape, norm="forward"))
 
 
 def uncorrelated_rows(

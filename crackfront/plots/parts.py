@@ -87,7 +87,10 @@ def spectrum_styles(table: SweepTable) -> tuple[PointStyle, ...]:
 
 def spectrum_families(table: SweepTable) -> list[int]:
     """Number of each entry's spectrum; entries that only differ by their springs share a number."""
-    shapes = [table.shape_of(index).identity for index in range(table.spectrum.size)]
+    shapes = [
+        (table.shape_of(index).identity, table.ensemble(index))
+        for index in range(table.spectrum.size)
+    ]
     distinct = list(dict.fromkeys(shapes))
     return [distinct.index(shape) for shape in shapes]
 

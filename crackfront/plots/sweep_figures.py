@@ -268,7 +268,9 @@ def draw_spectra(axes: Axes, fit: SweepFit) -> None:
         axes.plot(*points, color=spectrum_colour(families[index]), linewidth=0.8)
     axes.set(xscale="log", yscale="log")
     axes.set_xlim(lowest, 2.5 * 2 * np.pi / np.min(table.short_cutoff))
-    axes.set_ylim(np.min(densities) / 10, np.max(densities) * 5)
+    # The mean density of an anisotropic spectrum falls to zero at its cutoff.
+    least = np.min(densities, where=np.array(densities) > 0, initial=np.inf)
+    axes.set_ylim(least / 10, np.max(densities) * 5)
     axes.set_xlabel("wavevector $q$ (reduced)")
     unit = r"w_\mathrm{int}/e_\mathrm{el}" if kind == "roughness" else r"/ w_\mathrm{rms}^2"
     axes.set_ylabel(rf"$C(q)\,{unit}$")

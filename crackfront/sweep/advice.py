@@ -49,8 +49,11 @@ def expectation(simulation: Simulation) -> Expectation:
     """What the realisations of a simulation are expected to find."""
     kind, spectrum, energy = simulation.kind, simulation.spectrum, simulation.elastic_energy
     schedule, disorder = simulation.schedule, 2 * math.sqrt(energy)
-    if not spectrum.is_isotropic:
-        return Expectation(disorder, None, None)
+    if not simulation.is_covered:
+        size = None
+        if spectrum.is_isotropic:
+            size = schedule.spring_at(1.0) / larkin_length(kind, spectrum, disorder)
+        return Expectation(disorder, size, None)
     try:
         factors = factors_on_springs(kind, spectrum, energy, schedule.spring_at)
     except ValueError:

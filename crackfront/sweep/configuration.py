@@ -66,6 +66,12 @@ class Configuration(Section):
                 f"spectrum {anisotropic[0]!r} is anisotropic, and load.line chooses its tiles and "
                 "loads by laws of isotropic spectra; remove anisotropy, or simulate spheres"
             )
+        marginal = [item.name for item in self.spectra if item.marginal is not None]
+        if line is not None and line.uncorrelated and marginal:
+            raise section_error(
+                f"spectrum {marginal[0]!r} has a marginal, and the sites of load.line.uncorrelated "
+                "are independent and Gaussian; remove marginal or uncorrelated"
+            )
         if line is not None and line.uncorrelated and self.numerics.error is not None:
             raise section_error(
                 f"numerics.error is {self.numerics.error:g}, which chooses other pixels for each "

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator
+from dataclasses import replace
 from pathlib import Path
 
 from crackfront.core.units import Scales
@@ -71,7 +72,7 @@ def _named_spectra(configuration: Configuration, lateral: float) -> Iterator[Nam
         for spring in line.springs:
             # A name is part of the names of files.
             ending = f"{spring:g}".replace(".", "p").replace("+", "")
-            yield NamedSpectrum(f"{item.name}-L{ending}", item.spectrum, spring)
+            yield replace(item, name=f"{item.name}-L{ending}", spring=spring)
 
 
 def _elastic_energies(configuration: Configuration, scales: Scales | None) -> tuple[float, ...]:

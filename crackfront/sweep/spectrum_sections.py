@@ -16,12 +16,14 @@ from pydantic import (
 )
 
 from crackfront.core.arguments import nearest_name
+from crackfront.core.marginal import Marginal
 from crackfront.core.spectrum import (
     AnisotropicSpectrum,
     SelfAffineSpectrum,
     Spectrum,
     TabulatedSpectrum,
 )
+from crackfront.simulate.ensembles import GAUSSIAN, MarginalEnsemble
 from crackfront.sweep.section import (
     ConfigurationError,
     InputFile,
@@ -191,6 +193,28 @@ class AnisotropySection(Section):
     angle: Finite = 0.0
 
 
+class MarginalSection(Section):
+    """Distribution of heights, or of w_loc if the field is chemical, as in `Marginal`."""
+
+    # The other keys are shape parameters of the distribution.
+    model_config = ConfigDict(extra="allow")
+
+    distribution: str
+
+    @model_validator(mode="after")
+    def _exists(self) -> MarginalSection:
+        for name, value in (self.model_extra or {}).items():
+            if isinstance(value, bool) or not isinstance(value, (int, float)):
+                raise section_error(f"{name} is {value!r}; it must be a number")
+        check_makes(self.ensemble)
+        return self
+
+    def ensemble(self) -> MarginalEnsemble:
+        """Surfaces of this distribution."""
+        parameters = {name: float(value) for name, value in (self.model_extra or {}).items()}
+        return MarginalEnsemble(Marginal(self.distribution, tuple(sorted(parameters.items()))))
+
+
 class SpectrumSection(Section):
     """Shape of one spectrum: self-affine by its parameters, or another by its own section.
 
@@ -206,6 +230,7 @@ class SpectrumSection(Section):
     density: DensitySection | None = None
     table: TableSection | None = None
     anisotropy: AnisotropySection | None = None
+    marginal: MarginalSection | None = None
 
     @model_validator(mode="after")
     def _complete(self) -> SpectrumSection:
@@ -232,7 +257,8 @@ class SpectrumSection(Section):
         name = f"{self.name}-{ending}" if ending else self.name
         if self.anisotropy is not None:
             spectrum = AnisotropicSpectrum(spectrum, self.anisotropy.ratio, self.anisotropy.angle)
-        return NamedSpectrum(name, spectrum.in_units(lateral))
+        ensemble = GAUSSIAN if self.marginal is None else self.marginal.ensemble()
+        return NamedSpectrum(name, spectrum.in_units(lateral), ensemble)
 
     def _shape(self, position: int) -> tuple[Spectrum, str]:
         """Spectrum in the unit of length of the configuration, and what its name ends with."""

@@ -1,6 +1,9 @@
 """Spectra of configurations that are not self-affine, and surfaces that are not Gaussian."""
 
 import json
+import subprocess
+import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -8,11 +11,14 @@ import pytest
 import xarray as xr
 
 import crackfront as cf
+from crackfront.plots.parts import spectrum_label
+from crackfront.simulate.ensembles import GAUSSIAN
 from crackfront.simulate.simulation import simulation_adhesion
-from crackfront.simulate.tiles import gaussian_values as surface_values
+from crackfront.simulate.tiles import surface_values
 from crackfront.sweep.feasibility import check_feasible
 from crackfront.sweep.parameters import load_sweep
 from crackfront.sweep.section import ConfigurationError, movable_text
+from crackfront.sweep.table_file import read_table
 from tests.commands import done
 from tests.places import ROOT
 from tests.yaml_texts import from_yaml, to_yaml
@@ -109,7 +115,7 @@ def test_a_density_in_metres_needs_a_sphere(tmp_path):
 
 
 WIDE = from_yaml((ROOT / "config/test.yaml").read_text("utf-8"))["numerics"]
-WIDE |= {"tile": {"roll_offs": 10, "cutoffs": 160}}
+WIDE |= {"tile": {"roll_offs": 10, "cutoffs": 60}}
 GROOVES = {"short_cutoff": 0.2, "anisotropy": {"ratio": 4.0, "angle": 30.0}}
 
 
@@ -167,7 +173,7 @@ def test_a_sweep_of_anisotropic_surfaces_has_values_but_no_k_by_the_law(tmp_path
     assert "does not cover s" in (tmp_path / "results/fit.md").read_text()
     row = table.isel(spectrum=0, amplitude=0, realisation=1)
     simulation = cf.simulation(row)
-    assert simulation.surface.attrs["anisotropy"] == 4.0
+    assert '"anisotropy": 4.0' in simulation.surface.attrs["parameters"]
     assert float(simulation.run().w_appr) == float(row.w_appr)
 
 
@@ -192,3 +198,133 @@ def test_straight_fronts_need_isotropic_spectra(tmp_path):
     sentence = message_of(configuration(tmp_path, GROOVES, load=line))
     assert "spectrum 's' is anisotropic" in sentence
     assert "remove anisotropy" in sentence
+
+
+SKEWED = {"short_cutoff": 0.1, "marginal": {"distribution": "pearson3", "skew": -1.0}}
+
+
+def first_surface(path, **changes):
+    """Surface of the first simulation of a configuration, with changes of the simulation."""
+    simulation = replace(next(load_sweep(path).simulations()), **changes)
+    return simulation.surface
+
+
+def moment(values, order):
+    """Central moment of an order, over the power of the rms."""
+    return float(np.mean((values - np.mean(values)) ** order) / np.std(values) ** order)
+
+
+@pytest.mark.parametrize(
+    ("marginal", "skewness", "kurtosis"),
+    [
+        ({"distribution": "pearson3", "skew": -1.0}, -1.0, 4.5),
+        ({"distribution": "pearson3", "skew": 1.0}, 1.0, 4.5),
+        ({"distribution": "uniform"}, 0.0, 1.8),
+    ],
+)
+def test_heights_have_the_distribution_that_is_requested_and_the_modes_of_gaussian_ones(
+    tmp_path, marginal, skewness, kurtosis
+):
+    path = configuration(tmp_path, {"short_cutoff": 0.1, "marginal": marginal}, numerics=WIDE)
+    surface = first_surface(path)
+    heights = surface_values(surface)
+    assert moment(heights, 3) == pytest.approx(skewness, abs=0.1)
+    assert moment(heights, 4) == pytest.approx(kurtosis, rel=0.1)
+    gaussian = surface_values(replace(surface, ensemble=GAUSSIAN))
+    assert moment(gaussian, 3) == pytest.approx(0.0, abs=0.05)
+    modes, gaussian_modes = (np.abs(np.fft.rfft2(item)) for item in (heights, gaussian))
+    np.testing.assert_allclose(modes, gaussian_modes, atol=1e-10 * np.max(modes))
+
+
+def test_a_skewed_surface_is_the_same_on_every_grid(tmp_path):
+    path, surfaces = configuration(tmp_path, SKEWED), []
+    for n_point in (48, 96):
+        resolution = replace(next(load_sweep(path).simulations()).resolution, n_point=n_point)
+        surfaces.append(surface_values(first_surface(path, resolution=resolution)))
+    np.testing.assert_allclose(surfaces[0], surfaces[1][::2, ::2], atol=1e-12)
+
+
+def test_works_of_adhesion_of_chemical_surfaces_may_be_skewed(tmp_path):
+    changes = {"field": "chemical", "amplitudes": {"work_of_adhesion_rms": [0.4]}}
+    fit = {"lowest_elastic_energy": 0.01, "highest_elastic_energy": 0.1, "bootstrap": 500}
+    path = configuration(tmp_path, SKEWED, numerics=WIDE, fit=fit, **changes)
+    [adhesion, *_], _ = realisations(path)
+    assert moment(adhesion.work_of_adhesion, 3) == pytest.approx(-1.0, abs=0.1)
+    assert adhesion.w_rms == pytest.approx(0.4, rel=0.02)
+
+
+def test_a_sweep_compares_distributions_on_the_same_modes(tmp_path):
+    path = configuration(tmp_path, SKEWED)
+    content = from_yaml(path.read_text())
+    content["spectra"] = [{"name": "plain", "short_cutoff": 0.1}, *content["spectra"]]
+    path.write_text(to_yaml(content))
+    table = cf.run_sweep(path, tmp_path / "results", progress=False)
+    np.testing.assert_allclose(table.e_el[0], table.e_el[1], rtol=1e-12)
+    assert np.all(np.abs(table.w_retr[0] / table.w_retr[1] - 1) > 1e-6)
+    assert np.all(np.isfinite(table.w_appr_numerical_error[0]))
+    assert np.all(np.isnan(table.w_appr_numerical_error[1]))
+    for command in ("fit", "figures"):
+        done(command, path, "--output", tmp_path / "results")
+    fit = xr.load_dataset(tmp_path / "results/fit.nc")
+    assert np.all(np.isfinite(fit.cell_law_factor.sel(spectrum="plain", bound="value")))
+    assert np.all(np.isnan(fit.cell_law_factor.sel(spectrum="s")))
+    assert np.all(np.isfinite(fit.cell_size))
+    read = read_table(tmp_path / "results/hysteresis.nc")
+    assert [spectrum_label(read, index) for index in (0, 1)] == [
+        r"flat, $\lambda_\mathrm{s}=0.1$",
+        r"s, $\lambda_\mathrm{s}=0.1$",
+    ]
+    row = table.sel(spectrum="s", amplitude=0.1, realisation=0)
+    simulation = cf.simulation(row)
+    assert "pearson3 skew -1" in simulation.surface.attrs["parameters"]
+    assert float(simulation.run().w_retr) == float(row.w_retr)
+
+
+def test_files_of_surfaces_state_their_skewness(tmp_path):
+    path = configuration(tmp_path, SKEWED)
+    done("surfaces", path, "--output", tmp_path)
+    surfaces = xr.load_dataset(tmp_path / "surfaces/s.nc")
+    for variable in surfaces.data_vars.values():
+        assert variable.attrs["skewness"] == pytest.approx(moment(variable.values, 3))
+        assert variable.attrs["excess_kurtosis"] == pytest.approx(moment(variable.values, 4) - 3)
+
+
+def test_skewed_surfaces_are_the_same_in_every_process(tmp_path):
+    path = configuration(tmp_path, SKEWED)
+    code = (
+        "import sys\n"
+        "from pathlib import Path\n"
+        "from crackfront.simulate.tiles import surface_values\n"
+        "from crackfront.sweep.parameters import load_sweep\n"
+        "surface = next(load_sweep(Path(sys.argv[1])).simulations()).surface\n"
+        "print(surface_values(surface).tobytes().hex())\n"
+    )
+    printed = subprocess.run(
+        [sys.executable, "-c", code, path], check=True, capture_output=True, text=True, timeout=600
+    )
+    assert bytes.fromhex(printed.stdout) == surface_values(first_surface(path)).tobytes()
+
+
+@pytest.mark.parametrize(
+    ("marginal", "words"),
+    [
+        ({"distribution": "pearson"}, ("distribution 'pearson'", "did you mean pearson3?")),
+        ({"distribution": "gamma"}, ("parameter a of gamma is missing", "add it")),
+        ({"distribution": "gamma", "b": 2}, ("gamma lacks a parameter b", "a")),
+        ({"distribution": "gamma", "a": "two"}, ("a is 'two'", "number")),
+        ({"distribution": "gamma", "a": -1}, ("gamma with a -1", "finite variance")),
+        ({"distribution": "cauchy"}, ("cauchy", "finite variance")),
+        ({"skew": -1.0}, ("marginal.distribution is missing", "add it")),
+    ],
+)
+def test_a_distribution_that_cannot_be_made_is_named_with_a_remedy(tmp_path, marginal, words):
+    path = configuration(tmp_path, SKEWED | {"marginal": marginal})
+    sentence = message_of(path)
+    assert [word for word in words if word not in sentence] == []
+
+
+def test_no_error_is_known_of_surfaces_that_are_not_gaussian(tmp_path):
+    numerics = {name: WIDE[name] for name in ("tile", "max_sweeps", "solver")} | {"error": 0.05}
+    sentence = message_of(configuration(tmp_path, SKEWED, numerics=numerics))
+    assert "error is 0.05" in sentence
+    assert "give the resolution" in sentence

@@ -1,0 +1,98 @@
+"""Ensembles of random surfaces: what the surfaces of one spectrum are besides their spectrum.
+
+A new ensemble is a frozen dataclass that derives from :class:`Ensemble`. Its name and fields are
+part of the key of simulations.
+"""
+
+from __future__ import annotations
+
+import math
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+from scipy.fft import next_fast_len
+
+from crackfront.core.arrays import Array
+from crackfront.core.marginal import Marginal, field_of_marginal
+from crackfront.core.spectrum import Spectrum
+from crackfront.core.synthesis import gaussian_field, resampled
+
+_POINTS_PER_CUTOFF = 3
+"""Points per short cutoff of the grid on which phases are changed, whatever the numerics."""
+
+
+class Ensemble(ABC):
+    """Surfaces of one spectrum."""
+
+    __slots__ = ()
+
+    ensemble_name: ClassVar[str]
+    """Name in keys, whatever the class is named."""
+
+    @property
+    @abstractmethod
+    def description(self) -> str:
+        """What the surfaces are besides their spectrum, in words; empty if they are Gaussian."""
+
+    @abstractmethod
+    def values(
+        self, spectrum: Spectrum, shape: tuple[int, int], sides: tuple[float, float], seed: int
+    ) -> Array:
+        """Values of the surface of a seed on a periodic tile.
+
+        The spectrum has an amplitude. `shape` and `sides` of the tile are along x and y; the first
+        axis is x. (Units: as of :func:`crackfront.core.synthesis.gaussian_field`)
+        """
+
+
+@dataclass(frozen=True, slots=True)
+class GaussianEnsemble(Ensemble):
+    """Modes with random phases: the values are normally distributed."""
+
+    ensemble_name = "gaussian"
+
+    @property
+    def description(self) -> str:
+        """Nothing."""
+        return ""
+
+    def values(
+        self, spectrum: Spectrum, shape: tuple[int, int], sides: tuple[float, float], seed: int
+    ) -> Array:
+        """The Gaussian field of the seed."""
+        return gaussian_field(spectrum, shape, sides, np.random.default_rng(seed))
+
+
+@dataclass(frozen=True, slots=True)
+class MarginalEnsemble(Ensemble):
+    """Gaussian fields whose phases are changed until values have a distribution.
+
+    All modes keep their magnitudes, so that e_el of a surface is as of the Gaussian one.
+    """
+
+    ensemble_name = "marginal"
+
+    marginal: Marginal
+
+    @property
+    def description(self) -> str:
+        """The distribution."""
+        values = (f"{name} {value:g}" for name, value in self.marginal.parameters)
+        return f"values of the distribution {' '.join((self.marginal.distribution, *values))}"
+
+    def values(
+        self, spectrum: Spectrum, shape: tuple[int, int], sides: tuple[float, float], seed: int
+    ) -> Array:
+        """The field of the seed, the same on every grid that resolves the spectrum."""
+        n_x, n_y = (
+            int(next_fast_len(math.ceil(_POINTS_PER_CUTOFF * side / spectrum.short_cutoff)))
+            for side in sides
+        )
+        field = gaussian_field(spectrum, (n_x, n_y), sides, np.random.default_rng(seed))
+        return resampled(field_of_marginal(field, self.marginal), shape)
+
+
+GAUSSIAN = GaussianEnsemble()
+"""Surfaces of a sweep where nothing else is said."""
