@@ -191,7 +191,11 @@ def _kind(schema: dict[str, Any]) -> str:
     return " ".join([names.get(schema.get("type", ""), "as the reader takes it"), *bounds])
 
 
-_OPTIONS: dict[str, type[Options]] = {"Surface": ReadingOptions, "Density": PsdOptions}
+_OPTIONS: dict[str, type[Options]] = {
+    "Surface": ReadingOptions,
+    "Tiles": ReadingOptions,
+    "Density": PsdOptions,
+}
 """Options of readers, which are further keys of sections."""
 
 

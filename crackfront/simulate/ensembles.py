@@ -1,15 +1,14 @@
 """Ensembles of random surfaces: what the surfaces of one spectrum are besides their spectrum.
 
-A new ensemble is a frozen dataclass that derives from :class:`Ensemble`. Its name and fields are
-part of the key of simulations.
+A new ensemble is a frozen dataclass that derives from :class:`Ensemble`.
 """
 
 from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from dataclasses import dataclass
-from typing import ClassVar
+from dataclasses import asdict, dataclass
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from scipy.fft import next_fast_len
@@ -18,6 +17,9 @@ from crackfront.core.arrays import Array
 from crackfront.core.marginal import Marginal, field_of_marginal
 from crackfront.core.spectrum import Spectrum
 from crackfront.core.synthesis import gaussian_field, resampled
+
+if TYPE_CHECKING:
+    from crackfront.simulate.tiles import RandomSurface
 
 _POINTS_PER_CUTOFF = 3
 """Points per short cutoff of the grid on which phases are changed, whatever the numerics."""
@@ -33,17 +35,24 @@ class Ensemble(ABC):
 
     @property
     @abstractmethod
+    def key(self) -> dict[str, Any]:
+        """What determines the surfaces besides spectrum and seed, as a JSON object."""
+
+    @property
+    @abstractmethod
     def description(self) -> str:
         """What the surfaces are besides their spectrum, in words; empty if they are Gaussian."""
 
-    @abstractmethod
-    def values(
-        self, spectrum: Spectrum, shape: tuple[int, int], sides: tuple[float, float], seed: int
-    ) -> Array:
-        """Values of the surface of a seed on a periodic tile.
+    @property
+    def tile_side(self) -> float | None:
+        """Side of the tiles, if the ensemble decides it (Units: reduced lateral length)."""
+        return None
 
-        The spectrum has an amplitude. `shape` and `sides` of the tile are along x and y; the first
-        axis is x. (Units: as of :func:`crackfront.core.synthesis.gaussian_field`)
+    @abstractmethod
+    def values(self, spectrum: Spectrum, surface: RandomSurface) -> Array:
+        """Values of a surface on its tile, by a spectrum that has an amplitude.
+
+        (Units: as of :func:`crackfront.core.synthesis.gaussian_field`)
         """
 
 
@@ -54,15 +63,19 @@ class GaussianEnsemble(Ensemble):
     ensemble_name = "gaussian"
 
     @property
+    def key(self) -> dict[str, Any]:
+        """Nothing."""
+        return {}
+
+    @property
     def description(self) -> str:
         """Nothing."""
         return ""
 
-    def values(
-        self, spectrum: Spectrum, shape: tuple[int, int], sides: tuple[float, float], seed: int
-    ) -> Array:
+    def values(self, spectrum: Spectrum, surface: RandomSurface) -> Array:
         """The Gaussian field of the seed."""
-        return gaussian_field(spectrum, shape, sides, np.random.default_rng(seed))
+        rng = np.random.default_rng(surface.seed)
+        return gaussian_field(spectrum, surface.shape, surface.sides, rng)
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,21 +90,25 @@ class MarginalEnsemble(Ensemble):
     marginal: Marginal
 
     @property
+    def key(self) -> dict[str, Any]:
+        """The distribution and its parameters."""
+        return asdict(self.marginal)
+
+    @property
     def description(self) -> str:
         """The distribution."""
         values = (f"{name} {value:g}" for name, value in self.marginal.parameters)
         return f"values of the distribution {' '.join((self.marginal.distribution, *values))}"
 
-    def values(
-        self, spectrum: Spectrum, shape: tuple[int, int], sides: tuple[float, float], seed: int
-    ) -> Array:
+    def values(self, spectrum: Spectrum, surface: RandomSurface) -> Array:
         """The field of the seed, the same on every grid that resolves the spectrum."""
         n_x, n_y = (
             int(next_fast_len(math.ceil(_POINTS_PER_CUTOFF * side / spectrum.short_cutoff)))
-            for side in sides
+            for side in surface.sides
         )
-        field = gaussian_field(spectrum, (n_x, n_y), sides, np.random.default_rng(seed))
-        return resampled(field_of_marginal(field, self.marginal), shape)
+        rng = np.random.default_rng(surface.seed)
+        field = gaussian_field(spectrum, (n_x, n_y), surface.sides, rng)
+        return resampled(field_of_marginal(field, self.marginal), surface.shape)
 
 
 GAUSSIAN = GaussianEnsemble()

@@ -5,8 +5,8 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Collection
-from dataclasses import asdict, dataclass, fields
-from typing import Any, Literal, cast
+from dataclasses import dataclass, fields
+from typing import Any, Literal
 
 import numpy as np
 
@@ -74,8 +74,7 @@ class Simulation:
         if self.solver.name != "newton":
             parameters["solver"] = self.solver.name
         if self.ensemble != GAUSSIAN:
-            kind = {"kind": self.ensemble.ensemble_name}
-            parameters["ensemble"] = kind | asdict(cast(Any, self.ensemble))
+            parameters["ensemble"] = {"kind": self.ensemble.ensemble_name} | self.ensemble.key
         if record := [name for name, is_recorded in self._recorded if is_recorded]:
             parameters["record"] = record
         rounded: dict[str, Any] = _rounded(parameters)
@@ -116,7 +115,13 @@ class Simulation:
     def surface(self) -> RandomSurface:
         """The surface on the tile."""
         return RandomSurface(
-            self.kind, self.spectrum, self.elastic_energy, self.seed, *self.tile, self.ensemble
+            self.kind,
+            self.spectrum,
+            self.elastic_energy,
+            self.seed,
+            *self.tile,
+            self.ensemble,
+            self.realisation,
         )
 
     @property
@@ -171,7 +176,11 @@ def simulation_field(simulation: Simulation, adhesion: AdhesionMap | None = None
 
 
 def resolution(
-    spectrum: Spectrum, numerics: Numerics, settings: Settings, schedule: Schedule
+    spectrum: Spectrum,
+    numerics: Numerics,
+    settings: Settings,
+    schedule: Schedule,
+    ensemble: Ensemble = GAUSSIAN,
 ) -> Resolution:
     """Sizes of the front and of the tile for one spectrum.
 
@@ -185,7 +194,8 @@ def resolution(
     >>> resolution(flat, numerics, settings, FullCycle(max_penetration=1.0, step=0.1))
     Resolution(n_angle=240, spacing=0.025, interpolation='cubic', tile_side=2.0, n_point=80)
     """
-    fineness = Fineness(spectrum.short_cutoff, numerics.tile_side(spectrum), settings)
+    side = ensemble.tile_side or numerics.tile_side(spectrum)
+    fineness = Fineness(spectrum.short_cutoff, side, settings)
     return schedule.resolution(fineness)
 
 
@@ -223,7 +233,7 @@ def simulation_of(
         elastic_energy=elastic_energy,
         realisation=realisation,
         sweep_seed=seed,
-        resolution=resolution(spectrum, numerics, settings, schedule),
+        resolution=resolution(spectrum, numerics, settings, schedule, ensemble),
         schedule=schedule,
         solver=named_solver(numerics.solver, settings.tolerance, numerics.max_sweeps),
         ensemble=ensemble,

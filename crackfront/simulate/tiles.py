@@ -81,6 +81,8 @@ class RandomSurface:
     """Sides of the tile along x and y. (Units: reduced lateral length)"""
     ensemble: Ensemble = GAUSSIAN
     """Surfaces of this spectrum, of which it is one."""
+    realisation: int = 0
+    """Its number among them."""
 
     @property
     def correlation_length(self) -> float:
@@ -100,7 +102,7 @@ def surface_values(surface: RandomSurface) -> Array:
     see the same surface.
     """
     unit = surface.spectrum.with_elastic_energy(1.0)
-    values = surface.ensemble.values(unit, surface.shape, surface.sides, surface.seed)
+    values = surface.ensemble.values(unit, surface)
     if surface.kind == "roughness":
         values *= math.sqrt(surface.elastic_energy)
     else:

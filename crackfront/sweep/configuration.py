@@ -67,6 +67,18 @@ class Configuration(Section):
                 "loads by laws of isotropic spectra; remove anisotropy, or simulate spheres"
             )
         marginal = [item.name for item in self.spectra if item.marginal is not None]
+        tiles = {item.name: len(item.tiles.file) for item in self.spectra if item.tiles is not None}
+        for name, n_file in tiles.items():
+            if line is not None:
+                raise section_error(
+                    f"spectrum {name!r} has tiles of files, and load.line chooses the sides of its "
+                    "tiles; simulate spheres, or describe the files by surface"
+                )
+            if self.realisations > n_file:
+                raise section_error(
+                    f"realisations is {self.realisations}, and spectrum {name!r} has tiles of "
+                    f"{n_file} files; lower realisations, or name more files"
+                )
         if line is not None and line.uncorrelated and marginal:
             raise section_error(
                 f"spectrum {marginal[0]!r} has a marginal, and the sites of load.line.uncorrelated "
@@ -82,7 +94,7 @@ class Configuration(Section):
         if self.amplitudes.measured and not len(measured) == len(self.spectra) == 1:
             raise section_error(
                 "amplitudes.measured are multiples of the heights of one surface; give one "
-                "spectrum with a section surface or density"
+                "spectrum with a section surface, density or tiles"
             )
         return self
 

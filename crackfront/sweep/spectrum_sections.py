@@ -23,7 +23,7 @@ from crackfront.core.spectrum import (
     Spectrum,
     TabulatedSpectrum,
 )
-from crackfront.simulate.ensembles import GAUSSIAN, MarginalEnsemble
+from crackfront.simulate.ensembles import GAUSSIAN, Ensemble, MarginalEnsemble
 from crackfront.sweep.section import (
     ConfigurationError,
     InputFile,
@@ -31,7 +31,12 @@ from crackfront.sweep.section import (
     resolved_path,
     section_error,
 )
-from crackfront.sweep.section_checks import check_makes, check_not_overruled, missing_keys
+from crackfront.sweep.section_checks import (
+    check_distinct,
+    check_makes,
+    check_not_overruled,
+    missing_keys,
+)
 from crackfront.sweep.sweep import NamedSpectrum
 from crackfront.validation import Finite, Positive
 
@@ -41,6 +46,7 @@ if TYPE_CHECKING:
     from crackfront.measured.scan.psd import Psd
     from crackfront.measured.spectrum.measured_surface import MeasuredSurface, RoughSurface
     from crackfront.measured.spectrum.stated import StatedSurface
+    from crackfront.measured.tile_ensemble import TileFiles
 
 
 def _as_tuple(value: Any) -> Any:
@@ -88,14 +94,14 @@ class FileSection(Section):
                 raise section_error(f"unknown key {key}; {hint}")
 
 
-class SurfaceSection(FileSection):
-    """Measurements of a surface, and the options by which they are read."""
+class ScansSection(FileSection):
+    """Files of scans, and the options by which they are read."""
 
     file: Annotated[tuple[InputFile, ...], BeforeValidator(_as_tuple), Field(min_length=1)]
     _options: tuple[ReadingOptions, ...] = PrivateAttr()
 
     @model_validator(mode="after")
-    def _readable(self, info: ValidationInfo) -> SurfaceSection:
+    def _readable(self, info: ValidationInfo) -> ScansSection:
         from crackfront.measured.options import ReadingOptions, reading_options
 
         self._check_names(ReadingOptions)
@@ -106,6 +112,10 @@ class SurfaceSection(FileSection):
         except (TypeError, ValueError) as error:
             raise section_error(str(error)) from error
         return self
+
+
+class SurfaceSection(ScansSection):
+    """Measurements of a surface, and the options by which they are read."""
 
     @functools.cached_property
     def measured(self) -> MeasuredSurface:
@@ -175,6 +185,38 @@ def _located_masks(masks: Any, info: ValidationInfo) -> Any:
     )
 
 
+class TilesSection(ScansSection):
+    """Maps that are the surfaces themselves, one for each realisation, and how they are read."""
+
+    @model_validator(mode="after")
+    def _usable(self) -> TilesSection:
+        check_distinct("file", [str(path) for path in self.file])
+        if "mask" in (self.model_extra or {}):
+            raise section_error("tiles lack the key mask; level the maps before, and remove it")
+        return self
+
+    @functools.cached_property
+    def files(self) -> TileFiles:
+        """The maps; their files are read when they are first used."""
+        from crackfront.measured.tile_ensemble import tile_files
+
+        return tile_files(self.file, self._options)
+
+    @property
+    def measured(self) -> RoughSurface:
+        """Measures of all maps together."""
+        return self.files.surface
+
+    @property
+    def checksum(self) -> str:
+        """Eight digits that change with any of the files."""
+        return self.files.checksum
+
+    def table(self) -> TabulatedSpectrum:
+        """Mean density of the maps (Units: m)."""
+        return self.files.spectrum
+
+
 class TableSection(Section):
     """Spectral densities at wavelengths, as in `TabulatedSpectrum`; amplitudes scale them."""
 
@@ -228,6 +270,7 @@ class SpectrumSection(Section):
     hurst: float | None = None
     surface: SurfaceSection | None = None
     density: DensitySection | None = None
+    tiles: TilesSection | None = None
     table: TableSection | None = None
     anisotropy: AnisotropySection | None = None
     marginal: MarginalSection | None = None
@@ -237,6 +280,8 @@ class SpectrumSection(Section):
         if sections := self._shape_sections():
             overruled = "short_cutoff", "roll_off", "hurst", *[*sections][1:]
             check_not_overruled(self, next(iter(sections)), overruled)
+            if self.tiles is not None:
+                check_not_overruled(self, "tiles", ("anisotropy", "marginal"))
             return self
         needed = ("short_cutoff",) if self._is_flat else ("short_cutoff", "hurst")
         if missing := missing_keys(self, needed):
@@ -249,7 +294,7 @@ class SpectrumSection(Section):
     @property
     def in_metres(self) -> FileSection | None:
         """The section that states a surface in metres, if there is one."""
-        return self.surface or self.density
+        return self.surface or self.density or self.tiles
 
     def named(self, position: int, lateral: float) -> NamedSpectrum:
         """Spectrum at a position of the list, with its lengths divided by a unit."""
@@ -257,8 +302,13 @@ class SpectrumSection(Section):
         name = f"{self.name}-{ending}" if ending else self.name
         if self.anisotropy is not None:
             spectrum = AnisotropicSpectrum(spectrum, self.anisotropy.ratio, self.anisotropy.angle)
-        ensemble = GAUSSIAN if self.marginal is None else self.marginal.ensemble()
-        return NamedSpectrum(name, spectrum.in_units(lateral), ensemble)
+        return NamedSpectrum(name, spectrum.in_units(lateral), self._ensemble(lateral))
+
+    def _ensemble(self, lateral: float) -> Ensemble:
+        """Surfaces of the spectrum, with lengths divided by a unit."""
+        if self.tiles is not None:
+            return self.tiles.files.ensemble.in_units(lateral)
+        return GAUSSIAN if self.marginal is None else self.marginal.ensemble()
 
     def _shape(self, position: int) -> tuple[Spectrum, str]:
         """Spectrum in the unit of length of the configuration, and what its name ends with."""
@@ -290,5 +340,5 @@ class SpectrumSection(Section):
         return {key: section for key, section in sections.items() if section is not None}
 
 
-_SHAPES = "surface", "density", "table"
+_SHAPES = "surface", "density", "tiles", "table"
 """Keys of the sections of shapes other than self-affine ones."""

@@ -11,10 +11,12 @@ import pytest
 import xarray as xr
 
 import crackfront as cf
+from crackfront.core.synthesis import gaussian_field, resampled
 from crackfront.plots.parts import spectrum_label
 from crackfront.simulate.ensembles import GAUSSIAN
 from crackfront.simulate.simulation import simulation_adhesion
 from crackfront.simulate.tiles import surface_values
+from crackfront.surfaces.surface_adhesion import surface_adhesion
 from crackfront.sweep.feasibility import check_feasible
 from crackfront.sweep.parameters import load_sweep
 from crackfront.sweep.section import ConfigurationError, movable_text
@@ -36,7 +38,7 @@ def configuration(folder, spectrum, name="sweep.yaml", **changes):
 
 def in_metres(folder, spectrum, **changes):
     """Path of such a configuration with a sphere and lengths in metres."""
-    load = {"max_penetration": 1e-6, "step": 1e-7}
+    load = {"max_penetration": 6e-6, "step": 3e-7}
     return configuration(folder, spectrum, **{"scales": SPHERE, "load": load} | changes)
 
 
@@ -328,3 +330,97 @@ def test_no_error_is_known_of_surfaces_that_are_not_gaussian(tmp_path):
     sentence = message_of(configuration(tmp_path, SKEWED, numerics=numerics))
     assert "error is 0.05" in sentence
     assert "give the resolution" in sentence
+
+
+def map_file(path, seed, side=80e-6, n_point=64, factor=1.0):
+    """netCDF file of a random map with waves of eight pixels or more, in metres."""
+    spectrum = cf.SelfAffineSpectrum(8 * side / n_point, 16 * side / n_point, 0.8)
+    heights = gaussian_field(
+        spectrum.with_elastic_energy(1.0), n_point, side, np.random.default_rng(seed)
+    )
+    heights *= factor * 1e-8 / np.std(heights)
+    places = np.arange(n_point) * side / n_point
+    coordinates = {axis: (axis, places, {"units": "m"}) for axis in ("x", "y")}
+    values = xr.DataArray(heights, coordinates, ("x", "y"), attrs={"units": "m"})
+    values.to_dataset(name="height").to_netcdf(path)
+    return path
+
+
+TILES = {"tiles": {"file": ["a.nc", "b.nc"], "detrend": "center"}}
+
+
+@pytest.fixture
+def maps(tmp_path):
+    """Folder with two maps."""
+    for seed, name in enumerate(("a.nc", "b.nc")):
+        map_file(tmp_path / name, seed)
+    return tmp_path
+
+
+def test_each_realisation_is_the_map_of_its_file(maps):
+    sweep = load_sweep(in_metres(maps, TILES))
+    sphere, surfaces = sweep.scales, [s.surface for s in sweep.simulations()]
+    assert [surface.realisation for surface in surfaces] == [0, 1, 0, 1]
+    for surface, name in zip(surfaces, ("a.nc", "b.nc"), strict=False):
+        tile = cf.read_scan(maps / name, sphere, detrend="center")
+        expected = resampled(tile.values, surface.shape)
+        values = surface_values(surface)
+        np.testing.assert_allclose(values / np.std(values), expected / np.std(expected), atol=1e-9)
+        assert surface.sides[0] == pytest.approx(tile.sizes["x"] * float(tile.x[1] - tile.x[0]))
+
+
+def test_one_factor_scales_all_maps_to_the_mean_energy_that_is_requested(maps):
+    map_file(maps / "b.nc", 1, factor=2.0)
+    path = in_metres(maps, TILES, numerics=WIDE)
+    adhesions, energy = realisations(path)
+    energies = [adhesion.e_el for adhesion in adhesions]
+    assert np.mean(energies) == pytest.approx(energy, rel=1e-6)
+    assert energies[1] / energies[0] == pytest.approx(4.0, rel=0.2)
+
+
+def test_maps_may_keep_their_own_heights(maps):
+    fit = {"lowest_elastic_energy": 1e-6, "highest_elastic_energy": 0.9, "bootstrap": 500}
+    path = in_metres(maps, TILES, amplitudes={"measured": [1.0]}, fit=fit, numerics=WIDE)
+    sphere = load_sweep(path).scales
+    adhesions, _ = realisations(path)
+    for adhesion, name in zip(adhesions, ("a.nc", "b.nc"), strict=True):
+        expected = surface_adhesion(cf.read_scan(maps / name, sphere, detrend="center"))
+        assert adhesion.e_el == pytest.approx(expected.e_el, rel=1e-3)
+
+
+def test_a_sweep_of_maps_runs_and_changes_with_their_contents(maps):
+    path, results = in_metres(maps, TILES), maps / "results"
+    table = cf.run_sweep(path, results, progress=False)
+    assert np.all(np.isfinite(table.w_retr))
+    for command in ("fit", "figures"):
+        done(command, path, "--output", results)
+    row = table.isel(spectrum=0, amplitude=1, realisation=1)
+    assert float(cf.simulation(row).run().w_retr) == float(row.w_retr)
+    assert json.loads(done("plan", path, "--output", results, "--json").stdout)["missing"] == 0
+    map_file(maps / "b.nc", 7)
+    assert json.loads(done("plan", path, "--output", results, "--json").stdout)["missing"] == 4
+
+
+@pytest.mark.parametrize(
+    ("spectrum", "changes", "words"),
+    [
+        ({"tiles": {"file": ["a.nc", "c.nc"]}}, {}, ("tiles", "c.nc", "No such file")),
+        ({"tiles": {"file": ["a.nc", "wide.nc"]}}, {}, ("wide.nc", "a.nc", "equal sides")),
+        ({"tiles": {"file": ["a.nc", "a.nc"]}}, {}, ("a.nc' stands twice", "remove")),
+        ({"tiles": {"file": ["a.nc"]}}, {}, ("realisations is 2", "1 file", "lower realisations")),
+        (TILES, {"scales": None}, ("spectrum 's'", "give the section scales")),
+        (TILES | {"marginal": {"distribution": "uniform"}}, {}, ("tiles", "marginal", "remove")),
+        (TILES | {"short_cutoff": 1e-6}, {}, ("tiles", "short_cutoff", "remove")),
+        ({"tiles": {"file": ["a.nc"], "mask": "m.txt"}}, {}, ("mask", "remove it")),
+        ({"tiles": {"file": ["a.nc"], "chanel": 0}}, {}, ("chanel", "did you mean channel?")),
+    ],
+)
+def test_maps_that_cannot_be_used_are_named_with_a_remedy(maps, spectrum, changes, words):
+    map_file(maps / "wide.nc", 5, side=90e-6)
+    path = in_metres(maps, spectrum)
+    if changes:
+        content = from_yaml(path.read_text())
+        del content["scales"]
+        path.write_text(to_yaml(content))
+    sentence = message_of(path)
+    assert [word for word in words if word not in sentence] == []
