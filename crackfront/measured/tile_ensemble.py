@@ -163,7 +163,8 @@ class TileFiles:
 
 def tile_files(paths: Sequence[Path], options: Sequence[ReadingOptions]) -> TileFiles:
     """Maps of some files; ValueError if one cannot be used or their sides differ."""
-    modes, checksums, half_derivatives, sides, shortest = [], [], [], [], []
+    modes, checksums, half_derivatives, shortest = [], [], [], []
+    sides: list[float] = []
     for path, record in zip(paths, options, strict=True):
         tile = read_tile(path, record)
         if sides and abs(tile.side / sides[0] - 1) > _UNEQUAL:

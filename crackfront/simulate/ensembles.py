@@ -33,6 +33,9 @@ class Ensemble(ABC):
     ensemble_name: ClassVar[str]
     """Name in keys, whatever the class is named."""
 
+    point_seconds: ClassVar[float] = 0.0
+    """Time per point of the tile that a surface takes beyond a Gaussian one. (Units: s)"""
+
     @property
     @abstractmethod
     def key(self) -> dict[str, Any]:
@@ -86,6 +89,7 @@ class MarginalEnsemble(Ensemble):
     """
 
     ensemble_name = "marginal"
+    point_seconds = 2e-6
 
     marginal: Marginal
 
