@@ -157,7 +157,8 @@ reproduce: env  ## For a release: numbers and figures of the pages, but for timi
 	$(MAKE) --no-print-directory accuracy
 	cp results/accuracy/laws.png results/accuracy/work-precision.png docs/figures/
 	cp results/validation/differences.nc $(KEPT)/validation/differences-256.nc
-	cp results/hurst/hysteresis.nc $(KEPT)/hurst.nc
+	for sweep in hurst $(ANY_SURFACE); do \
+	  cp results/$$sweep/hysteresis.nc $(KEPT)/$$sweep.nc || exit 1; done
 	for figure in hysteresis factor loop; do \
 	  cp results/hurst/figures/$$figure.png docs/figures/hurst-$$figure.png || exit 1; done
 	cp $(addprefix results/figures/paper/,$(addsuffix .nc,$(PAPER))) $(KEPT)/
@@ -180,7 +181,8 @@ reproduce: env  ## For a release: numbers and figures of the pages, but for timi
 	  && cp sphx_glr_a_first_loop_002.png ../../figures/tutorial-fronts.png \
 	  && cp sphx_glr_c_instabilities_001.png ../../figures/tutorial-jumps.png \
 	  && cp sphx_glr_d_si_units_001.png ../../figures/tutorial-si.png \
-	  && cp sphx_glr_k_hurst_001.png ../../figures/hurst.png
+	  && cp sphx_glr_k_hurst_001.png ../../figures/hurst.png \
+	  && cp sphx_glr_l_any_surface_001.png ../../figures/any-surface.png
 
 # What has no time among its results but that of the processor: simulations on all cores and, beside
 # them, what runs on one.
@@ -189,7 +191,8 @@ reproduce-fronts: env
 	$(MAKE) --no-print-directory figures SCALE=paper
 	$(MAKE) --no-print-directory validate VALIDATION=config/validation.yaml
 	$(SNAKE) --config sweep=config/spheres.yaml
-	$(SNAKE) --config sweep=config/hurst.yaml
+	for sweep in hurst $(ANY_SURFACE); do \
+	  $(SNAKE) --config sweep=config/$$sweep.yaml || exit 1; done
 
 reproduce-scans: env
 	$(IN_ENV) .venv/bin/python -m studies accuracy energies --scans 12 --keep
@@ -207,6 +210,7 @@ law: env  ## The law of k, from its straight fronts, into results/law (an hour o
 FRONTS_OF_LAW = config/line.yaml results/law/configurations/*.yaml
 KEPT = docs/reference
 PAPER = main-3cd main-5bc si-5 beyond-avalanches beyond-roughness
+ANY_SURFACE = bandpass anisotropic skewed
 LARGE = 512 1024 series strong fine edges
 
 reproduce-boundary: env  ## For a release: the numbers and figures of large boundary elements (a day of one core)

@@ -1,4 +1,5 @@
 from .analysis.law import pinning_factor as pinning_factor
+from .core.spectrum import AnisotropicSpectrum as AnisotropicSpectrum
 from .core.spectrum import SelfAffineSpectrum as SelfAffineSpectrum
 from .core.spectrum import TabulatedSpectrum as TabulatedSpectrum
 from .measured.loops.measured_loop import measured_loop as measured_loop

@@ -18,7 +18,7 @@ from crackfront.core.geometry.line import LineState
 from crackfront.core.geometry.sphere import ContactState
 from crackfront.core.variables import variables
 from crackfront.measured.loops.loop_result import MeasuredLoop
-from crackfront.measured.options import Options, ReadingOptions
+from crackfront.measured.options import Options, PsdOptions, ReadingOptions
 from crackfront.measured.prediction.prediction import Prediction
 from crackfront.sweep.configuration import Configuration
 from crackfront.sweep.table_file import SweepRow
@@ -191,15 +191,24 @@ def _kind(schema: dict[str, Any]) -> str:
     return " ".join([names.get(schema.get("type", ""), "as the reader takes it"), *bounds])
 
 
+_OPTIONS: dict[str, type[Options]] = {
+    "Surface": ReadingOptions,
+    "Tiles": ReadingOptions,
+    "Density": PsdOptions,
+}
+"""Options of readers, which are further keys of sections."""
+
+
 def _meanings() -> dict[tuple[str, str], str]:
-    """What each key of a section means, from config/README.md and the options of scans."""
+    """What each key of a section means, from config/README.md and the options of readers."""
     text = (Path(__file__).parents[1] / "config/README.md").read_text(encoding="utf-8")
     # A link leads from there to a page, and here from one.
     rows = re.findall(r"^\| (\w+) \| `(\w+)` \| (.*) \|$", text, re.MULTILINE)
     found = {(section, key): meaning.replace("(../docs/", "(../") for section, key, meaning in rows}
-    options = ReadingOptions.model_fields.items()
     return found | {
-        ("Surface", name): " ".join(str(field.description).split()) for name, field in options
+        (section, name): " ".join(str(field.description).split())
+        for section, options in _OPTIONS.items()
+        for name, field in options.model_fields.items()
     }
 
 
@@ -208,9 +217,10 @@ def _write_references(app: Sphinx) -> None:
     schema = Configuration.model_json_schema()
     lines = ["# Keys of a configuration", "", "For those who write one."]
     sections, meanings = {"file": schema} | schema["$defs"], _meanings()
-    sections["SurfaceSection"]["properties"] |= {
-        name: {"default": field.default} for name, field in ReadingOptions.model_fields.items()
-    }
+    for section, options in _OPTIONS.items():
+        sections[f"{section}Section"]["properties"] |= {
+            name: {"default": field.default} for name, field in options.model_fields.items()
+        }
     for name, one in sections.items():
         section = name.removesuffix("Section")
         lines += ["", f"## {section.capitalize()}", "", one["description"], ""]

@@ -6,21 +6,23 @@ import shlex
 import shutil
 from pathlib import Path
 
+import numpy as np
 import pytest
+import xarray as xr
 from matplotlib import pyplot
+from scipy import stats
 
 import crackfront as cf
 from crackfront import __all__
 from crackfront.cli import main
-from crackfront.measured.options import ReadingOptions
 from crackfront.simulate.checksums import digest_path, file_digest, sums_text
-from crackfront.sweep.configuration import Configuration
+from crackfront.sweep.configuration import Configuration, load_configuration
 from studies.__main__ import STUDIES
 from studies.numbers import stored
 from studies.quotes import read_quotes
 from tests.commands import slow
-from tests.places import ROOT
-from tests.yaml_texts import from_yaml
+from tests.places import ROOT, TEST
+from tests.yaml_texts import from_yaml, to_yaml
 
 DOCS = ROOT / "docs"
 
@@ -106,6 +108,30 @@ def test_the_page_of_sweeps_shows_the_configuration_of_its_study():
     assert {key: shipped[key] for key in shown} == shown
 
 
+def test_the_page_of_sweeps_states_k_of_the_kept_sweeps_of_surfaces_of_any_kind():
+    expected = []
+    for name in ("bandpass", "anisotropic", "skewed"):
+        with xr.open_dataset(DOCS / f"reference/{name}.nc") as table:
+            k = (table.hysteresis / (2 * table.e_el)).mean("amplitude")
+        n = k.sizes["realisation"]
+        reach = k.std("realisation", ddof=1) * stats.t.ppf(0.975, n - 1) / np.sqrt(n)
+        pairs = zip(k.mean("realisation").values, reach.values, strict=True)
+        expected += [f"{value:.2f} ± {bar:.2f}" for value, bar in pairs]
+    page = (DOCS / "sweeps.md").read_text()
+    rows = re.findall(r"\| (\d\.\d\d ± \d\.\d\d) \|$", page, re.MULTILINE)
+    assert rows == expected
+
+
+def test_the_page_of_sweeps_shows_spectra_that_a_configuration_may_have(tmp_path):
+    section = (DOCS / "sweeps.md").read_text().partition("## Surfaces of any kind")[2]
+    shown = from_yaml(re.search(r"```yaml\n(.*?)```", section, re.DOTALL)[1])
+    scales = {"radius": 1e-3, "work_of_adhesion": 0.05, "contact_modulus": 1e6}
+    content = from_yaml(TEST.read_text()) | shown | {"scales": scales}
+    (tmp_path / "sweep.yaml").write_text(to_yaml(content))
+    configuration = load_configuration(tmp_path / "sweep.yaml")
+    assert len(configuration.spectra) == 5
+
+
 @pytest.mark.usefixtures("_elsewhere")
 @pytest.mark.parametrize(
     ("page", "command"), [slow("surfaces.md", "predict"), ("loops.md", "loop")]
@@ -172,8 +198,7 @@ def test_every_key_of_a_configuration_has_a_meaning_and_no_other_key():
     }
     page = (ROOT / "config/README.md").read_text()
     told = set(re.findall(r"^\| (\w+) \| `(\w+)` \| \w.* \|$", page, re.MULTILINE))
-    options = {("Surface", name) for name in ReadingOptions.model_fields}
-    assert keys - options == told
+    assert keys == told
 
 
 def test_the_page_of_the_reference_names_the_whole_library():

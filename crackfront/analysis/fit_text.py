@@ -26,6 +26,9 @@ ONSET = 0.5
 _REACH_OF_TWO = 13
 """Standard errors on each side of a 95% interval by Student's t with one degree of freedom."""
 
+MEASURED_ON = "it was measured on Gaussian surfaces of isotropic spectra"
+"""What the law of k covers."""
+
 _FACTORS = "factor", "factor_by_sums"
 """Estimates of k in the table of the law."""
 
@@ -282,6 +285,7 @@ def fit_notes(fit: SweepFit) -> tuple[str, ...]:
     """Sentences on trends of k, differences between spectra, gaps and failures."""
     return (
         trend_sentence(fit),
+        *_uncovered_sentences(fit),
         *_spread_sentences(fit),
         *_onset_sentences(fit),
         *_gap_sentences(fit),
@@ -307,6 +311,8 @@ def trend_sentence(fit: SweepFit) -> str:
 
 def _law_agreement(fit: SweepFit) -> str:
     """Agreement of this sweep with the law, as the end of the finding."""
+    if not np.any(np.isfinite(fit.cells.law_factor.value)):
+        return "; this sweep cannot test it, because it does not cover the spectra"
     if not fit.n_large:
         return "; this sweep cannot test it, because g is below 1 everywhere"
     counts = int(fit.n_large), fit.cells.size.size
@@ -327,6 +333,17 @@ def _trend_text(trend: Estimate, unit: str) -> str:
         return f"it changes by {value:+.3g} {unit} (no interval)"
     resolved = "" if low > 0 or high < 0 else ", which does not differ from zero"
     return f"it changes by {value:+.3g} ({low:+.3g} to {high:+.3g}) {unit}{resolved}"
+
+
+def _uncovered_sentences(fit: SweepFit) -> Iterator[str]:
+    """Spectra that the law of k does not cover."""
+    table = fit.table
+    names = [str(name) for index, name in enumerate(table.spectrum) if not table.is_covered(index)]
+    if names:
+        yield (
+            f"The law of k does not cover {', '.join(names)}: {MEASURED_ON}. They have neither a k "
+            "by the law nor a numerical error."
+        )
 
 
 def _spread_sentences(fit: SweepFit) -> Iterator[str]:

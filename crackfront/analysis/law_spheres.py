@@ -146,8 +146,14 @@ def factors_on_springs(
     """Factors k of a straight front on springs whose length depends on the work of adhesion.
 
     `spring` returns this length L_kappa (Units: as the spectrum) at a work of adhesion
-    (Units: w_int). It raises a ValueError if the contact is unstable there.
+    (Units: w_int). It raises a ValueError if the contact is unstable there. ValueError also if the
+    spectrum is anisotropic.
     """
+    if not spectrum.is_isotropic:
+        raise ValueError(
+            "the spectrum is anisotropic, and the law of k was measured for isotropic ones; "
+            "simulate the surface instead"
+        )
     breadth = spectral_breadth(kind, spectrum)
     sizes = _sizes_on_springs(kind, spectrum, elastic_energy, spring, breadth)
     w_rms = adhesion_rms(elastic_energy)

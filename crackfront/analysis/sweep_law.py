@@ -19,6 +19,7 @@ from crackfront.analysis.law_spheres import sphere_estimates
 from crackfront.analysis.table import SweepTable
 from crackfront.core.adhesion import FieldKind, adhesion_rms, larkin_length
 from crackfront.core.arrays import Array
+from crackfront.core.spectrum import Spectrum
 
 LARGE = 1.0
 """Size g above which measured k are compared with the law."""
@@ -53,9 +54,20 @@ class SweepLaw:
     def factors(self, index: int, energies: Array, supports: Array) -> tuple[Estimate, Array]:
         """Factors k of a spectrum and sizes g at arrays of e_el and of springs or contact radii.
 
-        They are NaN if a number is out of range, or a sphere is too close to pull-off.
+        They are NaN if a number is out of range, a sphere is too close to pull-off, or the law does
+        not cover the spectrum.
         """
-        spectrum = self.table.shape_of(index)
+        spectrum, unknown = self.table.shape_of(index), np.full(energies.shape, np.nan)
+        if not spectrum.is_isotropic:
+            return Estimate(unknown, unknown, unknown, unknown), unknown
+        factors, sizes = self._factors(spectrum, energies, supports)
+        is_covered = self.table.is_covered(index)
+        return factors if is_covered else factors.each(lambda _: unknown), sizes
+
+    def _factors(
+        self, spectrum: Spectrum, energies: Array, supports: Array
+    ) -> tuple[Estimate, Array]:
+        """Factors and sizes of :meth:`factors`, of Gaussian surfaces of an isotropic spectrum."""
         if not self.table.on_springs:
             return sphere_estimates(self.kind, spectrum, energies, supports)
         valid = (energies > 0) & (energies < 1) & (supports > 0) & (supports < math.inf)
@@ -92,14 +104,26 @@ class SweepLaw:
         factor, sizes = self.factors(index, curve, np.exp(np.interp(between, places, lengths)))
         return curve, np.where(sizes >= shipped_law().size[0], factor.value, np.nan)
 
+    @property
+    def breadths(self) -> Array:
+        """Breadth of each spectrum, (n_spectrum,); NaN where the law does not cover it."""
+        table = self.table
+        return np.array(
+            [
+                spectral_breadth(self.kind, table.shape_of(index))
+                if table.is_covered(index)
+                else math.nan
+                for index in range(table.spectrum.size)
+            ]
+        )
+
     def infinite(self, factor: Estimate, size: Array) -> Estimate:
         """Measured k of every cell extrapolated to the infinite contact.
 
         The measured k is multiplied by the law's ratio of k in the infinite contact to k at the
         size. The half-widths of both intervals are added in quadrature.
         """
-        shapes = map(self.table.shape_of, range(self.table.spectrum.size))
-        breadth = np.array([spectral_breadth(self.kind, shape) for shape in shapes])[:, None]
+        breadth = self.breadths[:, None]
         gain = infinite_ratio(self._disorder(adhesion_rms(self.energy)), size, breadth)
         value, relative = factor.value * gain.value, factor.value * gain.standard_error
         error = np.hypot(factor.standard_error * gain.value, relative)

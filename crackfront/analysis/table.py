@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from crackfront.analysis.run_measures import RunMeasures
 from crackfront.analysis.steady_adhesion import SteadyMeasures
 from crackfront.core.arrays import Array
-from crackfront.core.spectrum import SelfAffineSpectrum, Spectrum
+from crackfront.core.spectrum import ENSEMBLE, SelfAffineSpectrum, Spectrum
 from crackfront.core.variables import ADHESION, FORCE, LATERAL, VERTICAL, variable, variables
 
 SPECTRUM, AMPLITUDE, REALISATION = "spectrum", "amplitude", "realisation"
@@ -24,7 +24,7 @@ PLACE = SPECTRUM, AMPLITUDE, REALISATION
 _CELL = SPECTRUM, AMPLITUDE
 """Dimensions of what all realisations share."""
 
-_SHAPE_TEXT = "JSON of a spectrum's parameters in reduced units, where not all are self-affine"
+_SHAPE_TEXT = "JSON of parameters in reduced units, where not all are self-affine and Gaussian"
 
 
 @dataclass(frozen=True)
@@ -127,12 +127,31 @@ class SweepTable:
         columns = self.short_cutoff, self.roll_off, self.hurst
         return SelfAffineSpectrum(*(float(values[index]) for values in columns))
 
+    def is_covered(self, index: int) -> bool:
+        """Whether the law of k was measured on such surfaces: Gaussian and isotropic ones."""
+        return self.shape_of(index).is_isotropic and not self.ensemble(index)
+
+    def ensemble(self, index: int) -> str:
+        """What the surfaces of an entry are besides their spectrum; empty if they are Gaussian."""
+        if self.parameters is None:
+            return ""
+        return str(json.loads(str(self.parameters[index])).get(ENSEMBLE, ""))
+
     @property
     def shape(self) -> Array:
         """Number of each spectrum's shape, (n_spectrum,); spectra of one shape differ in size."""
-        octaves = np.round(np.log2(self.roll_off / self.short_cutoff), 9)
-        hurst = np.where(octaves > 0, self.hurst, 0.0)
-        return np.asarray(np.unique(np.stack([octaves, hurst]), axis=1, return_inverse=True)[1])
+        keys = [self._shape_key(index) for index in range(self.spectrum.size)]
+        distinct = [*dict.fromkeys(keys)]
+        return np.array([distinct.index(key) for key in keys])
+
+    def _shape_key(self, index: int) -> tuple[object, ...]:
+        """What two entries share if their surfaces differ in size alone."""
+        spectrum = self.shape_of(index)
+        lengths, numbers = spectrum.identity
+        octaves = np.round(np.log2(np.array(lengths) / spectrum.short_cutoff), 9)
+        if isinstance(spectrum, SelfAffineSpectrum) and not np.any(octaves):
+            numbers = ()  # a flat spectrum lacks a Hurst exponent
+        return *octaves.tolist(), *numbers, self.ensemble(index)
 
     @property
     def family(self) -> Array:

@@ -143,6 +143,7 @@ def _plan_lines(
     expected: Mapping[str, Sequence[Expectation]],
 ) -> Iterator[str]:
     """Tables of the spectra of a sweep and of what is left to run, and its sizes."""
+    from crackfront.analysis.fit_text import MEASURED_ON
     from crackfront.sweep.inventory import Inventory, mixture_sentence
 
     everything = sum(progress.values(), Inventory())
@@ -176,6 +177,10 @@ def _plan_lines(
         spectra,
     )
     yield "s is w_rms/w_int, g the size, and k what the law expects at the largest load"
+    uncovered = [item for item in sweep.spectra if not sweep.one_per_amplitude(item)[0].is_covered]
+    if uncovered:
+        listed = ", ".join(item.name for item in uncovered)
+        yield f"the law of k does not cover {listed}: {MEASURED_ON}"
     yield from filter(None, (*everything.sentences(), mixture_sentence(everything.arithmetic)))
     yield ""
     to_run.append(_to_run("all", len(shards), everything.missing))

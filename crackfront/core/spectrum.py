@@ -1,4 +1,7 @@
-"""Power spectra of rough surfaces and the rms of any derivative that follows from them."""
+"""Power spectra of rough surfaces and the rms of any derivative that follows from them.
+
+Shapes are isotropic; an :class:`AnisotropicSpectrum` stretches one of them.
+"""
 
 from __future__ import annotations
 
@@ -18,9 +21,12 @@ from crackfront.core.arguments import check_numbers, check_positive
 from crackfront.core.arrays import Array
 from crackfront.core.units import CONTACT_MODULUS
 
+ENSEMBLE = "ensemble"
+"""Key next to the parameters of a spectrum: a description of surfaces that are not Gaussian."""
+
 
 class Spectrum(ABC):
-    """Isotropic 2D spectrum of a rough surface: what any shape has in common.
+    """2D spectrum of a rough surface: what any shape has in common.
 
     A shape is a frozen dataclass with a `short_cutoff`, beyond which it is zero, and the methods
     that are abstract here. It says which of its fields are lengths, pure numbers and amplitudes;
@@ -31,6 +37,9 @@ class Spectrum(ABC):
 
     short_cutoff: float
 
+    is_isotropic: ClassVar[bool] = True
+    """Whether waves in all directions have the same density; the law of k needs it."""
+
     lengths: ClassVar[tuple[str, ...]] = ("short_cutoff",)
     numbers: ClassVar[tuple[str, ...]] = ()
     amplitudes: ClassVar[tuple[str, ...]] = ("plateau",)
@@ -38,7 +47,8 @@ class Spectrum(ABC):
     _shapes: ClassVar[dict[str, type[Spectrum]]] = {}
 
     def __init_subclass__(cls) -> None:
-        Spectrum._shapes[cls.__name__] = cls
+        if cls.lengths:
+            Spectrum._shapes[cls.__name__] = cls
 
     @staticmethod
     def stated(parameters: Mapping[str, Any]) -> Spectrum | None:
@@ -46,7 +56,11 @@ class Spectrum(ABC):
         for shape in sorted(Spectrum._shapes.values(), key=lambda shape: -len(shape._names())):
             if all(name in parameters for name in shape._names()):
                 values = (np.asarray(parameters[name], float).tolist() for name in shape._names())
-                return shape(*(tuple(x) if isinstance(x, list) else x for x in values))
+                spectrum = shape(*(tuple(x) if isinstance(x, list) else x for x in values))
+                stretch = [parameters.get(name) for name in AnisotropicSpectrum.numbers]
+                if None in stretch:
+                    return spectrum
+                return AnisotropicSpectrum(spectrum, *map(float, cast(list[float], stretch)))
         return None
 
     @staticmethod
@@ -79,10 +93,14 @@ class Spectrum(ABC):
 
     @abstractmethod
     def density(self, wavevector: ArrayLike) -> Array:
-        """Spectral density C(q) at q >= 0, zero beyond q_s.
+        """Spectral density C(q) at q >= 0, zero beyond q_s; of anisotropic ones the mean.
 
         (Units: length**4 for heights, 1 / length for the wavevector)
         """
+
+    def density_of_modes(self, step: float, along_x: ArrayLike, along_y: ArrayLike) -> Array:
+        """Spectral density of wavevectors with components of so many steps along x and y."""
+        return self.density(step * np.hypot(along_x, along_y))
 
     @abstractmethod
     def mean_square(self, order: float) -> float:
@@ -374,6 +392,130 @@ class TabulatedSpectrum(Spectrum):
         # Where all of it is flat, the first density applies at any longer wavelength as well.
         values = (self.densities[0], *self.densities[1 : len(longer)], end)
         return TabulatedSpectrum((*longer, wavelength), values)
+
+
+@dataclass(frozen=True, slots=True)
+class AnisotropicSpectrum(Spectrum):
+    r"""A spectrum whose waves are longer along one direction than across it, as of grooves.
+
+    .. math:: C(\mathbf q) = C_0\left(\sqrt{r\, q_\parallel^2 + q_\perp^2 / r}\right)
+
+    with the isotropic spectrum C_0, the ratio r, and the components of q along the grooves and
+    across them. Lengths along the grooves are r times those across; their geometric mean and the
+    mean square height are as of C_0.
+
+    Parameters
+    ----------
+    shape : Spectrum
+        The isotropic spectrum C_0.
+    anisotropy : float
+        Ratio r of the lengths along and across the grooves, at least 1.
+    anisotropy_angle : float, optional
+        Angle from x to the grooves. (Units: degrees)
+
+    Raises
+    ------
+    TypeError
+        If the ratio or the angle is not a number.
+    ValueError
+        If the ratio is below 1, or the shape is stretched already.
+
+    Examples
+    --------
+    >>> flat = SelfAffineSpectrum(short_cutoff=0.02, roll_off=0.02, hurst=1.0)
+    >>> grooves = AnisotropicSpectrum(flat, anisotropy=4.0)
+    >>> grooves.short_cutoff, grooves.longest_feature
+    (0.01, 0.04)
+    >>> round(grooves.mean_square(0.0) / flat.mean_square(0.0), 12)
+    1.0
+    """
+
+    is_isotropic: ClassVar[bool] = False
+    lengths: ClassVar[tuple[str, ...]] = ()
+    numbers: ClassVar[tuple[str, ...]] = ("anisotropy", "anisotropy_angle")
+
+    shape: Spectrum
+    anisotropy: float
+    anisotropy_angle: float = 0.0
+
+    def __post_init__(self) -> None:
+        check_numbers(anisotropy=self.anisotropy, anisotropy_angle=self.anisotropy_angle)
+        if not self.shape.is_isotropic:
+            raise ValueError("the shape is anisotropic already; stretch an isotropic one")
+        if not (1 <= self.anisotropy < math.inf and math.isfinite(self.anisotropy_angle)):
+            raise ValueError(
+                f"anisotropy is {self.anisotropy} at {self.anisotropy_angle} degrees; the ratio "
+                "must be 1 or more and the angle finite: turn the grooves by 90 degrees for less"
+            )
+
+    @property
+    def short_cutoff(self) -> float:  # type: ignore[override]
+        """Shortest wavelength, across the grooves (Units: length)."""
+        return self.shape.short_cutoff / math.sqrt(self.anisotropy)
+
+    @property
+    def longest_feature(self) -> float:
+        """Longest wavelength that matters, along the grooves (Units: length)."""
+        return self.shape.longest_feature * math.sqrt(self.anisotropy)
+
+    @property
+    def parameters(self) -> dict[str, float | Array]:
+        """Parameters of the shape, the ratio and the angle."""
+        return self.shape.parameters | {name: getattr(self, name) for name in self.numbers}
+
+    @property
+    def identity(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        """Lengths of the shape; its pure numbers, the ratio and the angle."""
+        lengths, numbers = self.shape.identity
+        stretch = self.anisotropy, self.anisotropy_angle
+        return lengths, (*numbers, *stretch, float(zlib.crc32(type(self).__name__.encode())))
+
+    def density(self, wavevector: ArrayLike) -> Array:
+        """Mean of C over the directions of a wavevector."""
+        q = np.asarray(wavevector, dtype=float)
+        stretched = (
+            self.shape.density(q * root) for root in np.sqrt(self._squared_stretch(_N_ANGLE))
+        )
+        return np.asarray(sum(stretched) / _N_ANGLE)
+
+    def density_of_modes(self, step: float, along_x: ArrayLike, along_y: ArrayLike) -> Array:
+        """Spectral density of wavevectors with components of so many steps along x and y."""
+        x, y = np.asarray(along_x, dtype=float), np.asarray(along_y, dtype=float)
+        angle, root = math.radians(self.anisotropy_angle), math.sqrt(self.anisotropy)
+        along = math.cos(angle) * x + math.sin(angle) * y
+        across = math.cos(angle) * y - math.sin(angle) * x
+        return self.shape.density(step * np.hypot(root * along, across / root))
+
+    def mean_square(self, order: float) -> float:
+        """Mean square of the derivative of a given order."""
+        # With p, the stretched wavevector, q^2 = p_along^2 / r + r p_across^2.
+        return self.shape.mean_square(order) * float(
+            np.mean(self._squared_stretch(_N_EXACT) ** order)
+        )
+
+    def longer_than(self, wavelength: float) -> AnisotropicSpectrum:
+        """Part of the spectrum whose waves across the grooves are longer."""
+        return replace(self, shape=self.shape.longer_than(wavelength * math.sqrt(self.anisotropy)))
+
+    def in_units(self, length: float) -> AnisotropicSpectrum:
+        """The spectrum with its lengths divided by a unit, and the density as it is."""
+        return replace(self, shape=self.shape.in_units(length))
+
+    def amplified(self, factor: float) -> AnisotropicSpectrum:
+        """The spectrum with its density multiplied by a factor."""
+        return replace(self, shape=self.shape.amplified(factor))
+
+    def _squared_stretch(self, n_angle: int) -> Array:
+        """Squares of wavevectors over squares of stretched ones, at evenly spaced directions."""
+        angle = np.pi * (np.arange(n_angle) + 0.5) / n_angle
+        return np.cos(angle) ** 2 / self.anisotropy + self.anisotropy * np.sin(angle) ** 2
+
+
+_N_ANGLE = 180
+"""Directions whose mean is the density in figures."""
+
+_N_EXACT = 4096
+"""Directions whose mean is exact to round-off, for ratios up to 100."""
 
 
 def _numbers(name: str, values: ArrayLike) -> tuple[float, ...]:

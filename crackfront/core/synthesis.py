@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from scipy.fft import irfft, irfft2
+from scipy.fft import irfft, irfft2, rfft2
 
 from crackfront.core.arrays import Array
 from crackfront.core.spectrum import Spectrum
@@ -66,8 +66,8 @@ def gaussian_field(
     for first in range(-highest_x, highest_x + 1, height):
         rows = np.arange(first, min(first + height, highest_x + 1))
         noise = rng.standard_normal((rows.size, 2, columns.size))
-        wavevector = step * np.hypot(rows[:, None] * (l_y / l_x), columns)
-        amplitude = np.sqrt(spectrum.density(wavevector) / 2) / math.sqrt(l_x * l_y)
+        density = spectrum.density_of_modes(step, rows[:, None] * (l_y / l_x), columns)
+        amplitude = np.sqrt(density / 2) / math.sqrt(l_x * l_y)
         resolved = np.abs(rows) <= kept_x
         row_modes = (noise[:, 0] + 1j * noise[:, 1]) * amplitude
         modes[rows[resolved], : kept_y + 1] = row_modes[resolved, : kept_y + 1]
@@ -97,6 +97,19 @@ def _modes(short_cutoff: float, n_point: int, length: float) -> tuple[int, int]:
             f"{short_cutoff:.6g}; enlarge the tile"
         )
     return highest, min(highest, (n_point - 1) // 2)
+
+
+def resampled(values: Array, shape: tuple[int, int]) -> Array:
+    """Periodic field on another grid of the same tile, by its modes.
+
+    Modes on the Nyquist wavevector of either grid, or beyond, are left out.
+    """
+    modes = rfft2(values, norm="forward")
+    kept_x, kept_y = ((min(pair) - 1) // 2 for pair in zip(values.shape, shape, strict=True))
+    finer = np.zeros((shape[0], shape[1] // 2 + 1), dtype=complex)
+    finer[: kept_x + 1, : kept_y + 1] = modes[: kept_x + 1, : kept_y + 1]
+    finer[-kept_x:, : kept_y + 1] = modes[-kept_x:, : kept_y + 1]
+    return np.asarray(irfft2(finer, s=shape, norm="forward"))
 
 
 def uncorrelated_rows(

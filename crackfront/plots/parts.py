@@ -87,7 +87,10 @@ def spectrum_styles(table: SweepTable) -> tuple[PointStyle, ...]:
 
 def spectrum_families(table: SweepTable) -> list[int]:
     """Number of each entry's spectrum; entries that only differ by their springs share a number."""
-    shapes = [table.shape_of(index).identity for index in range(table.spectrum.size)]
+    shapes = [
+        (table.shape_of(index).identity, table.ensemble(index))
+        for index in range(table.spectrum.size)
+    ]
     distinct = list(dict.fromkeys(shapes))
     return [distinct.index(shape) for shape in shapes]
 
@@ -218,7 +221,7 @@ def spectrum_label(table: SweepTable, index: int) -> str:
     name = name_without_spring(name) if table.on_springs else name
     label = rf"{name}: $\lambda_\mathrm{{s}}={table.short_cutoff[index]:g}$"
     is_flat = table.roll_off[index] == table.short_cutoff[index]
-    if is_flat or np.isnan(table.hurst[index]):
+    if is_flat or np.isnan(table.hurst[index]) or not table.is_covered(index):
         return label
     roll_off = rf"$\lambda_\mathrm{{r}}={table.roll_off[index]:g}$"
     return f"{label}, {roll_off}, $H={table.hurst[index]:g}$"

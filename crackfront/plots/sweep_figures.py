@@ -25,10 +25,9 @@ from crackfront.analysis.law import (
     law_value,
     pinning_factors,
     shipped_law,
-    spectral_breadth,
 )
 from crackfront.analysis.result import SweepFit
-from crackfront.analysis.sweep_law import LARGE
+from crackfront.analysis.sweep_law import LARGE, SweepLaw
 from crackfront.core.adhesion import adhesion_rms
 from crackfront.core.arrays import Array
 from crackfront.plots.parts import (
@@ -180,9 +179,8 @@ def draw_factor_by_size(axes: Axes, fit: SweepFit) -> None:
 
 def _draw_law_by_size(axes: Axes, fit: SweepFit, s: float, colour: str) -> None:
     """Draw k by the law against g at a disorder s, for the mean breadth of the spectra."""
-    table, law, ends = fit.table, shipped_law(), _ends(fit.cells.size, 1.5)
-    spectra = [table.shape_of(index) for index in range(table.spectrum.size)]
-    breadth = float(np.mean([spectral_breadth(fit.kind, spectrum) for spectrum in spectra]))
+    law, ends = shipped_law(), _ends(fit.cells.size, 1.5)
+    breadth = float(np.nanmean(SweepLaw(fit.table, fit.kind).breadths))
     abscissa = np.geomspace(max(law.size[0], ends[0]), ends[1], 100)
     curve = law_value(law.coefficients, s, abscissa, breadth)
     axes.plot(abscissa, curve, color=colour, linewidth=0.8, label=rf"law, $s={s:.3g}$")
@@ -270,7 +268,9 @@ def draw_spectra(axes: Axes, fit: SweepFit) -> None:
         axes.plot(*points, color=spectrum_colour(families[index]), linewidth=0.8)
     axes.set(xscale="log", yscale="log")
     axes.set_xlim(lowest, 2.5 * 2 * np.pi / np.min(table.short_cutoff))
-    axes.set_ylim(np.min(densities) / 10, np.max(densities) * 5)
+    # The mean density of an anisotropic spectrum falls to zero at its cutoff.
+    least = np.min(densities, where=np.array(densities) > 0, initial=np.inf)
+    axes.set_ylim(least / 10, np.max(densities) * 5)
     axes.set_xlabel("wavevector $q$ (reduced)")
     unit = r"w_\mathrm{int}/e_\mathrm{el}" if kind == "roughness" else r"/ w_\mathrm{rms}^2"
     axes.set_ylabel(rf"$C(q)\,{unit}$")

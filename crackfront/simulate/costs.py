@@ -77,7 +77,8 @@ def _realisation_cost(simulation: Simulation) -> Cost:
         elastic_energy=simulation.elastic_energy,
     )
     fronts = 8 * n_site * n_state if simulation.record_fronts else 0.0
-    return replace(cost, memory=cost.memory + fronts)
+    surface = simulation.ensemble.point_seconds * math.prod(simulation.tile[0])
+    return Cost(cost.seconds + surface, cost.memory + fronts)
 
 
 def run_cost(

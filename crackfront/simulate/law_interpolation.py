@@ -129,11 +129,9 @@ def _interpolated(places: ArrayLike, measured: Array, values: Array) -> Array:
 
     The measured places increase.
     """
-
-    def at_places(column: Array) -> Array:
-        return np.interp(places, measured, column)
-
-    return np.apply_along_axis(at_places, 0, values)
+    columns = values.reshape(len(measured), -1).T
+    interpolated = [np.interp(places, measured, column) for column in columns]
+    return np.stack(interpolated, axis=-1).reshape(np.shape(places) + values.shape[1:])
 
 
 def _relative_correlation_length(kind: FieldKind, spectrum: Spectrum) -> float:
@@ -145,6 +143,8 @@ def unmeasured_reason(kind: FieldKind, spectrum: Spectrum, elastic_energy: float
     """Why no errors were measured for a spectrum and amplitude; empty if they were."""
     low, high = measured_energies()
     remedy = "give the resolution and the tolerance instead"
+    if not spectrum.is_isotropic:
+        return f"errors were measured for isotropic spectra alone; {remedy}"
     if not low / _LEEWAY <= elastic_energy <= high * _LEEWAY:
         return (
             f"errors were measured for e_el/w_int from {low:g} to {high:g}, not at "

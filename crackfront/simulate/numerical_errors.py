@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 from crackfront.analysis.steady_adhesion import SteadyAdhesion
 from crackfront.simulate.law_interpolation import combined_error
 from crackfront.simulate.laws import SettingName
@@ -24,8 +26,10 @@ def numerical_error(
 
     `cutoffs` is the number of cutoffs crossed, as in :mod:`crackfront.simulate.laws`, by default
     the usual one. By default `front_length` is the length of the longest front of a smooth contact
-    (Units: reduced lateral length).
+    (Units: reduced lateral length). NaN if no errors were measured on such surfaces.
     """
+    if not simulation.is_covered:
+        return math.nan, math.nan
     resolution, cutoff = simulation.resolution, simulation.spectrum.short_cutoff
     if front_length is None:
         front_length = simulation.schedule.front_length

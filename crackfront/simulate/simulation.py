@@ -18,8 +18,9 @@ from crackfront.core.adhesion import (
 from crackfront.core.field.fields import TileField
 from crackfront.core.geometry.base import Geometry
 from crackfront.core.solver.relax import Solver, named_solver
-from crackfront.core.spectrum import Spectrum
+from crackfront.core.spectrum import ENSEMBLE, Spectrum
 from crackfront.simulate.contact import Schedule
+from crackfront.simulate.ensembles import GAUSSIAN, Ensemble
 from crackfront.simulate.numerics import Numerics
 from crackfront.simulate.settings import Settings
 from crackfront.simulate.tiles import Fineness, RandomSurface, Resolution
@@ -47,6 +48,8 @@ class Simulation:
     """Loads of a kind, such as the penetrations of a full cycle."""
     solver: Solver
     """How its fronts are found."""
+    ensemble: Ensemble = GAUSSIAN
+    """Surfaces of the spectrum."""
     record_fronts: bool = False
     record_energy: bool = False
     """What to record in addition to the curves."""
@@ -70,6 +73,8 @@ class Simulation:
         }
         if self.solver.name != "newton":
             parameters["solver"] = self.solver.name
+        if self.ensemble != GAUSSIAN:
+            parameters["ensemble"] = {"kind": self.ensemble.ensemble_name} | self.ensemble.key
         if record := [name for name, is_recorded in self._recorded if is_recorded]:
             parameters["record"] = record
         rounded: dict[str, Any] = _rounded(parameters)
@@ -109,7 +114,26 @@ class Simulation:
     @property
     def surface(self) -> RandomSurface:
         """The surface on the tile."""
-        return RandomSurface(self.kind, self.spectrum, self.elastic_energy, self.seed, *self.tile)
+        return RandomSurface(
+            self.kind,
+            self.spectrum,
+            self.elastic_energy,
+            self.seed,
+            *self.tile,
+            self.ensemble,
+            self.realisation,
+        )
+
+    @property
+    def stated_parameters(self) -> dict[str, Any]:
+        """Parameters of the spectrum, and a description of surfaces that are not Gaussian."""
+        description = self.ensemble.description
+        return self.spectrum.parameters | ({ENSEMBLE: description} if description else {})
+
+    @property
+    def is_covered(self) -> bool:
+        """Whether the laws of k and of numerical errors were measured on such surfaces."""
+        return self.spectrum.is_isotropic and self.ensemble == GAUSSIAN
 
     @property
     def label(self) -> str:
@@ -152,7 +176,11 @@ def simulation_field(simulation: Simulation, adhesion: AdhesionMap | None = None
 
 
 def resolution(
-    spectrum: Spectrum, numerics: Numerics, settings: Settings, schedule: Schedule
+    spectrum: Spectrum,
+    numerics: Numerics,
+    settings: Settings,
+    schedule: Schedule,
+    ensemble: Ensemble = GAUSSIAN,
 ) -> Resolution:
     """Sizes of the front and of the tile for one spectrum.
 
@@ -166,7 +194,8 @@ def resolution(
     >>> resolution(flat, numerics, settings, FullCycle(max_penetration=1.0, step=0.1))
     Resolution(n_angle=240, spacing=0.025, interpolation='cubic', tile_side=2.0, n_point=80)
     """
-    fineness = Fineness(spectrum.short_cutoff, numerics.tile_side(spectrum), settings)
+    side = ensemble.tile_side or numerics.tile_side(spectrum)
+    fineness = Fineness(spectrum.short_cutoff, side, settings)
     return schedule.resolution(fineness)
 
 
@@ -181,12 +210,19 @@ def simulation_of(
     realisation: int = 0,
     name: str = "single",
     record: Collection[Literal["fronts", "energy"]] = (),
+    ensemble: Ensemble = GAUSSIAN,
 ) -> Simulation:
     """The simulation of a surface; the largest penetration of the schedule decides its sites.
 
     `name` names the spectrum, `numerics` say how it is resolved and solved, and `record` what is
-    stored in addition to the curves; the rest is as in :class:`Simulation`.
+    stored in addition to the curves; the rest is as in :class:`Simulation`. ValueError if the
+    numerics are chosen for an error, and no errors were measured on such surfaces.
     """
+    if numerics.error is not None and ensemble != GAUSSIAN:
+        raise ValueError(
+            f"error is {numerics.error:g}, but errors were measured for Gaussian surfaces alone; "
+            "give the resolution and the tolerance instead"
+        )
     settings = numerics.settings_of(
         kind, spectrum, elastic_energy, schedule.usual_cutoffs(spectrum)
     )
@@ -197,9 +233,10 @@ def simulation_of(
         elastic_energy=elastic_energy,
         realisation=realisation,
         sweep_seed=seed,
-        resolution=resolution(spectrum, numerics, settings, schedule),
+        resolution=resolution(spectrum, numerics, settings, schedule, ensemble),
         schedule=schedule,
         solver=named_solver(numerics.solver, settings.tolerance, numerics.max_sweeps),
+        ensemble=ensemble,
         record_fronts="fronts" in record,
         record_energy="energy" in record,
     )

@@ -19,7 +19,8 @@ from crackfront.core.arrays import Array
 from crackfront.core.field.fields import Interpolation
 from crackfront.core.geometry.base import fast_site_count
 from crackfront.core.spectrum import Spectrum
-from crackfront.core.synthesis import gaussian_field, uncorrelated_rows
+from crackfront.core.synthesis import uncorrelated_rows
+from crackfront.simulate.ensembles import GAUSSIAN, Ensemble
 from crackfront.simulate.settings import Settings
 
 
@@ -78,6 +79,10 @@ class RandomSurface:
     """Points of the tile along x and y."""
     sides: tuple[float, float]
     """Sides of the tile along x and y. (Units: reduced lateral length)"""
+    ensemble: Ensemble = GAUSSIAN
+    """Surfaces of this spectrum, of which it is one."""
+    realisation: int = 0
+    """Its number among them."""
 
     @property
     def correlation_length(self) -> float:
@@ -90,14 +95,14 @@ class RandomSurface:
         return self.sides[1] / self.shape[1]
 
 
-def gaussian_values(surface: RandomSurface) -> Array:
+def surface_values(surface: RandomSurface) -> Array:
     """Heights on the tile (Units: reduced vertical length), or deviations of w_loc (Units: w_int).
 
     The noise of a realisation is scaled to the amplitude, so that all amplitudes of a spectrum
     see the same surface.
     """
-    unit, rng = surface.spectrum.with_elastic_energy(1.0), np.random.default_rng(surface.seed)
-    values = gaussian_field(unit, surface.shape, surface.sides, rng)
+    unit = surface.spectrum.with_elastic_energy(1.0)
+    values = surface.ensemble.values(unit, surface)
     if surface.kind == "roughness":
         values *= math.sqrt(surface.elastic_energy)
     else:
@@ -105,10 +110,10 @@ def gaussian_values(surface: RandomSurface) -> Array:
     return values
 
 
-def gaussian_adhesion(surface: RandomSurface) -> AdhesionMap:
-    """Work of adhesion of a Gaussian surface."""
+def correlated_adhesion(surface: RandomSurface) -> AdhesionMap:
+    """Work of adhesion of a surface."""
     adhesion = rough_adhesion if surface.kind == "roughness" else chemical_adhesion
-    return adhesion(gaussian_values(surface), surface.pixel)
+    return adhesion(surface_values(surface), surface.pixel)
 
 
 def uncorrelated_adhesion(surface: RandomSurface) -> AdhesionMap:

@@ -15,7 +15,7 @@ from crackfront.simulate.laws import measured_energies
 from crackfront.simulate.numerics import Numerics
 from crackfront.simulate.simulation import Simulation, simulation_adhesion, simulation_of
 from crackfront.simulate.sphere.full_cycle import FullCycle
-from crackfront.simulate.tiles import gaussian_values
+from crackfront.simulate.tiles import surface_values
 from crackfront.surfaces.surface_array import surface_array
 from crackfront.surfaces.tile_measures import tile_modes
 from crackfront.validation import Fraction, Positive, Seed, checked_call
@@ -97,7 +97,7 @@ def random_surface(
         realisation=realisation,
     )
     if kind == "roughness":
-        values = gaussian_values(simulation.surface)
+        values = surface_values(simulation.surface)
     else:
         values = simulation_adhesion(simulation).work_of_adhesion / WORK_OF_ADHESION
     tile = simulation.resolution

@@ -33,10 +33,12 @@ class Expectation:
 
     disorder: float
     """w_rms / w_int."""
-    size: float
-    """g, L_kappa over the Larkin length, of a sphere at its largest penetration."""
+    size: float | None
+    """g, L_kappa over the Larkin length, of a sphere at its largest penetration; None of an
+    anisotropic spectrum, whose Larkin length depends on the direction of the front."""
     factor: float | None
-    """k by the law; None near pull-off, where the edge is unstable."""
+    """k by the law; None near pull-off, where the edge is unstable, and if the law does not cover
+    the surface."""
     needed_penetration: float | None = None
     """Set if the largest one may leave no steady part. (Units: reduced vertical length, or as in
     the configuration)"""
@@ -50,6 +52,11 @@ def expectation(simulation: Simulation) -> Expectation:
     """What the realisations of a simulation are expected to find."""
     kind, spectrum, energy = simulation.kind, simulation.spectrum, simulation.elastic_energy
     schedule, disorder = simulation.schedule, 2 * math.sqrt(energy)
+    if not simulation.is_covered:
+        size = None
+        if spectrum.is_isotropic:
+            size = schedule.spring_at(1.0) / larkin_length(kind, spectrum, disorder)
+        return Expectation(disorder, size, None)
     try:
         factors = factors_on_springs(kind, spectrum, energy, schedule.spring_at)
     except ValueError:
@@ -132,7 +139,7 @@ def small_size_warnings(sweep: Sweep) -> Iterator[str]:
     for item in sweep.spectra:
         weakest = min(sweep.fit.chosen(sweep.elastic_energies))
         size = expectation(sweep.simulation(item, weakest, 0)).size
-        if size < _SMALL_SIZE:
+        if size is not None and size < _SMALL_SIZE:
             # The Larkin length is proportional to the wavelengths.
             cutoff = _two_digits(size * lateral * item.spectrum.short_cutoff, math.floor)
             yield (

@@ -50,7 +50,7 @@ class Configuration(Section):
                 "amplitudes.elastic_energy is meaningless for a chemical field; give "
                 "amplitudes.work_of_adhesion_rms"
             )
-        measured = [item.name for item in self.spectra if item.surface is not None]
+        measured = [item.name for item in self.spectra if item.in_metres is not None]
         if measured and self.scales is None:
             raise section_error(
                 f"spectrum {measured[0]!r} describes a surface in metres; give the section scales"
@@ -60,6 +60,30 @@ class Configuration(Section):
                 f"spectrum {measured[0]!r} is the spectrum of heights; field must be roughness"
             )
         line = self.load.line
+        anisotropic = [item.name for item in self.spectra if item.anisotropy is not None]
+        if line is not None and anisotropic:
+            raise section_error(
+                f"spectrum {anisotropic[0]!r} is anisotropic, and load.line chooses its tiles and "
+                "loads by laws of isotropic spectra; remove anisotropy, or simulate spheres"
+            )
+        marginal = [item.name for item in self.spectra if item.marginal is not None]
+        tiles = {item.name: len(item.tiles.file) for item in self.spectra if item.tiles is not None}
+        for name, n_file in tiles.items():
+            if line is not None:
+                raise section_error(
+                    f"spectrum {name!r} has tiles of files, and load.line chooses the sides of its "
+                    "tiles; simulate spheres, or describe the files by surface"
+                )
+            if self.realisations > n_file:
+                raise section_error(
+                    f"realisations is {self.realisations}, and spectrum {name!r} has tiles of "
+                    f"{n_file} files; lower realisations, or name more files"
+                )
+        if line is not None and line.uncorrelated and marginal:
+            raise section_error(
+                f"spectrum {marginal[0]!r} has a marginal, and the sites of load.line.uncorrelated "
+                "are independent and Gaussian; remove marginal or uncorrelated"
+            )
         if line is not None and line.uncorrelated and self.numerics.error is not None:
             raise section_error(
                 f"numerics.error is {self.numerics.error:g}, which chooses other pixels for each "
@@ -70,7 +94,7 @@ class Configuration(Section):
         if self.amplitudes.measured and not len(measured) == len(self.spectra) == 1:
             raise section_error(
                 "amplitudes.measured are multiples of the heights of one surface; give one "
-                "spectrum with a section surface"
+                "spectrum with a section surface, density or tiles"
             )
         return self
 

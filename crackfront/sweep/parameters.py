@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from crackfront.core.units import Scales
@@ -66,14 +67,14 @@ def _named_spectra(configuration: Configuration, lateral: float) -> Iterator[Nam
         for spring in line.springs:
             # A name is part of the names of files.
             ending = f"{spring:g}".replace(".", "p").replace("+", "")
-            yield NamedSpectrum(f"{item.name}-L{ending}", item.spectrum, spring)
+            yield replace(item, name=f"{item.name}-L{ending}", spring=spring)
 
 
 def _elastic_energies(configuration: Configuration, scales: Scales | None) -> tuple[float, ...]:
     """Requested e_el / w_int."""
-    measured, surface = math.nan, configuration.spectra[0].surface
-    if configuration.amplitudes.measured and surface and scales:
-        energy = surface.measured.conformity_energy(scales.contact_modulus).value
+    measured, section = math.nan, configuration.spectra[0].in_metres
+    if configuration.amplitudes.measured and section and scales:
+        energy = section.measured.conformity_energy(scales.contact_modulus).value
         measured = energy / scales.work_of_adhesion
     return configuration.amplitudes.elastic_energies(measured)
 

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import json
 import tempfile
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+import numpy as np
 from xarray import DataArray, Dataset
 
 from crackfront.analysis.table import PLACE, SweepRow
@@ -18,7 +20,7 @@ from crackfront.simulate.labels import labelled
 from crackfront.simulate.line.line_loads import LineSchedule
 from crackfront.simulate.run_simulation import run_simulation
 from crackfront.simulate.simulation import Simulation, simulation_adhesion
-from crackfront.simulate.tiles import gaussian_values
+from crackfront.simulate.tiles import surface_values
 from crackfront.surfaces.loops import result_sentence
 from crackfront.surfaces.surface_array import surface_array
 from crackfront.sweep.parameters import load_sweep
@@ -112,18 +114,25 @@ def simulation(row: Dataset) -> RowSimulation:
 
 
 def simulated_surface(simulation: Simulation) -> DataArray:
-    """Tile of a simulation, `height(x, y)` or `work_of_adhesion(x, y)`, in reduced units."""
+    """Tile of a simulation, `height(x, y)` or `work_of_adhesion(x, y)`, in reduced units.
+
+    Its attributes state the spectrum where numerics can be chosen by it; else `parameters` has it
+    as JSON.
+    """
     kind: FieldKind
     if has_heights(simulation):
-        kind, values = "roughness", gaussian_values(simulation.surface)
+        kind, values = "roughness", surface_values(simulation.surface)
     else:
         kind = "chemical"
         values = simulation_adhesion(simulation).work_of_adhesion / WORK_OF_ADHESION
+    stated = simulation.stated_parameters
+    if not simulation.is_covered:
+        stated = {"parameters": json.dumps(stated, default=np.ndarray.tolist)}
     return surface_array(
         kind,
         values,
         simulation.surface.pixel,
-        **simulation.spectrum.parameters,
+        **stated,
         elastic_energy_requested=simulation.elastic_energy,
         seed=simulation.sweep_seed,
         realisation=simulation.realisation,

@@ -49,7 +49,7 @@ _HOME = "# Relative paths begin in "
 def movable_text(path: Path) -> str:
     """Text of a configuration, its relative paths kept valid in whatever folder it is stored."""
     text = path.read_text(encoding="utf-8")
-    if text.startswith(_HOME) or not re.search(r"\bsurface\s*:", text):
+    if text.startswith(_HOME) or not re.search(r"\bfile\s*:", text):
         return text
     return f"{_HOME}{path.resolve().parent}\n{text}"
 

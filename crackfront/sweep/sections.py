@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import fields
-from typing import Annotated, Any
+from typing import Annotated
 
 from pydantic import Field, model_validator
 
@@ -189,12 +189,13 @@ class LoadSection(Section):
         """Penetrations to visit, lengths divided by a unit, or straight fronts."""
         if self.line is not None:
             return LineLoad(**self.line.model_dump(exclude={"springs"}))
-        lengths: Any = self  # required by validation where there is no line
-        max_penetration, steady = lengths.max_penetration / vertical, self.steady
-        if steady is None:
-            return FullCycle(max_penetration, lengths.step / vertical)
-        start = steady.start / vertical
-        return SteadySchedule(start, max_penetration, steady.travel, steady.error)
+        assert self.max_penetration is not None, "required where there is no line"
+        max_penetration = self.max_penetration / vertical
+        if self.steady is not None:
+            start, travel = self.steady.start / vertical, self.steady.travel
+            return SteadySchedule(start, max_penetration, travel, self.steady.error)
+        assert self.step is not None, "required where there is no section steady"
+        return FullCycle(max_penetration, self.step / vertical)
 
 
 class FitSection(Section):

@@ -21,7 +21,7 @@ from crackfront.simulate.labels import unit_attributes
 from crackfront.simulate.provenance import Provenance
 from crackfront.simulate.simulation import Simulation, simulation_adhesion
 from crackfront.simulate.storage import write_derived_parts
-from crackfront.simulate.tiles import gaussian_values
+from crackfront.simulate.tiles import surface_values
 from crackfront.sweep.row_simulation import has_heights
 from crackfront.sweep.sweep import NamedSpectrum, Sweep
 
@@ -70,13 +70,13 @@ def _surface_dataset(simulation: Simulation, scales: Scales | None) -> xr.Datase
     )
 
     def variable(values: Array, unit: str, si_unit: str, text: str) -> xr.Variable:
-        """Variable of the tile with its unit, and the seed that gives it."""
+        """Variable of the tile with its unit, its moments, and the seed that gives it."""
         units = unit_attributes(unit if scales is None else si_unit)
-        return xr.Variable(axes, values, units | about | {"long_name": text})
+        return xr.Variable(axes, values, units | about | _moments(values) | {"long_name": text})
 
     variables = {}
     if has_heights(simulation):
-        heights = vertical * gaussian_values(simulation.surface)
+        heights = vertical * surface_values(simulation.surface)
         text = "height, positive at peaks"
         variables[f"height_{name}"] = variable(heights, VERTICAL, "m", text)
     values = energy / WORK_OF_ADHESION * adhesion.work_of_adhesion
@@ -88,3 +88,12 @@ def _surface_dataset(simulation: Simulation, scales: Scales | None) -> xr.Datase
         for axis, count in zip(axes, values.shape, strict=True)
     }
     return xr.Dataset(variables, coordinates)
+
+
+def _moments(values: Array) -> dict[str, float]:
+    """Skewness and excess kurtosis of values, which are 0 for a normal distribution."""
+    scores = (values - np.mean(values)) / np.std(values)
+    return {
+        "skewness": float(np.mean(scores**3)),
+        "excess_kurtosis": float(np.mean(scores**4)) - 3,
+    }

@@ -13,6 +13,7 @@ from crackfront.core.arguments import nearest_name
 from crackfront.core.spectrum import Spectrum
 from crackfront.core.units import Scales
 from crackfront.simulate.contact import SurfaceLoads, SweepLoad
+from crackfront.simulate.ensembles import GAUSSIAN, Ensemble
 from crackfront.simulate.numerics import Numerics
 from crackfront.simulate.simulation import Simulation, simulation_of
 
@@ -21,11 +22,13 @@ from crackfront.simulate.simulation import Simulation, simulation_of
 class NamedSpectrum:
     """A spectrum, lengths in the reduced lateral unit, and what the configuration calls it.
 
-    Springs of so many units of the load pull a straight front.
+    The ensemble says what its surfaces are besides the spectrum. Springs of so many units of the
+    load pull a straight front.
     """
 
     name: str
     spectrum: Spectrum
+    ensemble: Ensemble = GAUSSIAN
     spring: float = math.nan
 
 
@@ -112,6 +115,7 @@ class Sweep:
             realisation=realisation,
             name=item.name,
             record=self.record,
+            ensemble=item.ensemble,
         )
 
     def simulations(

@@ -23,6 +23,7 @@ from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.core.variables import variables
 from crackfront.simulate.contact import OnSprings, Schedule
+from crackfront.simulate.ensembles import GAUSSIAN
 from crackfront.simulate.labels import flag_words, labelled_fields
 from crackfront.simulate.provenance import Provenance
 from crackfront.simulate.storage import UnreadableFileError, read_derived, write_derived
@@ -132,7 +133,9 @@ def _axes(sweep: Sweep, realisations: range) -> SweepAxes:
     energies = np.array(sweep.elastic_energies)
     one_per_amplitude = [sweep.one_per_amplitude(item) for item in sweep.spectra]
     self_affine = all(isinstance(spectrum, SelfAffineSpectrum) for spectrum in spectra)
-    texts = [json.dumps(spectrum.parameters, default=np.ndarray.tolist) for spectrum in spectra]
+    is_plain = self_affine and all(item.ensemble == GAUSSIAN for item in sweep.spectra)
+    stated = [first.stated_parameters for first, *_ in one_per_amplitude]
+    texts = [json.dumps(parameters, default=np.ndarray.tolist) for parameters in stated]
 
     def each(name: str) -> NDArray[Any]:
         return np.array(
@@ -157,7 +160,7 @@ def _axes(sweep: Sweep, realisations: range) -> SweepAxes:
         amplitude=energies,
         w_rms_requested=2 * np.sqrt(energies),
         realisation=np.array(realisations),
-        parameters=None if self_affine else np.array(texts),
+        parameters=None if is_plain else np.array(texts),
     )
 
 

@@ -17,7 +17,7 @@ from crackfront.core.geometry.base import fast_site_count
 from crackfront.core.spectrum import SelfAffineSpectrum, Spectrum, TabulatedSpectrum
 from crackfront.core.synthesis import gaussian_field, uncorrelated_rows
 from crackfront.core.units import CONTACT_MODULUS, WORK_OF_ADHESION, ReducedUnit, Scales
-from crackfront.simulate.tiles import RandomSurface, gaussian_adhesion, uncorrelated_adhesion
+from crackfront.simulate.tiles import RandomSurface, correlated_adhesion, uncorrelated_adhesion
 from tests.golden.golden import Values
 
 FRACTAL = SelfAffineSpectrum(short_cutoff=0.3, roll_off=0.9, hurst=0.8, plateau=0.02)
@@ -103,7 +103,7 @@ def mapping() -> Values:
     for kind in ("roughness", "chemical"):
         surface = RandomSurface(kind, FRACTAL, 0.04, 73, (12, 12), (1.5, 1.5))
         for name, adhesion in (
-            ("surface", gaussian_adhesion(surface)),
+            ("surface", correlated_adhesion(surface)),
             ("independent rows", uncorrelated_adhesion(surface)),
         ):
             values[f"{kind} {name}"] = adhesion.work_of_adhesion

@@ -29,7 +29,7 @@ from crackfront.simulate.numerics import Numerics
 from crackfront.simulate.provenance import provenance
 from crackfront.simulate.run_simulation import run_simulation
 from crackfront.simulate.settings import Settings
-from crackfront.simulate.tiles import gaussian_adhesion
+from crackfront.simulate.tiles import correlated_adhesion
 from crackfront.sweep.advice import expectation
 from crackfront.sweep.rows import sweep_row
 from crackfront.sweep.store import Store
@@ -210,7 +210,7 @@ class CylinderCycle(Schedule):
         return Cylinder(n_site, self.length)
 
     def adhesion(self, surface):
-        return gaussian_adhesion(surface)
+        return correlated_adhesion(surface)
 
     def field(self, adhesion, resolution):
         strongest = float(np.max(adhesion.work_of_adhesion)) / WORK_OF_ADHESION

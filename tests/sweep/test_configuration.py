@@ -609,7 +609,7 @@ def test_shards_of_a_measured_spectrum_change_with_the_file(tmp_path):
         ),
         (
             changed("{name: flat, short_cutoff: 0.1, hurst: 1.0}", "{name: flat, hurst: 1.0}"),
-            "spectra[0]: key short_cutoff is missing; add it, or a table or surface",
+            "spectra[0]: key short_cutoff is missing; add it, or one of surface",
         ),
     ],
 )

@@ -10,7 +10,7 @@ import xarray as xr
 
 from crackfront.core.units import WORK_OF_ADHESION, Scales
 from crackfront.simulate.simulation import simulation_adhesion
-from crackfront.simulate.tiles import gaussian_values
+from crackfront.simulate.tiles import surface_values
 from crackfront.sweep.parameters import load_sweep
 from tests.commands import done, refused
 from tests.yaml_texts import from_yaml, to_yaml
@@ -42,7 +42,7 @@ def test_files_have_the_surfaces_that_are_simulated_with_their_seeds(tmp_path):
         for simulation in sweep.simulations(item):
             name = f"e{simulation.elastic_energy:g}_r{simulation.realisation}"
             height, w_loc = surfaces[f"height_{name}"], surfaces[f"w_loc_{name}"]
-            np.testing.assert_array_equal(height, gaussian_values(simulation.surface))
+            np.testing.assert_array_equal(height, surface_values(simulation.surface))
             adhesion = simulation_adhesion(simulation).work_of_adhesion
             np.testing.assert_allclose(w_loc, adhesion / WORK_OF_ADHESION, rtol=1e-14)
             assert (height.attrs["seed"], w_loc.attrs["reduced_unit"]) == (simulation.seed, "w_int")
@@ -69,7 +69,7 @@ def test_surfaces_that_cannot_be_written_leave_the_earlier_file(tmp_path, monkey
     path = tmp_path / "surfaces/flat.nc"
     before = shutil.copy(path, tmp_path / "before.nc")
     monkeypatch.setattr(
-        "crackfront.sweep.surface_files.gaussian_values",
+        "crackfront.sweep.surface_files.surface_values",
         lambda surface: (_ for _ in ()).throw(ValueError("no values")),
     )
     assert "no values" in refused("surfaces", TEST, "--output", tmp_path, "--spectrum", "flat")

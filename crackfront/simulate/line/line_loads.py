@@ -48,7 +48,7 @@ from crackfront.simulate.tiles import (
     Fineness,
     RandomSurface,
     Resolution,
-    gaussian_adhesion,
+    correlated_adhesion,
     uncorrelated_adhesion,
 )
 
@@ -140,10 +140,10 @@ class LineSchedule(Schedule, OnSprings):
         return Line(n_site, self.length, WORK_OF_ADHESION / self.spring, WORK_OF_ADHESION)
 
     def adhesion(self, surface: RandomSurface) -> AdhesionMap:
-        """Work of adhesion of a Gaussian surface, or of independent rows for weak disorder."""
+        """Work of adhesion of a surface, or of independent rows for weak disorder."""
         if self.uncorrelated:
             return uncorrelated_adhesion(surface)
-        return gaussian_adhesion(surface)
+        return correlated_adhesion(surface)
 
     def field(self, adhesion: AdhesionMap, resolution: Resolution) -> TileField:
         """Field of a tile over all loads."""

@@ -19,7 +19,7 @@ from crackfront.core.solver.relax import Solver
 from crackfront.core.spectrum import Spectrum
 from crackfront.simulate.contact import ExpectedMotion, Pressed, Problem, Schedule
 from crackfront.simulate.laws import sphere_cutoffs
-from crackfront.simulate.tiles import Fineness, RandomSurface, Resolution, gaussian_adhesion
+from crackfront.simulate.tiles import Fineness, RandomSurface, Resolution, correlated_adhesion
 
 if TYPE_CHECKING:
     from crackfront.simulate.run_simulation import SimulationResult
@@ -51,8 +51,8 @@ class SphereSchedule(Schedule, Pressed):
         return sphere(n_site)
 
     def adhesion(self, surface: RandomSurface) -> AdhesionMap:
-        """Work of adhesion of a Gaussian surface."""
-        return gaussian_adhesion(surface)
+        """Work of adhesion of a surface."""
+        return correlated_adhesion(surface)
 
     def field(self, adhesion: AdhesionMap, resolution: Resolution) -> TileField:
         """Field of a tile up to the largest penetration."""
