@@ -1,6 +1,7 @@
 """Spectra of configurations that are not self-affine, and surfaces that are not Gaussian."""
 
 import json
+import re
 import subprocess
 import sys
 from dataclasses import replace
@@ -271,6 +272,8 @@ def test_a_sweep_compares_distributions_on_the_same_modes(tmp_path):
     assert np.all(np.isfinite(fit.cell_law_factor.sel(spectrum="plain", bound="value")))
     assert np.all(np.isnan(fit.cell_law_factor.sel(spectrum="s")))
     assert np.all(np.isfinite(fit.cell_size))
+    page = (tmp_path / "results/fit.md").read_text()
+    assert re.search(r"k by the law: \d\.\d\d \(of plain alone\);", page)
     read = read_table(tmp_path / "results/hysteresis.nc")
     assert [spectrum_label(read, index) for index in (0, 1)] == [
         r"flat, $\lambda_\mathrm{s}=0.1$",
