@@ -124,7 +124,7 @@ def law_interpolation(
     )
 
 
-def _interpolated(places: ArrayLike, measured: Array, values: Array) -> Array:
+def _interpolated(places: float | Array, measured: Array, values: Array) -> Array:
     """Values (n_measured, ...) at other places, linear between the measured ones, constant beyond.
 
     The measured places increase.

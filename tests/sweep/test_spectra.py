@@ -275,10 +275,7 @@ def test_a_sweep_compares_distributions_on_the_same_modes(tmp_path):
     page = (tmp_path / "results/fit.md").read_text()
     assert re.search(r"k by the law: \d\.\d\d \(of plain alone\);", page)
     read = read_table(tmp_path / "results/hysteresis.nc")
-    assert [spectrum_label(read, index) for index in (0, 1)] == [
-        r"flat, $\lambda_\mathrm{s}=0.1$",
-        r"s, $\lambda_\mathrm{s}=0.1$",
-    ]
+    assert [spectrum_label(read, index).partition(":")[0] for index in (0, 1)] == ["plain", "s"]
     row = table.sel(spectrum="s", amplitude=0.1, realisation=0)
     simulation = cf.simulation(row)
     assert "pearson3 skew -1" in simulation.surface.attrs["parameters"]
