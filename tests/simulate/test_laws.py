@@ -94,14 +94,17 @@ def test_a_measured_scene_takes_its_own_laws(name):
     chosen_values = {"sites": 2.2, "cubic": 3.0, "pixels": 3.0, "tolerance": 1e-4}
     errors = combined_error(scene.kind, scene.spectrum, 0.16, chosen_values, LAW_CUTOFFS)
     for direction, error in zip((1, -1), errors, strict=True):
-        own = {
+        laws_of_scene = {
             law.setting: law.parts(chosen_values[law.setting])
             for law in read_laws()
             if (law.shape, law.elastic_energy, law.direction) == (scene.shape, 0.16, direction)
             and law.setting != "linear"
         }
-        bias = max(own["cubic"][0], own["sites"][0] + own["pixels"][0] + own["tolerance"][0])
-        scatter = math.hypot(*(scatter for _, scatter in own.values()))
+        bias = max(
+            laws_of_scene["cubic"][0],
+            laws_of_scene["sites"][0] + laws_of_scene["pixels"][0] + laws_of_scene["tolerance"][0],
+        )
+        scatter = math.hypot(*(scatter for _, scatter in laws_of_scene.values()))
         assert error == pytest.approx(0.16 * math.hypot(bias, scatter))
 
 
@@ -122,10 +125,10 @@ def test_an_error_is_refused_at_amplitudes_where_none_was_measured(elastic_energ
 
 
 def test_a_straight_front_asks_for_the_same_in_all_units():
-    found = {
+    settings_found = {
         chosen_settings(
             0.03, "roughness", SelfAffineSpectrum(size, 4 * size, 0.8), 0.005, LAW_CUTOFFS
         )
         for size in (1e-3, 0.02, 1.0)
     }
-    assert len(found) == 1
+    assert len(settings_found) == 1

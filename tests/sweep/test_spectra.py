@@ -191,8 +191,8 @@ def test_a_sweep_of_anisotropic_surfaces_has_values_but_no_k_by_the_law(tmp_path
 def test_anisotropy_that_cannot_be_simulated_is_named_with_a_remedy(tmp_path, changes, words):
     numerics = changes.pop("numerics", None)
     kept = {"tile": {"roll_offs": 4, "cutoffs": 20}, "max_sweeps": 9, "solver": "newton"}
-    others = {"numerics": numerics | kept} if numerics else {}
-    sentence = message_of(configuration(tmp_path, GROOVES | changes, **others))
+    sections = {"numerics": numerics | kept} if numerics else {}
+    sentence = message_of(configuration(tmp_path, GROOVES | changes, **sections))
     assert [word for word in words if word not in sentence] == []
 
 

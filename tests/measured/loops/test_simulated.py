@@ -81,20 +81,20 @@ def test_the_energy_lost_is_that_of_all_instabilities():
 
 
 def test_the_command_prints_reduced_units_and_those_of_a_sphere_that_is_named(path):
-    known = float(cf.load_result(path).w_retr)
+    w_retr = float(cf.load_result(path).w_retr)
     done = loop(path, "--json")
     assert done.exit_code == 0, done.output
     content = json.loads(done.stdout)
     assert content["units"] == "reduced"
-    assert content["w_retr"]["value"] == pytest.approx(known, rel=1e-12)
-    assert loop(path).stdout.splitlines()[2].split()[:3] == ["w_retr", f"{known:.4g}", "w_int"]
+    assert content["w_retr"]["value"] == pytest.approx(w_retr, rel=1e-12)
+    assert loop(path).stdout.splitlines()[2].split()[:3] == ["w_retr", f"{w_retr:.4g}", "w_int"]
     sphere = ("--radius", "1.25mm", "--modulus", "0.7MPa", "--poisson", "0.5")
     sphere += ("--work-of-adhesion", "63mJ/m2")
     done = loop(path, *sphere, "--figure", path.with_name("loop.png"), "--json")
     assert done.exit_code == 0, done.output
     content = json.loads(done.stdout)
     assert content["units"] == "SI"
-    assert content["w_retr"]["value"] == pytest.approx(63e-3 * known, rel=1e-12)
+    assert content["w_retr"]["value"] == pytest.approx(63e-3 * w_retr, rel=1e-12)
     assert path.with_name("loop.png").stat().st_size > 1e4
 
 
