@@ -249,7 +249,7 @@ def test_instabilities_sweep_what_the_front_travels_and_lose_energy(surface, jum
 
 
 @pytest.mark.parametrize(
-    ("given", "sentence"),
+    ("changes", "sentence"),
     [
         ({"short_cutoff": -1.0}, "short_cutoff is -1.0;"),
         ({"elastic_energy": 1.5}, "elastic_energy is 1.5; it must be less than 1"),
@@ -262,9 +262,9 @@ def test_instabilities_sweep_what_the_front_travels_and_lose_energy(surface, jum
         ({"seed": -1}, "seed is -1; it must be greater"),
     ],
 )
-def test_a_surface_that_cannot_be_is_refused(array, sentence):
+def test_a_surface_that_cannot_be_is_refused(changes, sentence):
     with pytest.raises(ValueError, match=sentence):
-        cf.random_surface(**(COARSE | array))
+        cf.random_surface(**(COARSE | changes))
 
 
 @pytest.mark.parametrize(
@@ -377,7 +377,7 @@ def test_an_array_is_the_same_surface_in_all_units():
 
 
 @pytest.mark.parametrize(
-    ("values", "given", "sentence"),
+    ("values", "side", "sentence"),
     [
         (
             1 + WAVE,
@@ -575,7 +575,7 @@ def test_simulations_without_a_value_are_warned_of(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("run", "given", "sentence"),
+    ("run", "arguments", "sentence"),
     [
         (cf.run_loop, {"solver": "magic"}, "solver is 'magic'; it must be one of newton"),
         (cf.run_loop, {"step": 0.0}, "step is 0.0; it must be greater"),

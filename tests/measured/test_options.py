@@ -43,7 +43,7 @@ def test_an_option_is_given_once_for_all_scans_or_once_for_each():
 
 
 @pytest.mark.parametrize(
-    ("given", "sentence"),
+    ("arguments", "sentence"),
     [
         ({"channel": "Phase"}, "has no channel 'Phase'"),
         ({"crop": "1um"}, "^crop is '1um'; write both ends"),

@@ -136,7 +136,7 @@ def test_samples_that_miss_the_waves_of_a_surface_are_refused_and_as_many_as_it_
 
 
 @pytest.mark.parametrize(
-    ("given", "sentence"),
+    ("arguments", "sentence"),
     [
         ({"error": 0.1, "sites": 40}, r"error is 0.1, which decides sites and samples; leave the"),
         ({"error": 0.1, "samples": 4}, r"error is 0.1, .*; leave these out, or the error"),

@@ -64,7 +64,7 @@ def test_a_soft_machine_that_is_taken_as_stiff_is_told_or_refused():
 
 
 @pytest.mark.parametrize(
-    ("made", "given"),
+    ("made", "preload"),
     [
         ({"without": "radius", "preload": 2.0, "drift": 0.3}, 1e3),
         ({"without": "radius", "preload": 3.0, "force_noise": 2e-4, "stiffness": 300.0}, 300.0),

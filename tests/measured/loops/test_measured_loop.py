@@ -70,7 +70,7 @@ def test_youngs_modulus_and_poissons_ratio_are_the_contact_modulus():
 
 
 @pytest.mark.parametrize(
-    ("given", "sentence"),
+    ("arguments", "sentence"),
     [
         ({"modulus": 0.7e6}, "modulus is 700000.0 and poisson is None; give both"),
         ({"poisson": 0.5}, "modulus is None and poisson is 0.5; give both"),

@@ -27,7 +27,7 @@ def joined(*recordings):
 
 @pytest.mark.parametrize("modulus", [None, MODULUS])
 @pytest.mark.parametrize(
-    ("rows", "name", "other", "truth"),
+    ("rows", "name", "missing", "truth"),
     [(slice(0, TURN), "w_appr", "w_retr", W_APPR), (slice(TURN, None), "w_retr", "w_appr", W_RETR)],
 )
 def test_a_branch_alone_has_its_work_of_adhesion(rows, name, missing, truth, modulus):

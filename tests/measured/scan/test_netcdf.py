@@ -29,7 +29,7 @@ def classic(
 
 
 @pytest.mark.parametrize(
-    ("factor", "given"),
+    ("factor", "options"),
     [
         (1e6, {}),
         (1e9, {"units": ("um", "nm")}),

@@ -91,7 +91,7 @@ def test_a_measurement_counts_once_under_any_name_in_any_unit(tmp_path, noise):
 
 
 @pytest.mark.parametrize(
-    ("known", "low", "high"),
+    ("reliability", "low", "high"),
     [
         ({"resolution": {"value": 0.9, "unit": "um"}}, 0.9e-6, 0.9e-6),
         ({"tip_radius": {"value": 0.5, "unit": "um"}}, 0.7e-6, 2.5e-6),
