@@ -104,7 +104,7 @@ def _radius_sentence(has_radius: NDArray[np.bool_], touches: NDArray[np.bool_]) 
         return ""
     return (
         f" {n_missing} rows next to the contact have a force and lack a contact radius: they count "
-        "as contact, not as the zero."
+        "as contact, not as the zero. If the camera lags behind the force, move the radii up."
     )
 
 
