@@ -38,6 +38,7 @@ def test_a_drift_over_rows_of_unequal_times_is_named():
     whole = loop(0, drift=0.3)
     every, fifth = np.arange(170), np.arange(170, whole.force.size, 5)
     assert drift_is_named(taken(whole, np.concatenate([every, fifth])))
+    whole = loop(0, drift=0.1)
     rest = np.repeat(np.arange(whole.force.size), 1 + 300 * (np.arange(320) == 160))
     assert drift_is_named(taken(whole, rest))
 
