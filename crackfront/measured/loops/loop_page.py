@@ -53,7 +53,7 @@ def loop_numbers(loop: MeasuredLoop) -> Iterator[tuple[str, str]]:
 
 def _averaged_rows(loop: MeasuredLoop) -> str:
     """Counts of the averaged rows of each branch that has some."""
-    counts = []
+    counts: list[str] = []
     for direction, name in ((1, "approach"), (-1, "retraction")):
         n_row = int(np.sum(loop.in_window & (loop.direction == direction)))
         if n_row:
