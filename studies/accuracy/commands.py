@@ -55,7 +55,8 @@ _output = output_option(default=Path("results/accuracy"), help="Folder of the re
     default="settings",
     show_default=True,
     help="Errors of single settings; of numerics that the laws choose; of these on surfaces that "
-    "have no part in the laws; of schedules and tiles; true and stated errors.",
+    "have no part in the laws, and again where rare avalanches are counted; of schedules and "
+    "tiles; true and stated errors.",
 )
 @click.option(
     "--realisations", type=whole(Range(2, 1e6)), default=8, show_default=True, help="Surfaces."
