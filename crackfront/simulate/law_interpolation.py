@@ -73,15 +73,6 @@ class LawInterpolation:
             branches.append(np.tensordot(weights, errors, axes=1))
         return np.stack(branches, axis=1)
 
-    def avalanche(self) -> float:
-        """Change of w_appr by the largest avalanche for :data:`LAW_CUTOFFS` (Units: e_el)."""
-        avalanche = 0.0
-        for shape, weight in self.weights:
-            laws = error_laws()[shape, "sites", 1]
-            measured = np.array([[law.avalanche] for law in laws])
-            avalanche += weight * float(self._largest(laws, measured)[0])
-        return avalanche
-
     def _largest(self, laws: Sequence[ErrorLaw], measured: Array) -> Array:
         """Largest value in the range of amplitudes, interpolated between the laws."""
         energies = np.array([law.elastic_energy for law in laws])
