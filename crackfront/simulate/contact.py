@@ -160,8 +160,8 @@ class Forecast(ABC):
     def spring_at(self, work_of_adhesion: float) -> float:
         """Length L_kappa of the springs on the front at the largest load (Units: length).
 
-        The work of adhesion (Units: w_int) is the apparent one of a branch. ValueError if the
-        edge is unstable.
+        The work of adhesion (Units: w_int) is the apparent one of a branch. Infinity if the edge
+        is unstable.
         """
 
 
