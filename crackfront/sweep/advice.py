@@ -64,8 +64,8 @@ def expectation(simulation: Simulation) -> Expectation:
     if not isinstance(schedule, Pressed):
         return Expectation(disorder, size, factor)
 
-    works, travel = _expected_works(simulation, factor), _steady_travel(simulation, size)
-    expected = simulation.surface, works, travel
+    works, transient = _expected_works(simulation, factor), _transient(simulation, size)
+    expected = simulation.surface, works, transient
     if schedule.steady_penetration(*expected, _DOUBTFUL_STATES) <= schedule.max_penetration:
         return Expectation(disorder, size, factor)
     return Expectation(
@@ -78,7 +78,7 @@ def expectation(simulation: Simulation) -> Expectation:
     )
 
 
-def _steady_travel(simulation: Simulation, size: float) -> float:
+def _transient(simulation: Simulation, size: float) -> float:
     """Travel of a front of a size g after which every site has forgotten its start."""
     rough = front_rms(force_correlation_length(simulation.kind, simulation.spectrum), size)
     return simulation.correlation_length + _LAST_SITE * rough
