@@ -416,10 +416,13 @@ class Progress:
     """How far one spectrum is."""
 
     name: str
+    """Name of the spectrum."""
     done: int
+    """Simulations with values."""
     failed: int
+    """Simulations that ended without values."""
     left: int
-    """Simulations with values; those that ended without; all others."""
+    """Simulations that are still to be run."""
     seconds: float
     """Processor time that is expected for those that are left. (Units: s)"""
 

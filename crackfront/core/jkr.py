@@ -148,7 +148,8 @@ def spring(radius: float, work_of_adhesion: float = 1.0) -> float:
     .. math:: L_\kappa = \frac{w_{int}}{dG/da} = \frac{a}{\sqrt{6 a^3 w} - w}
 
     Over it the edge is as stiff against a wave as against the penetration, at which it is fixed.
-    (Units: reduced lateral length) It is infinite at and below pull-off, where the edge is unstable.
+    At and below pull-off, where the edge is unstable, it is infinite.
+    (Units: reduced lateral length)
 
     Examples
     --------

@@ -17,7 +17,7 @@ from studies.accuracy.study import Errors, SceneErrors, pareto_front, rms
 from studies.numbers import Number
 from studies.pages import markdown_table
 
-Found = TypeVar("Found")
+Content = TypeVar("Content")
 
 _TARGETS = (0.1, 0.03, 0.01, 0.003)
 """Relative errors of the hysteresis whose cheapest settings the report names."""
@@ -36,8 +36,8 @@ class Measured:
     @property
     def scenes(self) -> dict[str, SceneErrors]:
         """Errors of single settings and of requests, by the names of their scenes."""
-        both = self.settings | self.requested
-        studies = {name: both[name] for name in SCENES if name in both}
+        errors_by_scene = self.settings | self.requested
+        studies = {name: errors_by_scene[name] for name in SCENES if name in errors_by_scene}
         for name in self.settings.keys() & self.requested.keys():
             errors = self.settings[name].errors + self.requested[name].errors
             studies[name] = replace(self.settings[name], errors=errors)
@@ -96,7 +96,7 @@ def compared_numbers(study_errors: Measured) -> dict[str, Number]:
     return numbers
 
 
-def _stored(folder: Path, study: str, read: Callable[[Path], Found]) -> dict[str, Found]:
+def _stored(folder: Path, study: str, read: Callable[[Path], Content]) -> dict[str, Content]:
     """Files of a study in a folder, read, by the names of its scenes."""
     paths = {name: folder / f"{study}-{name}.nc" for name in SCENES}
     return {name: read(path) for name, path in paths.items() if path.exists()}
@@ -110,7 +110,7 @@ def _numbers(errors: Errors) -> str:
     )
 
 
-def _of_k(study: SceneErrors, errors: Errors) -> list[str]:
+def _factor_errors(study: SceneErrors, errors: Errors) -> list[str]:
     """Rms errors of k of both branches."""
     return [f"{rms(column) / study.scene.elastic_energy:.2g}" for column in errors.adhesion.T]
 
@@ -147,7 +147,13 @@ _CHOSEN = "scene | requested | numerics | CPU s"
 def _chosen(study: SceneErrors, errors: Errors) -> list[str]:
     """Entries of :data:`_CHOSEN`, and rms errors of k, of numerics that the laws chose."""
     seconds = f"{errors.seconds.mean():.3g}"
-    return [study.scene.name, f"{errors.value:g}", _numbers(errors), seconds, *_of_k(study, errors)]
+    return [
+        study.scene.name,
+        f"{errors.value:g}",
+        _numbers(errors),
+        seconds,
+        *_factor_errors(study, errors),
+    ]
 
 
 def _unseen_table(studies: Iterable[SceneErrors]) -> str:
@@ -155,9 +161,9 @@ def _unseen_table(studies: Iterable[SceneErrors]) -> str:
     rows = []
     for study in studies:
         for errors in study.errors:
-            of_k = errors.adhesion / study.scene.elastic_energy
-            biases = [f"{bias:+.2g}" for bias in of_k.mean(axis=0)]
-            rows.append([*_chosen(study, errors), *biases, f"{np.abs(of_k).max():.2g}"])
+            factor_errors = errors.adhesion / study.scene.elastic_energy
+            biases = [f"{bias:+.2g}" for bias in factor_errors.mean(axis=0)]
+            rows.append([*_chosen(study, errors), *biases, f"{np.abs(factor_errors).max():.2g}"])
     return markdown_table(
         f"{_CHOSEN} | k of w_appr: rms | k of w_retr: rms | k of w_appr: bias | k of w_retr: bias "
         "| largest of one surface",
@@ -215,7 +221,7 @@ def _setting_table(study: SceneErrors) -> str:
                 f"{seconds[index]:.3g}",
                 f"{100 * values.mean():+.2f} ± {100 * spread:.2f}",
                 f"{100 * error[index]:.2f}",
-                *_of_k(study, errors),
+                *_factor_errors(study, errors),
                 f"{rms(errors.force):.1g}",
                 f"{rms(errors.front_rms):.2g}",
                 f"{np.max(errors.front_max):.2g}",
