@@ -17,7 +17,7 @@ from studies.accuracy.study import Errors, SceneErrors, pareto_front, rms
 from studies.numbers import Number
 from studies.pages import markdown_table
 
-Found = TypeVar("Found")
+Content = TypeVar("Content")
 
 _TARGETS = (0.1, 0.03, 0.01, 0.003)
 """Relative errors of the hysteresis whose cheapest settings the report names."""
@@ -41,8 +41,8 @@ class Measured:
     @property
     def scenes(self) -> dict[str, SceneErrors]:
         """Errors of single settings and of requests, by the names of their scenes."""
-        both = self.settings | self.requested
-        studies = {name: both[name] for name in SCENES if name in both}
+        errors_by_scene = self.settings | self.requested
+        studies = {name: errors_by_scene[name] for name in SCENES if name in errors_by_scene}
         for name in self.settings.keys() & self.requested.keys():
             errors = self.settings[name].errors + self.requested[name].errors
             studies[name] = replace(self.settings[name], errors=errors)
@@ -75,7 +75,7 @@ def error_tables(study_errors: Measured) -> dict[str, str]:
     if study_errors.requested:
         studies = study_errors.requested.values()
         rows = [
-            [*_chosen(study, errors), *_of_k(study, errors)]
+            [*_chosen(study, errors), *_factor_errors(study, errors)]
             for study in studies
             for errors in study.errors
         ]
@@ -108,7 +108,7 @@ def compared_numbers(study_errors: Measured) -> dict[str, Number]:
     return numbers
 
 
-def _stored(folder: Path, study: str, read: Callable[[Path], Found]) -> dict[str, Found]:
+def _stored(folder: Path, study: str, read: Callable[[Path], Content]) -> dict[str, Content]:
     """Files of a study in a folder, read, by the names of its scenes."""
     paths = {name: folder / f"{study}-{name}.nc" for name in SCENES}
     return {name: read(path) for name, path in paths.items() if path.exists()}
@@ -122,7 +122,7 @@ def _numbers(errors: Errors) -> str:
     )
 
 
-def _of_k(study: SceneErrors, errors: Errors) -> list[str]:
+def _factor_errors(study: SceneErrors, errors: Errors) -> list[str]:
     """Rms errors of k of both branches."""
     return [f"{rms(column) / study.scene.elastic_energy:.2g}" for column in errors.adhesion.T]
 
@@ -168,9 +168,9 @@ def _unseen_table(studies: Iterable[SceneErrors]) -> str:
     pooled: dict[float, list[Array]] = {}
     for study in studies:
         for errors in study.errors:
-            of_k = errors.adhesion / study.scene.elastic_energy
-            pooled.setdefault(errors.value, []).append(of_k)
-            rows.append([*_chosen(study, errors), *_error_sizes(of_k, errors.value)])
+            factor_errors = errors.adhesion / study.scene.elastic_energy
+            pooled.setdefault(errors.value, []).append(factor_errors)
+            rows.append([*_chosen(study, errors), *_error_sizes(factor_errors, errors.value)])
     for requested, parts in pooled.items():
         sizes = _error_sizes(np.concatenate(parts), requested)
         rows.append(["**all**", f"{requested:g}", "", "", *sizes])
@@ -181,19 +181,19 @@ def _unseen_table(studies: Iterable[SceneErrors]) -> str:
     )
 
 
-def _error_sizes(of_k: Array, requested: float) -> list[str]:
+def _error_sizes(factor_errors: Array, requested: float) -> list[str]:
     """Sizes of errors of k, (realisation, branch), as a table shows them.
 
     Few are above the request, by an avalanche that one discretisation has and another has not.
     """
-    is_above = np.abs(of_k) > requested
+    is_above = np.abs(factor_errors) > requested
     return [
-        *(f"{rms(column):.2g}" for column in of_k.T),
-        *(f"{bias:+.2g}" for bias in of_k.mean(axis=0)),
-        f"{np.abs(of_k).max():.2g}",
-        f"{np.median(np.abs(of_k)):.2g}",
+        *(f"{rms(column):.2g}" for column in factor_errors.T),
+        *(f"{bias:+.2g}" for bias in factor_errors.mean(axis=0)),
+        f"{np.abs(factor_errors).max():.2g}",
+        f"{np.median(np.abs(factor_errors)):.2g}",
         f"{100 * np.mean(is_above):.1f}%",
-        f"{rms(of_k[~is_above]):.2g}",
+        f"{rms(factor_errors[~is_above]):.2g}",
     ]
 
 
@@ -247,7 +247,7 @@ def _setting_table(study: SceneErrors) -> str:
                 f"{seconds[index]:.3g}",
                 f"{100 * values.mean():+.2f} ± {100 * spread:.2f}",
                 f"{100 * error[index]:.2f}",
-                *_of_k(study, errors),
+                *_factor_errors(study, errors),
                 f"{rms(errors.force):.1g}",
                 f"{rms(errors.front_rms):.2g}",
                 f"{np.max(errors.front_max):.2g}",
