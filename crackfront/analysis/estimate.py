@@ -39,8 +39,9 @@ class Estimate(Generic[Number]):
     standard_error: Number
     """NaN if the data are not sufficient (one realisation), or give only an interval."""
     low: Number
+    """Lower end of the 95% interval; NaN if the data are not sufficient."""
     high: Number
-    """Ends of the 95% interval; NaN if the data are not sufficient."""
+    """Upper end of the 95% interval; NaN if the data are not sufficient."""
 
     def each(self, function: Callable[[Number], Other]) -> Estimate[Other]:
         """Apply a function, such as an index or a change of units, to all four entries."""
@@ -50,7 +51,7 @@ class Estimate(Generic[Number]):
         """The estimates at an index of their arrays."""
         return self.each(lambda values: values[index])
 
-    def only(self: Estimate, condition: NDArray[np.bool_]) -> Estimate:
+    def where(self: Estimate, condition: NDArray[np.bool_]) -> Estimate:
         """The estimates where a condition is true, NaN elsewhere."""
         return self.each(lambda values: np.where(condition, values, np.nan))
 
@@ -151,7 +152,7 @@ def mean_estimate(values: Array) -> tuple[Estimate, NDArray[np.int64]]:
     The standard error is the bootstrap's, which has a closed form for a mean.
     """
     count = np.asarray(np.count_nonzero(np.isfinite(values), axis=-1))
-    error = scatter(values) / np.sqrt(np.maximum(count, 1))
+    error = finite_std(values) / np.sqrt(np.maximum(count, 1))
     return student_estimate(finite_mean(values), error, count - 1), count
 
 
@@ -170,11 +171,11 @@ def resample_counts(n_sample: int, n_realisation: int, rng: np.random.Generator)
     return counts.reshape(n_sample, n_realisation).astype(float)
 
 
-def scatter(draws: Array) -> Array:
+def finite_std(draws: Array) -> Array:
     """Standard deviation over the last axis without NaN; NaN with fewer than two values."""
     square = finite_sum((draws - finite_mean(draws)[..., None]) ** 2)
     freedom = np.count_nonzero(np.isfinite(draws), axis=-1) - 1
-    return np.asarray(np.sqrt(ratio(square, freedom)))
+    return np.asarray(np.sqrt(ratio_or_nan(square, freedom)))
 
 
 def finite_sum(values: Array) -> Array:
@@ -184,7 +185,7 @@ def finite_sum(values: Array) -> Array:
 
 def finite_mean(values: Array) -> Array:
     """Mean over the last axis without NaN."""
-    return ratio(finite_sum(values), np.count_nonzero(np.isfinite(values), axis=-1))
+    return ratio_or_nan(finite_sum(values), np.count_nonzero(np.isfinite(values), axis=-1))
 
 
 def combination(parts: Estimate, freedom: ArrayLike, coefficients: Array) -> Estimate:
@@ -206,13 +207,13 @@ def combination(parts: Estimate, freedom: ArrayLike, coefficients: Array) -> Est
     return student_estimate(np.sum(factors * parts.value[used]), np.sqrt(total), joint)
 
 
-def ratio(numerator: ArrayLike, denominator: ArrayLike) -> Array:
+def ratio_or_nan(numerator: ArrayLike, denominator: ArrayLike) -> Array:
     """Quotient, NaN where the denominator is not positive."""
     above, below = np.broadcast_arrays(np.asarray(numerator, float), np.asarray(denominator, float))
     return np.divide(above, below, out=np.full(above.shape, np.nan), where=below > 0)
 
 
-def slope(abscissa: Array, ordinate: Array) -> tuple[Array, Array]:
+def least_squares_slope(abscissa: Array, ordinate: Array) -> tuple[Array, Array]:
     """Least-squares slopes of lines along the last axis, with equal weights and without NaN.
 
     A slope is NaN with fewer than two distinct abscissas. Also returns the sum of squared
@@ -223,4 +224,4 @@ def slope(abscissa: Array, ordinate: Array) -> tuple[Array, Array]:
     deviation = np.where(finite, abscissa - centre[..., None], 0.0)
     spread = np.sum(deviation**2, axis=-1)
     resolved = np.where(np.count_nonzero(finite, axis=-1) > 1, spread, 0.0)
-    return ratio(np.sum(deviation * ordinate, axis=-1, where=finite), resolved), resolved
+    return ratio_or_nan(np.sum(deviation * ordinate, axis=-1, where=finite), resolved), resolved

@@ -88,19 +88,23 @@ class Law:
     covariance: tuple[tuple[float, ...], ...]
     """Statistical covariance of the coefficients and the finite-size exponent, all fitted."""
     model_factor: float
+    """Model error of ln k: its standard deviation between surfaces of equal s and g."""
     model_length: float
-    """Model error: standard deviation of ln k, and of ln g, between surfaces of equal s and g."""
+    """Model error of ln g: its standard deviation between such surfaces."""
     numerical: float
     """Standard error of ln k by the numerics."""
     exponent: tuple[float, float]
     """The finite-size exponent if it is fitted, and its standard error."""
     rms: float
+    """Rms relative departure of the measured k from the law, for g above 1."""
     worst: float
-    """Relative departure of the measured k from the law, for g above 1."""
+    """Largest relative departure of the measured k from the law, for g above 1."""
     disorder: tuple[float, float]
+    """Measured range of s."""
     size: tuple[float, float]
+    """Measured range of g."""
     breadth: tuple[float, float]
-    """Measured ranges of s, g and the breadth."""
+    """Measured range of the breadth."""
     departures: tuple[tuple[float, ...], ...]
     """Departures of the measured k from the law, as rows of :class:`Departure`."""
 
@@ -119,15 +123,19 @@ class Departure(NamedTuple):
     """Relative departure of the measured k from the law, for a group of straight fronts."""
 
     narrowest: float
+    """Least breadth of the spectra."""
     broadest: float
-    """Breadths of the spectra."""
+    """Breadth below which the spectra lie."""
     least_size: float
+    """Least size g."""
     largest_size: float
-    """Sizes g."""
+    """Size g below which the fronts lie."""
     mean: float
+    """Mean of k over the law, less 1."""
     rms: float
+    """Rms of k over the law, less 1."""
     fronts: int
-    """Spectra, amplitudes and springs."""
+    """Number of spectra, amplitudes and springs."""
 
     @property
     def sentence(self) -> str:
@@ -146,9 +154,11 @@ class PinningFactors:
     factor: Estimate
     """k with 95% intervals of the statistical, numerical and model errors together."""
     statistical: Array
+    """Standard error of k from the measured fronts."""
     numerical: Array
+    """Standard error of k from their numerics."""
     model: Array
-    """The three standard errors of k."""
+    """Standard error of k between surfaces of equal disorder and size."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -158,9 +168,11 @@ class PinningFactor:
     factor: Estimate[float]
     """k with the 95% interval of the statistical, numerical and model errors together."""
     statistical: float
+    """Standard error of k from the measured fronts."""
     numerical: float
+    """Standard error of k from their numerics."""
     model: float
-    """The three standard errors of k."""
+    """Standard error of k between surfaces of equal disorder and size."""
     negative_share: float
     """Part of a Gaussian w_loc that is negative. If it is large, do not trust the linearisation of
     the roughness."""
@@ -394,7 +406,7 @@ def infinite_ratio(
 
     slope = law_slope(law.coefficients, s, g, beta) / finite
     error = np.hypot(_statistical_error(law, ratio), law.model_length * slope * value)
-    return normal_estimate(value, error).only(g >= law.size[0])
+    return normal_estimate(value, error).where(g >= law.size[0])
 
 
 def _statistical_error(law: Law, function: Callable[[Array, Array], Array]) -> Array:
@@ -423,8 +435,9 @@ class _Octaves(NamedTuple):
     small: Array
     """Size below the smallest."""
     broad: Array
+    """Breadth above the broadest spectrum; zero within a tolerance."""
     narrow: Array
-    """Breadth above the broadest and below the narrowest spectrum; zero within a tolerance."""
+    """Breadth below the narrowest spectrum; zero within a tolerance."""
 
 
 def _octaves_outside(law: Law, w_rms: ArrayLike, size: ArrayLike, breadth: ArrayLike) -> _Octaves:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import functools
 import math
 from collections.abc import Callable
@@ -48,10 +47,11 @@ class SphereFactors:
     both: Estimate[float]
     """Mean k of the two branches."""
     spring: float
+    """L_kappa of the smooth contact. (Units: reduced lateral length)"""
     larkin_length: float
-    """L_kappa of the smooth contact, and the Larkin length. (Units: reduced lateral length)"""
+    """Larkin length. (Units: reduced lateral length)"""
     size: float
-    """g, their ratio."""
+    """g, the ratio of these two lengths."""
 
     @property
     def warning(self) -> str:
@@ -97,8 +97,21 @@ def sphere_factors(
     >>> 2.0 < factors.both.value < 2.3
     True
     """
-    spring = _sphere_spring(elastic_energy, contact_radius)
-    straight = factors_on_springs(kind, spectrum, elastic_energy, spring)
+    if not 0 < elastic_energy < 1:
+        raise ValueError(
+            f"energy of full conformity is {elastic_energy:.4g} w_int; the factors k need one "
+            "between 0 and 1"
+        )
+    check_within("contact radius", contact_radius, LENGTH)
+    spring_at = functools.partial(jkr.spring, contact_radius)
+    sizes = sizes_on_springs(kind, spectrum, elastic_energy, spring_at)
+    if not sizes.is_stable:
+        lost = jkr.pull_off_radius(sizes.retraction.work_of_adhesion)
+        raise ValueError(
+            f"contact radius {contact_radius:g} is at or below pull-off ({lost:.4g}), where the "
+            "edge is unstable; enlarge it"
+        )
+    straight = straight_factors(kind, elastic_energy, sizes)
     approach, retraction = _on_a_circle(straight.approach), _on_a_circle(straight.retraction)
     both = _mean(approach.factor, retraction.factor)
     return replace(straight, approach=approach, retraction=retraction, both=both)
@@ -110,15 +123,17 @@ def sphere_estimates(
     """Mean factors k of both branches and sizes g, for several spheres and one spectrum.
 
     Arguments are as for :func:`sphere_factors`, with e_el, radii and results of the shape (n,).
-    Where that function raises a ValueError, as close to pull-off, results are NaN.
+    Results are NaN where e_el or a radius is out of bounds, and close to pull-off.
     """
     breadth = spectral_breadth(kind, spectrum)
     sizes = np.full((3, elastic_energy.size), np.nan)
-    for place, (energy, radius) in enumerate(zip(elastic_energy, contact_radius, strict=True)):
-        with contextlib.suppress(ValueError):
-            spring = _sphere_spring(float(energy), float(radius))
-            on_springs = _sizes_on_springs(kind, spectrum, float(energy), spring, breadth)
-            sizes[:, place] = on_springs.approach, on_springs.retraction, on_springs.smooth
+    in_bounds = (elastic_energy > 0) & (elastic_energy < 1)
+    in_bounds &= (contact_radius >= LENGTH.least) & (contact_radius <= LENGTH.most)
+    for place in np.flatnonzero(in_bounds):
+        spring_at = functools.partial(jkr.spring, float(contact_radius[place]))
+        sphere = sizes_on_springs(kind, spectrum, float(elastic_energy[place]), spring_at, breadth)
+        if sphere.is_stable:
+            sizes[:, place] = sphere.approach.size, sphere.retraction.size, sphere.smooth
     w_rms = adhesion_rms(np.where(np.isfinite(sizes[0]), elastic_energy, np.nan))
     approach, retraction = (
         _widened_on_a_circle(pinning_factors(w_rms, size, breadth).factor) for size in sizes[:2]
@@ -126,39 +141,75 @@ def sphere_estimates(
     return _mean(approach, retraction), sizes[2]
 
 
-def _sphere_spring(elastic_energy: float, contact_radius: float) -> Callable[[float], float]:
-    """Function that gives the length of a sphere's springs at a work of adhesion (Units: w_int)."""
-    if not 0 < elastic_energy < 1:
-        raise ValueError(
-            f"energy of full conformity is {elastic_energy:.4g} w_int; the factors k need one "
-            "between 0 and 1"
-        )
-    check_within("contact radius", contact_radius, LENGTH)
-    return functools.partial(jkr.spring, contact_radius)
+class BranchSize(NamedTuple):
+    """Size of the front on a branch, at the work of adhesion that follows from its k."""
+
+    work_of_adhesion: float
+    """Apparent work of adhesion. (Units: w_int)"""
+    size: float
+    """g; infinite at and below pull-off."""
 
 
-def factors_on_springs(
+class SpringSizes(NamedTuple):
+    """Sizes g of a front on springs, and the lengths that they are ratios of."""
+
+    approach: BranchSize
+    retraction: BranchSize
+    smooth: float
+    """g without hysteresis, at the mean of w_loc."""
+    spring: float
+    """L_kappa of the smooth contact. (Units: as the spectrum)"""
+    larkin_length: float
+    """Larkin length. (Units: as the spectrum)"""
+    breadth: float
+    """Breadth of the spectrum."""
+
+    @property
+    def is_stable(self) -> bool:
+        """Whether the edge is stable; it is lost first in retraction, where it adheres most."""
+        return math.isfinite(self.retraction.size)
+
+
+def sizes_on_springs(
     kind: FieldKind,
     spectrum: Spectrum,
     elastic_energy: float,
-    spring: Callable[[float], float],
-) -> SphereFactors:
-    """Factors k of a straight front on springs whose length depends on the work of adhesion.
+    spring_at: Callable[[float], float],
+    breadth: float | None = None,
+) -> SpringSizes:
+    """Sizes g of both branches of a front on springs that depend on the work of adhesion.
 
-    `spring` returns this length L_kappa (Units: as the spectrum) at a work of adhesion
-    (Units: w_int). It raises a ValueError if the contact is unstable there. ValueError also if the
-    spectrum is anisotropic.
+    `spring_at` returns the length L_kappa of the springs (Units: as the spectrum) at a work of
+    adhesion (Units: w_int), infinity where the edge is unstable. A caller with many energies
+    states the breadth of the spectrum, which takes time. ValueError if the spectrum is anisotropic.
     """
     if not spectrum.is_isotropic:
         raise ValueError(
             "the spectrum is anisotropic, and the law of k was measured for isotropic ones; "
             "simulate the surface instead"
         )
-    breadth = spectral_breadth(kind, spectrum)
-    sizes = _sizes_on_springs(kind, spectrum, elastic_energy, spring, breadth)
+    if breadth is None:
+        breadth = spectral_breadth(kind, spectrum)
+    w_rms = adhesion_rms(elastic_energy)
+    larkin = larkin_length(kind, spectrum, w_rms)
+    mean = mean_adhesion(kind, elastic_energy)
+    spring = spring_at(mean)
+    return SpringSizes(
+        approach=_branch_size(w_rms, larkin, mean, -1, spring_at, breadth),
+        retraction=_branch_size(w_rms, larkin, mean, 1, spring_at, breadth),
+        smooth=spring / larkin,
+        spring=spring,
+        larkin_length=larkin,
+        breadth=breadth,
+    )
+
+
+def straight_factors(kind: FieldKind, elastic_energy: float, sizes: SpringSizes) -> SphereFactors:
+    """Factors k of a straight front of these sizes, which must be stable."""
     w_rms = adhesion_rms(elastic_energy)
     approach, retraction = (
-        pinning_factor(w_rms, size, kind, breadth) for size in (sizes.approach, sizes.retraction)
+        pinning_factor(w_rms, branch.size, kind, sizes.breadth)
+        for branch in (sizes.approach, sizes.retraction)
     )
     return SphereFactors(
         approach,
@@ -198,44 +249,14 @@ def _widened_on_a_circle(factor: Estimate) -> Estimate:
     return replace(wider, low=low)
 
 
-class _SpringSizes(NamedTuple):
-    """Sizes g of a front on springs, and the lengths that they are ratios of."""
-
-    approach: float
-    retraction: float
-    smooth: float
-    """g without hysteresis, at the mean of w_loc."""
-    spring: float
-    larkin_length: float
-    """L_kappa of the smooth contact, and the Larkin length."""
-
-
-def _sizes_on_springs(
-    kind: FieldKind,
-    spectrum: Spectrum,
-    elastic_energy: float,
-    spring: Callable[[float], float],
-    breadth: float,
-) -> _SpringSizes:
-    """Sizes g of both branches; arguments and errors as for :func:`factors_on_springs`."""
-    w_rms = adhesion_rms(elastic_energy)
-    larkin = larkin_length(kind, spectrum, w_rms)
-    mean = mean_adhesion(kind, elastic_energy)
-    # Retraction first, because it loses contact at a larger radius, which the error then names.
-    retraction = _branch_size(w_rms, larkin, mean, 1, spring, breadth)
-    approach = _branch_size(w_rms, larkin, mean, -1, spring, breadth)
-    smooth = spring(mean)
-    return _SpringSizes(approach, retraction, smooth / larkin, smooth, larkin)
-
-
 def _branch_size(
     w_rms: float,
     larkin: float,
     mean: float,
     sign: int,
-    spring: Callable[[float], float],
+    spring_at: Callable[[float], float],
     breadth: float,
-) -> float:
+) -> BranchSize:
     """Size of the front on a branch, whose work of adhesion mean + sign k e_el depends on k."""
     coefficients = shipped_law().coefficients
 
@@ -243,12 +264,8 @@ def _branch_size(
         return max(mean + sign * factor * w_rms**2 / 4, _LEAST_ADHESION)
 
     def excess(factor: float) -> float:
-        try:
-            size = spring(adhesion(factor)) / larkin
-        except ValueError:
-            # The springs become infinitely long at pull-off; the root decides whether it is beyond.
-            size = math.inf
+        size = spring_at(adhesion(factor)) / larkin
         return float(law_value(coefficients, w_rms, size, breadth)) - factor
 
     root = float(scipy.optimize.brentq(excess, 0.0, coefficients[0], xtol=1e-6))
-    return spring(adhesion(root)) / larkin
+    return BranchSize(adhesion(root), spring_at(adhesion(root)) / larkin)

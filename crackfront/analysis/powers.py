@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from crackfront.analysis.estimate import Estimate, combination, scatter, student_estimate
+from crackfront.analysis.estimate import Estimate, combination, finite_std, student_estimate
 from crackfront.core.arrays import Array
 from crackfront.core.variables import variable
 
@@ -94,4 +94,4 @@ def _errors(draws: Array | None, weights: Array, used: NDArray[np.bool_]) -> Arr
     with np.errstate(divide="ignore", invalid="ignore"):
         logarithms = np.log(draws[:, used])
     # Samples without a positive mean say nothing about its logarithm.
-    return scatter(weights[:, used] @ logarithms[np.all(np.isfinite(logarithms), axis=1)].T)
+    return finite_std(weights[:, used] @ logarithms[np.all(np.isfinite(logarithms), axis=1)].T)

@@ -85,18 +85,21 @@ class SweepFit:
     kind: FieldKind
     """Whether the mean of w_loc is w_int - e_el or w_int."""
     lowest_elastic_energy: float
+    """Least requested e_el of the fit, included. (Units: w_int)"""
     highest_elastic_energy: float
-    """Range of requested e_el, ends included. (Units: w_int)"""
+    """Largest requested e_el of the fit, included. (Units: w_int)"""
     n_bootstrap: int
+    """Number of bootstrap samples."""
     seed: int
-    """Number of bootstrap samples, and the seed of their random numbers."""
+    """Seed of the random numbers of the bootstrap."""
     uncorrelated: bool
     """Whether the sites of straight fronts are statistically independent."""
     cells: CellEstimates
     """Means at every spectrum and amplitude, (n_spectrum, n_amplitude)."""
     spectra: LawEstimates
+    """The fit of every spectrum, (n_spectrum,)."""
     pooled: LawEstimates
-    """The fit of every spectrum, (n_spectrum,), and of all together, ()."""
+    """The fit of all spectra together, ()."""
     from_force: ForceDifference
     """Differences of the experimenter's estimates, (n_spectrum,)."""
     powers: PowerFit

@@ -15,12 +15,12 @@ from crackfront.analysis.estimate import (
     Estimate,
     combination,
     finite_mean,
+    finite_std,
     finite_sum,
+    least_squares_slope,
     mean_estimate,
-    ratio,
+    ratio_or_nan,
     resample_counts,
-    scatter,
-    slope,
     student_estimate,
 )
 from crackfront.analysis.law import WEAKEST, pinning_factor
@@ -289,7 +289,7 @@ def _fit_spectrum(samples: _Samples, n_bootstrap: int, rng: np.random.Generator)
         return _SpectrumFit(values, dict.fromkeys(values, math.nan), weights, None)
     resampled = _resampled(samples, n_bootstrap, rng)
     drawn = _statistics(resampled, sloped)
-    errors = {name: float(scatter(statistic.values)) for name, statistic in drawn.items()}
+    errors = {name: float(finite_std(statistic.values)) for name, statistic in drawn.items()}
     return _SpectrumFit(values, errors, weights, resampled.factor)
 
 
@@ -310,7 +310,7 @@ def _spectra_estimates(fits: list[_SpectrumFit], freedom: NDArray[np.int64]) -> 
 def _pooling_shares(fits: list[_SpectrumFit]) -> dict[str, Array]:
     """Shares of the spectra in each pooled estimate, (n_spectrum,), by the estimate's name."""
     weights = {name: np.array([fit.weights[name] for fit in fits]) for name in _LAW_NAMES}
-    return {name: ratio(weight, np.sum(weight)) for name, weight in weights.items()}
+    return {name: ratio_or_nan(weight, np.sum(weight)) for name, weight in weights.items()}
 
 
 def _resampled(samples: _Samples, n_bootstrap: int, rng: np.random.Generator) -> _Samples:
@@ -328,7 +328,7 @@ def _means(samples: _Samples, counts: Array) -> _Samples:
     for quantity in samples:
         finite = np.isfinite(quantity)
         values = np.where(finite, quantity, 0.0)
-        means.append(ratio(counts @ values.T, counts @ finite.T))
+        means.append(ratio_or_nan(counts @ values.T, counts @ finite.T))
     return _Samples(*means)
 
 
@@ -341,15 +341,15 @@ def _statistics(means: _Samples, sloped: NDArray[np.bool_]) -> dict[str, _Statis
     positive = means.hysteresis > 0
     logarithm = np.log2(means.hysteresis, where=positive, out=np.full(positive.shape, np.nan))
     energy, equal = finite_sum(means.energy), np.ones(positive.shape[0])
-    by_sums = ratio(finite_sum(means.hysteresis), 2 * energy)
-    midpoint_slope = ratio(finite_sum(means.depression), energy)
+    by_sums = ratio_or_nan(finite_sum(means.hysteresis), 2 * energy)
+    midpoint_slope = ratio_or_nan(finite_sum(means.depression), energy)
     return {
         "factor": _Statistic(finite_mean(means.factor), equal),
         "factor_by_sums": _Statistic(by_sums, energy),
         "factor_from_force": _Statistic(finite_mean(means.factor_from_force), equal),
-        "exponent": _Statistic(*slope(doublings, logarithm)),
+        "exponent": _Statistic(*least_squares_slope(doublings, logarithm)),
         "midpoint_slope": _Statistic(midpoint_slope, energy),
-        "disorder_slope": _Statistic(*slope(doublings, means.factor)),
+        "disorder_slope": _Statistic(*least_squares_slope(doublings, means.factor)),
     }
 
 
@@ -388,13 +388,13 @@ def _law_exponents(cells: CellEstimates, in_range: NDArray[np.bool_]) -> Array:
     hysteresis = cells.law_factor.value * cells.e_el
     sloped &= hysteresis > 0
     logarithm = np.log2(hysteresis, where=sloped, out=np.full(sloped.shape, np.nan))
-    return slope(np.log2(cells.w_rms), logarithm)[0]
+    return least_squares_slope(np.log2(cells.w_rms), logarithm)[0]
 
 
 def _weighted_mean(values: Array, weights: Array) -> Array:
     """Mean of the values that are not NaN."""
     weights = np.where(np.isfinite(values), weights, 0.0)
-    return ratio(finite_sum(weights * values), np.sum(weights))
+    return ratio_or_nan(finite_sum(weights * values), np.sum(weights))
 
 
 def _size_slopes(table: SweepTable, cells: CellEstimates) -> Estimate:

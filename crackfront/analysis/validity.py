@@ -7,17 +7,15 @@ disorder w_rms / w_int. The logarithm of the ratio is therefore fitted by c e_el
 
 from __future__ import annotations
 
-import csv
 import functools
-import io
 import math
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass, fields
+from dataclasses import dataclass
 from importlib.resources import files
-from typing import get_type_hints
 
 import numpy as np
 
+from crackfront.analysis.csv_records import csv_rows
 from crackfront.analysis.estimate import REACH, Estimate
 from crackfront.core.arrays import Array
 
@@ -72,21 +70,8 @@ class Excess:
 @functools.cache
 def shipped_validity() -> tuple[ValidityRow, ...]:
     """Rows of `validity.csv`."""
-    return validity_of(files(__package__).joinpath("validity.csv").read_text(encoding="utf-8"))
-
-
-def validity_of(text: str) -> tuple[ValidityRow, ...]:
-    """Rows of a text that :func:`validity_text` wrote."""
-    kinds = get_type_hints(ValidityRow)
-    rows = csv.DictReader(io.StringIO(text))
-    return tuple(ValidityRow(**{name: kinds[name](row[name]) for name in kinds}) for row in rows)
-
-
-def validity_text(rows: Sequence[ValidityRow]) -> str:
-    """Table of comma-separated values."""
-    lines = [",".join(item.name for item in fields(ValidityRow))]
-    lines += [",".join(f"{value:.5g}" for value in asdict(row).values()) for row in rows]
-    return "\n".join(lines) + "\n"
+    text = files(__package__).joinpath("validity.csv").read_text(encoding="utf-8")
+    return csv_rows(text, ValidityRow)
 
 
 def excess_coefficient(rows: Sequence[ValidityRow]) -> tuple[float, float]:

@@ -184,7 +184,8 @@ def cycle(
     surface = read_field(field_file)
     pressed = surface if spring is None else straight_front(surface, spring)
     contact = loop_contact(pressed, max_penetration)
-    step = (DEFAULT_STEP if loads is None else math.inf) if step is None else step
+    if step is None:
+        step = DEFAULT_STEP if loads is None else math.inf
     numerics = LoopNumerics(error, sites, samples)
     setup = contact.setup(loads, step, numerics)
     solution = replace(solution, tolerance=setup.tolerance)

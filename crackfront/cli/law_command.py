@@ -116,15 +116,17 @@ class LawAnswer:
     k: Estimate[float]
     """Mean of both branches."""
     approach: PinningFactor
+    """k of the approach; of a front equal to the other branch."""
     retraction: PinningFactor
-    """The same of a front."""
+    """k of the retraction."""
     w_rms: float
     """(Units: w_int)"""
     g: float
     """Length of the springs over the Larkin length."""
     l_kappa: float | None = None
+    """None of a front, which only the ratio g describes. (Units: reduced lateral length)"""
     larkin_length: float | None = None
-    """None of a front, which only their ratio describes. (Units: reduced lateral length)"""
+    """As `l_kappa`. (Units: reduced lateral length)"""
     breadth: float | None = None
     """Breadth of the spectrum of w_loc that a front was asked for, in e-folds."""
     departures: Sequence[Departure]

@@ -46,6 +46,7 @@ from crackfront.measured.options import (
 
 if TYPE_CHECKING:
     from crackfront.core.units import Scales
+    from crackfront.measured.density.bands import Scan
     from crackfront.measured.prediction.prediction import Prediction
     from crackfront.measured.prediction.remarks import Outcome
     from crackfront.measured.prediction.simulated_prediction import Simulated
@@ -283,7 +284,9 @@ def _origin(scans: tuple[Path, ...], psd: Path | None, options: Mapping[str, Any
     reading = named_options(ReadingOptions, options)
     if not scans and reading:
         raise ValueError(f"{option_name(reading[0])} is of scans; leave it out")
-    return scans[0].stem if scans else "numbers" if psd is None else psd.stem
+    if scans:
+        return scans[0].stem
+    return "numbers" if psd is None else psd.stem
 
 
 def _write_rows(
@@ -352,15 +355,8 @@ def surface(scans: tuple[Path, ...], as_json: bool, field: Path | None, **option
 
     is_pressed = any(options[name] is not None for name in SphereOptions.model_fields)
     scales = _scales(options) if is_pressed or field is not None else None
-    check_overwriting(scans, {"--field": field})
-    check_replaced_netcdf("--field", field)
     if field is not None:
-        from crackfront.simulate.storage import check_regular_file
-
-        if len(scans) > 1:
-            raise ValueError(f"--field takes one scan, not {len(scans)}; name the one to press on")
-        check_regular_file(field)
-        check_writable(field.parent)
+        _check_field_file(field, scans)
     measured = _surface(scans, options)
     content = machine_readable(measured, scales)
     echo_answer(content, [report_text(measured, scales)], as_json=as_json)
@@ -368,15 +364,33 @@ def surface(scans: tuple[Path, ...], as_json: bool, field: Path | None, **option
         return
     if len(measured.scans) > 1:
         raise ValueError(f"--field takes one scan, and {scans[0]} contains {len(measured.scans)}")
+    energy = _write_field(field, measured.scans[0], scales)
+    if not as_json:
+        click.echo(f"field: {field}, e_el {energy:.4g} w_int on the tile")
+
+
+def _check_field_file(field: Path, scans: tuple[Path, ...]) -> None:
+    """Raise before any work if the file of a field cannot be written, or is of several scans."""
+    from crackfront.simulate.storage import check_regular_file
+
+    check_overwriting(scans, {"--field": field})
+    check_replaced_netcdf("--field", field)
+    if len(scans) > 1:
+        raise ValueError(f"--field takes one scan, not {len(scans)}; name the one to press on")
+    check_regular_file(field)
+    check_writable(field.parent)
+
+
+def _write_field(field: Path, scan: Scan, scales: Scales) -> float:
+    """Write a scan as a field for `crackfront cycle`; e_el of its tile (Units: w_int)."""
     from crackfront.measured.tile import scan_surface
     from crackfront.surfaces.saving import save_result
     from crackfront.surfaces.surface_adhesion import surface_adhesion
 
-    pressed = scan_surface(measured.scans[0], scales)
-    energy = surface_adhesion(pressed).e_el
+    pressed = scan_surface(scan, scales)
+    energy = float(surface_adhesion(pressed).e_el)
     save_result(pressed, field)
-    if not as_json:
-        click.echo(f"field: {field}, e_el {energy:.4g} w_int on the tile")
+    return energy
 
 
 def _surface(scans: tuple[Path, ...], options: Mapping[str, Any]) -> MeasuredSurface:

@@ -148,34 +148,7 @@ def _plan_lines(
 
     everything = sum(progress.values(), Inventory())
     yield f"{_size_sentence(sweep, everything)}\n"
-    lateral, unit = (1.0, "") if sweep.scales is None else (sweep.scales.lateral, " (m)")
-    spectra, to_run = [], []
-    for item in sweep.spectra:
-        inventory = progress[item.name]
-        shape, sizes = item.spectrum, [each.resolution for each in sweep.one_per_amplitude(item)]
-        spectra.append(
-            (
-                item.name,
-                f"{lateral * shape.short_cutoff:.4g}",
-                f"{lateral * shape.longest_feature:.4g}",
-                f"{shape.hurst:.2f}" if hasattr(shape, "hurst") else "-",
-                *(
-                    _span([getattr(each, name) for each in expected[item.name]], "{:.2g}")
-                    for name in ("disorder", "size", "factor")
-                ),
-                _span([size.n_angle for size in sizes]),
-                _span([size.n_point for size in sizes]),
-                f"{inventory.stored}/{inventory.stored + inventory.n_missing}",
-            )
-        )
-        to_run.append(
-            _to_run(item.name, sum(shard.item is item for shard in shards), inventory.missing)
-        )
-    lengths = f"lambda_s{unit}", f"lambda_r{unit}"
-    yield from table(
-        ("spectrum", *lengths, "H", "s", "g", "k", "angles", "points", "stored"),
-        spectra,
-    )
+    yield from _spectra_table(sweep, progress, expected)
     yield "s is w_rms/w_int, g the size, and k what the law expects at the largest load"
     uncovered = [item for item in sweep.spectra if not sweep.one_per_amplitude(item)[0].is_covered]
     if uncovered:
@@ -183,6 +156,10 @@ def _plan_lines(
         yield f"the law of k does not cover {listed}: {MEASURED_ON}"
     yield from filter(None, (*everything.sentences(), mixture_sentence(everything.arithmetic)))
     yield ""
+    to_run = []
+    for item in sweep.spectra:
+        n_shard = sum(shard.item is item for shard in shards)
+        to_run.append(_to_run(item.name, n_shard, progress[item.name].missing))
     to_run.append(_to_run("all", len(shards), everything.missing))
     header = "to run", "shards", "simulations", "core hours", "longest s", "MB a rank"
     yield from table(header, to_run)
@@ -190,6 +167,34 @@ def _plan_lines(
     yield f"\n{counted(len(energies), 'amplitude')} e_el/w_int: {_listed(energies)}"
     yield _fit_sentence(sweep)
     yield f"results in {store.folder}/"
+
+
+def _spectra_table(
+    sweep: Sweep,
+    progress: Mapping[str, Inventory],
+    expected: Mapping[str, Sequence[Expectation]],
+) -> Iterable[str]:
+    """Table of the spectra: their shapes, what the law expects, their sizes and what is stored."""
+    lateral, unit = (1.0, "") if sweep.scales is None else (sweep.scales.lateral, " (m)")
+    rows = []
+    for item in sweep.spectra:
+        shape, cells, inventory = item.spectrum, expected[item.name], progress[item.name]
+        sizes = [simulation.resolution for simulation in sweep.one_per_amplitude(item)]
+        row = (
+            item.name,
+            f"{lateral * shape.short_cutoff:.4g}",
+            f"{lateral * shape.longest_feature:.4g}",
+            f"{shape.hurst:.2f}" if hasattr(shape, "hurst") else "-",
+            _span([cell.disorder for cell in cells], "{:.2g}"),
+            _span([cell.size for cell in cells], "{:.2g}"),
+            _span([cell.factor for cell in cells], "{:.2g}"),
+            _span([size.n_angle for size in sizes]),
+            _span([size.n_point for size in sizes]),
+            f"{inventory.stored}/{inventory.stored + inventory.n_missing}",
+        )
+        rows.append(row)
+    lengths = f"lambda_s{unit}", f"lambda_r{unit}"
+    return table(("spectrum", *lengths, "H", "s", "g", "k", "angles", "points", "stored"), rows)
 
 
 def _fit_sentence(sweep: Sweep) -> str:
@@ -308,6 +313,7 @@ def _simulate(
     """Run what some shards lack, and derive their rows."""
     from crackfront.sweep.advice import steady_part_warnings
     from crackfront.sweep.changed_keys import change_sentence
+    from crackfront.sweep.finished_shards import finish_shard
     from crackfront.sweep.inventory import Inventory
     from crackfront.sweep.run_sweep import opened, write_source
 
@@ -342,7 +348,7 @@ def _simulate(
         ]
         run_missing(store, lacking, origin, workers, checkpoint)
         for shard in shards:
-            click.echo(f"rows: {store.finish_shard(sweep, shard, origin)}")
+            click.echo(f"rows: {finish_shard(store, sweep, shard, origin)}")
 
 
 def run_missing(
@@ -416,10 +422,13 @@ class Progress:
     """How far one spectrum is."""
 
     name: str
+    """Name of the spectrum."""
     done: int
+    """Simulations with values."""
     failed: int
+    """Simulations that ended without values."""
     left: int
-    """Simulations with values; those that ended without; all others."""
+    """Simulations that are still to be run."""
     seconds: float
     """Processor time that is expected for those that are left. (Units: s)"""
 

@@ -148,8 +148,8 @@ def spring(radius: float, work_of_adhesion: float = 1.0) -> float:
     .. math:: L_\kappa = \frac{w_{int}}{dG/da} = \frac{a}{\sqrt{6 a^3 w} - w}
 
     Over it the edge is as stiff against a wave as against the penetration, at which it is fixed.
-    (Units: reduced lateral length) ValueError if the radius is not above pull-off, where the edge
-    is unstable.
+    At and below pull-off, where the edge is unstable, it is infinite.
+    (Units: reduced lateral length)
 
     Examples
     --------
@@ -159,12 +159,7 @@ def spring(radius: float, work_of_adhesion: float = 1.0) -> float:
     [3.0, 5.0]
     """
     stiffness = math.sqrt(6 * radius**3 * work_of_adhesion) - work_of_adhesion
-    if not stiffness > 0:
-        raise ValueError(
-            f"contact radius {radius:g} is at or below pull-off "
-            f"({pull_off_radius(work_of_adhesion):.4g}), where the edge is unstable; enlarge it"
-        )
-    return radius / stiffness
+    return radius / stiffness if stiffness > 0 else math.inf
 
 
 def pull_off_radius(work_of_adhesion: float = 1.0) -> float:

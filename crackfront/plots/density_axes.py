@@ -26,8 +26,10 @@ _NAME_WIDTH = 0.4
 """Width of the name of a bar. (Units: width of the axes)"""
 
 _BARS_NEXT_TO_NAMES = 0.92, 0.11
-_BARS_BELOW_NAMES = 0.85, 0.15
 """Height of the highest bar and distance of the bars. (Units: height of the axes)"""
+
+_BARS_BELOW_NAMES = 0.85, 0.15
+"""The same for bars with their names above them. (Units: height of the axes)"""
 
 
 def draw_spectrum(
@@ -100,16 +102,14 @@ def _add_bars(axes: Axes, names: Sequence[str], lowest: Array, highest: Array) -
 
     Call this after the lower limit of the densities is set.
     """
-    lower_limit, upper_limit = np.log(axes.get_xlim())
-    name_width = _NAME_WIDTH * (upper_limit - lower_limit)
-    bars = np.clip(np.log([lowest, highest]), lower_limit, upper_limit).T
-    room = np.max([bars[:, 0] - lower_limit, upper_limit - bars[:, 1]], axis=0)
+    limits = np.log(axes.get_xlim())
+    name_width = _NAME_WIDTH * (limits[1] - limits[0])
+    bars = np.clip(np.log([lowest, highest]), *limits).T
+    room = np.max([bars[:, 0] - limits[0], limits[1] - bars[:, 1]], axis=0)
     names_next_to_bars = bool(np.all(room > name_width))
-    first, spacing = _BARS_BELOW_NAMES
-    if names_next_to_bars:
-        first, spacing = _BARS_NEXT_TO_NAMES
+    first, spacing = _BARS_NEXT_TO_NAMES if names_next_to_bars else _BARS_BELOW_NAMES
     strip = axes.get_xaxis_transform()
-    for level, (name, (low, high)) in enumerate(zip(names, bars, strict=True)):
+    for level, (name, bar) in enumerate(zip(names, bars, strict=True)):
         height = first - spacing * level
         ends = lowest[level], highest[level]
         axes.plot(
@@ -120,24 +120,39 @@ def _add_bars(axes: Axes, names: Sequence[str], lowest: Array, highest: Array) -
             solid_capstyle="butt",
             transform=strip,
         )
-        look: dict[str, Any]
-        if not names_next_to_bars:
-            half_width = name_width / 2
-            middle = (low + high) / 2
-            middle = np.clip(middle, lower_limit + half_width, upper_limit - half_width)
-            place, shift, look = math.exp(middle), (0, 2), {"ha": "center", "va": "bottom"}
-        elif upper_limit - high > low - lower_limit:
-            place, shift, look = ends[1], (4, 0), {"ha": "left", "va": "center"}
+        if names_next_to_bars:
+            place, shift, look = _name_next_to_bar(ends, bar, limits)
         else:
-            place, shift, look = ends[0], (-4, 0), {"ha": "right", "va": "center"}
+            place, shift, look = _name_above_bar(bar, limits, name_width / 2)
         look["bbox"] = {"facecolor": "white", "linewidth": 0, "pad": 0.5}
         axes.annotate(
             name, (place, height), xytext=shift, xycoords=strip, textcoords="offset points", **look
         )
+    _raise_upper_limit(axes, first - spacing * len(names))
+
+
+_NamePlace = tuple[float, tuple[int, int], dict[str, Any]]
+"""Wavevector of a name, its shift (Units: points), and its alignment."""
+
+
+def _name_next_to_bar(ends: tuple[float, float], bar: Array, limits: Array) -> _NamePlace:
+    """Place of a name on the side of a bar with more room; bar and limits are logarithms."""
+    if limits[1] - bar[1] > bar[0] - limits[0]:
+        return ends[1], (4, 0), {"ha": "left", "va": "center"}
+    return ends[0], (-4, 0), {"ha": "right", "va": "center"}
+
+
+def _name_above_bar(bar: Array, limits: Array, half_width: float) -> _NamePlace:
+    """Place of a name above the middle of a bar, within the axes; all are logarithms."""
+    middle = np.clip(np.sum(bar) / 2, limits[0] + half_width, limits[1] - half_width)
+    return math.exp(middle), (0, 2), {"ha": "center", "va": "bottom"}
+
+
+def _raise_upper_limit(axes: Axes, share: float) -> None:
+    """Raise the upper limit so that all curves are in the lower share of the axes."""
     bottom = axes.get_ylim()[0]
     curves = [line for line in axes.get_lines() if line.get_transform() == axes.transData]
     top = max(float(np.max(line.get_ydata())) for line in curves)
-    share = first - spacing * len(names)
     axes.set_ylim(top=bottom * (top / bottom) ** (1 / share))
 
 

@@ -141,7 +141,7 @@ def _draw_line_factors(left_axes: Axes, right_axes: Axes, fit: SweepFit) -> None
         style = PointStyle(spectrum_colour(family), spectrum_marker(family), "")
         s = np.zeros_like(cells.w_rms[index]) if fit.uncorrelated else cells.w_rms[index]
         shown = np.nan_to_num(cells.size[index]) > LARGE
-        row = cells.infinite_factor.at(index).only(shown)
+        row = cells.infinite_factor.at(index).where(shown)
         draw_estimates(right_axes, style, s, row, fit.in_range)
     right_axes.legend(*legend_entries(right_axes), loc="lower left")
     right_axes.set_ylabel(r"$k$, infinite contact (points: $g>1$)")
@@ -208,7 +208,7 @@ def draw_hysteresis(axes: Axes, fit: SweepFit) -> None:
     lowest = min(least, PAPER_FACTOR / 2 * float(ends[0])) / 1.6
     for index, style in enumerate(spectrum_styles(fit.table)):
         draw_below(axes, index, style.colour, variance[index, below[index]])
-        shown = hysteresis.at(index).only(~below[index])
+        shown = hysteresis.at(index).where(~below[index])
         draw_estimates(axes, style, variance[index], shown, fit.in_range)
     draw_law(axes, fit, lambda energy, factor: (4 * energy, 2 * factor * energy))
     if not fit.table.on_springs:

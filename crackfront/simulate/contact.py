@@ -160,8 +160,8 @@ class Forecast(ABC):
     def spring_at(self, work_of_adhesion: float) -> float:
         """Length L_kappa of the springs on the front at the largest load (Units: length).
 
-        The work of adhesion (Units: w_int) is the apparent one of a branch. ValueError if the
-        edge is unstable.
+        The work of adhesion (Units: w_int) is the apparent one of a branch. Infinity if the edge
+        is unstable.
         """
 
 
@@ -181,16 +181,17 @@ class Pressed(ABC):
 
     @abstractmethod
     def steady_penetration(
-        self, surface: RandomSurface, works: tuple[float, float], travel: float, n_state: int
+        self, surface: RandomSurface, works: tuple[float, float], transient: float, n_state: int
     ) -> float:
         """Largest penetration from which on so many states of both branches are steady.
 
-        Works of adhesion of approach and retraction (Units: w_int) and the travel after which a
-        branch is steady (Units: length) are expected ones. (Units: reduced vertical length)
+        Works of adhesion of approach and retraction (Units: w_int) and the transient, the travel
+        after which a branch is steady (Units: length), are expected ones. (Units: reduced vertical
+        length)
         """
 
     def steadier_start(
-        self, surface: RandomSurface, works: tuple[float, float], travel: float, n_state: int
+        self, surface: RandomSurface, works: tuple[float, float], transient: float, n_state: int
     ) -> float | None:
         """Start that leaves so many steady states without a deeper contact, as above.
 
@@ -200,7 +201,7 @@ class Pressed(ABC):
         return None
 
     def steadier_travel(
-        self, surface: RandomSurface, works: tuple[float, float], travel: float, n_state: int
+        self, surface: RandomSurface, works: tuple[float, float], transient: float, n_state: int
     ) -> float | None:
         """Way from state to state that leaves so many steady ones, as above.
 

@@ -63,7 +63,7 @@ class CycleCheckpoint:
             warn(f"{sentence}; the cycle begins anew")
             return None
         states = self.geometry.state_type
-        checkpoint = _known_checkpoint(read_dataset(self.path), self.key, states, self.path)
+        checkpoint = _matching_checkpoint(read_dataset(self.path), self.key, states, self.path)
         if checkpoint is None:
             raise ValueError(
                 f"{self.path} has the states of another cycle: the field, an option or the version "
@@ -122,14 +122,14 @@ def read_checkpoint(path: Path, simulation: Simulation) -> PartialRun:
     """Stored checkpoint of a simulation; UnreadableFileError if it is of another one."""
     dataset = read_dataset(path)
     states = simulation.geometry.state_type
-    checkpoint = _known_checkpoint(dataset, simulation.key, states, path)
+    checkpoint = _matching_checkpoint(dataset, simulation.key, states, path)
     if checkpoint is None or dataset.attrs["physics_version"] != PHYSICS_VERSION:
         raise UnreadableFileError(f"{path} is not a checkpoint of {simulation.label}; move it away")
     costs = (float(dataset.attrs[name]) for name in ("seconds", "cpu_seconds"))
     return PartialRun(simulation, checkpoint, *costs)
 
 
-def _known_checkpoint(
+def _matching_checkpoint(
     dataset: xr.Dataset, key: str, states: type[State], place: Path
 ) -> Checkpoint | None:
     """Checkpoint that :func:`_checkpoint_dataset` made a dataset of; None where its key differs."""

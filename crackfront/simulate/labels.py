@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 
 from crackfront.core.variables import Variable, variables
 
-_KNOWN_TO_UDUNITS = re.compile(r"1|(byte|rad|s|m|N|Pa|J)(\^?-?\d)?( (/ )?m(\^?-?\d)?)?")
+_UDUNITS = re.compile(r"1|(byte|rad|s|m|N|Pa|J)(\^?-?\d)?( (/ )?m(\^?-?\d)?)?")
+"""Units that UDUNITS reads, which the CF conventions require."""
 
 
 def unit_attributes(unit: str) -> dict[str, str]:
@@ -23,7 +24,7 @@ def unit_attributes(unit: str) -> dict[str, str]:
     >>> unit_attributes("J / m^2"), unit_attributes("w_int")
     ({'units': 'J / m^2'}, {'units': '1', 'reduced_unit': 'w_int'})
     """
-    if _KNOWN_TO_UDUNITS.fullmatch(unit):
+    if _UDUNITS.fullmatch(unit):
         return {"units": str(unit)}
     return {"units": "1", "reduced_unit": str(unit)}
 

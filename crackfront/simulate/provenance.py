@@ -17,7 +17,7 @@ from crackfront.core.versions import PHYSICS_VERSION, ROWS_VERSION
 
 PACKAGE = Path(__file__).parents[1]
 
-_OF_BITS = ("numpy", "scipy", "numba", "llvmlite", "rocket-fft")
+_ARITHMETIC_PACKAGES = ("numpy", "scipy", "numba", "llvmlite", "rocket-fft")
 """Packages whose versions may decide the last bits of a result."""
 
 try:
@@ -45,7 +45,7 @@ def _arithmetic() -> str:
 
     compiled = config.CPU_NAME or get_host_cpu_name(), config.CPU_FEATURES or ""
     extensions = np.show_config(mode="dicts")["SIMD Extensions"].get("found", ())
-    versions = (f"{name} {version(name)}" for name in _OF_BITS)
+    versions = (f"{name} {version(name)}" for name in _ARITHMETIC_PACKAGES)
     return ", ".join([" ".join(filter(None, (*compiled, *extensions))), *versions])
 
 
@@ -64,6 +64,7 @@ class Provenance:
     """What every result file says about its origin."""
 
     crackfront_version: str
+    """Version of the package."""
     git_commit: str
     """As :func:`git_commit`."""
     command: str
@@ -71,8 +72,9 @@ class Provenance:
     configuration: str
     """Text of the configuration file, empty where there was none."""
     physics_version: int = PHYSICS_VERSION
+    """Version of the states, of :mod:`crackfront.core.versions`."""
     rows_version: int = ROWS_VERSION
-    """:mod:`crackfront.core.versions` of states, and of what is derived from them."""
+    """Version of what is derived from the states, of the same module."""
     platform: str = f"{platform.platform()}, Python {platform.python_version()}"
     """Operating system, machine and Python."""
     processor: str = field(default_factory=_processor)

@@ -51,8 +51,9 @@ class Simulation:
     ensemble: Ensemble = GAUSSIAN
     """Surfaces of the spectrum."""
     record_fronts: bool = False
+    """Whether to record the fronts of all states."""
     record_energy: bool = False
-    """What to record in addition to the curves."""
+    """Whether to record the energy that each step dissipates."""
 
     @property
     def parameters(self) -> dict[str, Any]:

@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
-from crackfront.analysis.law_spheres import factors_on_springs
+from crackfront.analysis.law_spheres import sizes_on_springs, straight_factors
 from crackfront.analysis.standard_error import FEWEST_STATES
 from crackfront.core.adhesion import force_correlation_length, larkin_length, mean_adhesion
 from crackfront.simulate.contact import Pressed
@@ -57,17 +57,15 @@ def expectation(simulation: Simulation) -> Expectation:
         if spectrum.is_isotropic:
             size = schedule.spring_at(1.0) / larkin_length(kind, spectrum, disorder)
         return Expectation(disorder, size, None)
-    try:
-        factors = factors_on_springs(kind, spectrum, energy, schedule.spring_at)
-    except ValueError:
-        larkin = larkin_length(kind, spectrum, disorder)
-        return Expectation(disorder, schedule.spring_at(1.0) / larkin, None)
-    size, factor = factors.size, factors.both.value
+    sizes = sizes_on_springs(kind, spectrum, energy, schedule.spring_at)
+    if not sizes.is_stable:
+        return Expectation(disorder, schedule.spring_at(1.0) / sizes.larkin_length, None)
+    size, factor = sizes.smooth, straight_factors(kind, energy, sizes).both.value
     if not isinstance(schedule, Pressed):
         return Expectation(disorder, size, factor)
 
-    works, travel = _expected_works(simulation, factor), _steady_travel(simulation, size)
-    expected = simulation.surface, works, travel
+    works, transient = _expected_works(simulation, factor), _transient(simulation, size)
+    expected = simulation.surface, works, transient
     if schedule.steady_penetration(*expected, _DOUBTFUL_STATES) <= schedule.max_penetration:
         return Expectation(disorder, size, factor)
     return Expectation(
@@ -80,7 +78,7 @@ def expectation(simulation: Simulation) -> Expectation:
     )
 
 
-def _steady_travel(simulation: Simulation, size: float) -> float:
+def _transient(simulation: Simulation, size: float) -> float:
     """Travel of a front of a size g after which every site has forgotten its start."""
     rough = front_rms(force_correlation_length(simulation.kind, simulation.spectrum), size)
     return simulation.correlation_length + _LAST_SITE * rough

@@ -8,6 +8,7 @@ and :func:`crackfront.simulate.costs.expected_cost` predicts time and memory.
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -43,14 +44,22 @@ class Configuration(Section):
     fit: FitSection = FitSection()
 
     @model_validator(mode="after")
-    def _consistent(self) -> Configuration:
+    def _names_differ(self) -> Configuration:
         check_distinct("spectrum name", [spectrum.name for spectrum in self.spectra])
+        return self
+
+    @model_validator(mode="after")
+    def _field_suits_amplitudes(self) -> Configuration:
         if self.field == "chemical" and self.amplitudes.elastic_energy is not None:
             raise section_error(
                 "amplitudes.elastic_energy is meaningless for a chemical field; give "
                 "amplitudes.work_of_adhesion_rms"
             )
-        measured = [item.name for item in self.spectra if item.in_metres is not None]
+        return self
+
+    @model_validator(mode="after")
+    def _measured_surfaces_have_scales(self) -> Configuration:
+        measured = self._measured
         if measured and self.scales is None:
             raise section_error(
                 f"spectrum {measured[0]!r} describes a surface in metres; give the section scales"
@@ -59,44 +68,70 @@ class Configuration(Section):
             raise section_error(
                 f"spectrum {measured[0]!r} is the spectrum of heights; field must be roughness"
             )
-        line = self.load.line
-        anisotropic = [item.name for item in self.spectra if item.anisotropy is not None]
-        if line is not None and anisotropic:
-            raise section_error(
-                f"spectrum {anisotropic[0]!r} is anisotropic, and load.line chooses its tiles and "
-                "loads by laws of isotropic spectra; remove anisotropy, or simulate spheres"
-            )
-        marginal = [item.name for item in self.spectra if item.marginal is not None]
-        tiles = {item.name: len(item.tiles.file) for item in self.spectra if item.tiles is not None}
-        for name, n_file in tiles.items():
-            if line is not None:
+        return self
+
+    @model_validator(mode="after")
+    def _line_suits_spectra(self) -> Configuration:
+        if self.load.line is None:
+            return self
+        for item in self.spectra:
+            if item.anisotropy is not None:
                 raise section_error(
-                    f"spectrum {name!r} has tiles of files, and load.line chooses the sides of its "
-                    "tiles; simulate spheres, or describe the files by surface"
+                    f"spectrum {item.name!r} is anisotropic, and load.line chooses its tiles and "
+                    "loads by laws of isotropic spectra; remove anisotropy, or simulate spheres"
                 )
+        for item in self.spectra:
+            if item.tiles is not None:
+                raise section_error(
+                    f"spectrum {item.name!r} has tiles of files, and load.line chooses the sides "
+                    "of its tiles; simulate spheres, or describe the files by surface"
+                )
+        return self
+
+    @model_validator(mode="after")
+    def _tiles_suffice(self) -> Configuration:
+        for item in self.spectra:
+            n_file = math.inf if item.tiles is None else len(item.tiles.file)
             if self.realisations > n_file:
                 raise section_error(
-                    f"realisations is {self.realisations}, and spectrum {name!r} has tiles of "
+                    f"realisations is {self.realisations}, and spectrum {item.name!r} has tiles of "
                     f"{n_file} files; lower realisations, or name more files"
                 )
-        if line is not None and line.uncorrelated and marginal:
-            raise section_error(
-                f"spectrum {marginal[0]!r} has a marginal, and the sites of load.line.uncorrelated "
-                "are independent and Gaussian; remove marginal or uncorrelated"
-            )
-        if line is not None and line.uncorrelated and self.numerics.error is not None:
+        return self
+
+    @model_validator(mode="after")
+    def _sites_suit_uncorrelated_line(self) -> Configuration:
+        if self.load.line is None or not self.load.line.uncorrelated:
+            return self
+        for item in self.spectra:
+            if item.marginal is not None:
+                raise section_error(
+                    f"spectrum {item.name!r} has a marginal, and the sites of "
+                    "load.line.uncorrelated are independent and Gaussian; remove marginal or "
+                    "uncorrelated"
+                )
+        if self.numerics.error is not None:
             raise section_error(
                 f"numerics.error is {self.numerics.error:g}, which chooses other pixels for each "
                 "amplitude, and the disorder of load.line.uncorrelated sites depends on them; give "
                 "angles_per_cutoff, samples_per_cutoff, interpolation, pixels_per_cutoff and "
                 "tolerance"
             )
-        if self.amplitudes.measured and not len(measured) == len(self.spectra) == 1:
+        return self
+
+    @model_validator(mode="after")
+    def _measured_amplitudes_have_one_surface(self) -> Configuration:
+        if self.amplitudes.measured and not len(self._measured) == len(self.spectra) == 1:
             raise section_error(
                 "amplitudes.measured are multiples of the heights of one surface; give one "
                 "spectrum with a section surface, density or tiles"
             )
         return self
+
+    @property
+    def _measured(self) -> list[str]:
+        """Names of the spectra of surfaces in metres."""
+        return [item.name for item in self.spectra if item.in_metres is not None]
 
 
 def load_configuration(path: Path) -> Configuration:

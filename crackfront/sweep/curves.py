@@ -183,9 +183,9 @@ def _state_columns(records: Sequence[CycleRecord]) -> dict[str, NDArray[Any]]:
 
 def _labelled(columns: dict[str, Any], state_types: Iterable[type[State]]) -> xr.Dataset:
     """Dataset of columns with their units and meanings; states are of some types."""
-    of_states: dict[str, Variable] = {}
+    state_variables: dict[str, Variable] = {}
     for kind in (*state_types, CycleRecord):
-        of_states |= {_state_name(item.name): item for item in variables(kind)}
+        state_variables |= {_state_name(item.name): item for item in variables(kind)}
     labelled: dict[str, Any] = {}
     for item in (*variables(SweepRow, SIMULATION), *IDENTITY, *_CYCLE):
         about = label(item, _FLAGS.get(item.name, ()))
@@ -196,7 +196,7 @@ def _labelled(columns: dict[str, Any], state_types: Iterable[type[State]]) -> xr
         if name == "front":
             labelled[name] = _FRONT.dims, values, label(_FRONT)
         elif name not in labelled:
-            labelled[name] = (STATE,), values, label(of_states[name])
+            labelled[name] = (STATE,), values, label(state_variables[name])
     return xr.Dataset(labelled)
 
 

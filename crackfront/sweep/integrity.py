@@ -42,8 +42,9 @@ class Verification:
     verified: int
     """Number of files that agree with the list."""
     damaged: tuple[str, ...]
+    """Files of the list that do not agree with it."""
     missing: tuple[str, ...]
-    """Files of the list that do not agree with it, and that are not there."""
+    """Files of the list that are not there."""
     unlisted: tuple[str, ...]
     """Results that the list does not name."""
 

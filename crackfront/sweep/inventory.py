@@ -47,8 +47,9 @@ class Inventory:
     """What a store has of some simulations, and what it lacks and why."""
 
     done: int = 0
+    """Simulations with values."""
     failed: int = 0
-    """Simulations with values, and those that ended without."""
+    """Simulations that ended without values."""
     missing: tuple[MissingSimulations, ...] = ()
     """What is to be simulated."""
     older: int = 0
@@ -60,8 +61,9 @@ class Inventory:
     arithmetic: frozenset[str] = frozenset()
     """Processors and packages that computed what is stored."""
     cpu_seconds: float = 0.0
+    """Processor time of what is stored. (Units: s)"""
     expected_seconds: float = 0.0
-    """Processor time of what is stored, and what was expected for it. (Units: s)"""
+    """Processor time that was expected for what is stored. (Units: s)"""
 
     def __add__(self, other: Inventory) -> Inventory:
         """Inventory of the simulations of both."""
@@ -118,9 +120,9 @@ class LocatedRows:
     series: tuple[str, ...]
     realisations: range
     file: NDArray[np.int64]
+    """Number of the file of each simulation, (n_series, n_realisation); -1 where none has it."""
     place: NDArray[np.int64]
-    """Number of the file, -1 where none has the simulation, and the place of its row in it, each
-    (n_series, n_realisation)."""
+    """Place of its row in the file, (n_series, n_realisation)."""
 
     @property
     def missing(self) -> NDArray[np.bool_]:

@@ -16,6 +16,7 @@ from crackfront.simulate.labels import flag_words
 from crackfront.simulate.provenance import Provenance, provenance
 from crackfront.simulate.storage import read_derived, write_text
 from crackfront.sweep.feasibility import check_feasible
+from crackfront.sweep.finished_shards import finish_shard
 from crackfront.sweep.parallel import deferring_stops
 from crackfront.sweep.parameters import load_sweep
 from crackfront.sweep.results_folder import (
@@ -26,7 +27,8 @@ from crackfront.sweep.results_folder import (
 )
 from crackfront.sweep.rows import COMPLETE
 from crackfront.sweep.section import movable_text
-from crackfront.sweep.store import Announce, Store
+from crackfront.sweep.shard_locks import Announce
+from crackfront.sweep.store import Store
 from crackfront.sweep.sweep import Sweep
 from crackfront.sweep.tasks import run_and_store
 from crackfront.validation import PathName, checked_call
@@ -101,7 +103,7 @@ def run_sweep(
             for _ in outcomes:
                 bar.update()
         for shard in shards:
-            store.finish_shard(sweep, shard, origin)
+            finish_shard(store, sweep, shard, origin)
     table = store.aggregate(sweep, origin)
     failed, sentence = without_value(table)
     if failed:

@@ -179,7 +179,7 @@ def _sentence(error: ErrorDetails, schema: type[Section]) -> str:
     if error["type"] == "section":
         return f"{place}: {error['msg']}" if place else error["msg"]
     if error["type"] == "extra_forbidden":
-        return f"unknown key {place}; {_known_keys(error['loc'], schema)}"
+        return f"unknown key {place}; {_nearest_key(error['loc'], schema)}"
     if error["type"] == "missing":
         return f"key {place} is missing; add it"
     key = next((part for part in reversed(error["loc"]) if isinstance(part, str)), "")
@@ -193,7 +193,7 @@ _MEANING = {
 """What the bounds of a key are for."""
 
 
-def _known_keys(location: tuple[int | str, ...], schema: type[BaseModel]) -> str:
+def _nearest_key(location: tuple[int | str, ...], schema: type[BaseModel]) -> str:
     """The nearest key that would be right at an unknown one."""
     section = schema
     for part in location[:-1]:

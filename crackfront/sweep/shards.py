@@ -38,11 +38,15 @@ class ShardSummary:
 
     path: Path
     spectrum: str
+    """Name of its spectrum."""
     realisations: range
+    """Numbers of its realisations."""
     series: tuple[str, ...]
     """Series of its simulations, one for each amplitude."""
     physics_version: int
+    """Version of its states."""
     rows_version: int
+    """Version of its rows."""
     request: str
     """Digest of what was asked for."""
     n_failed: NDArray[np.int64]

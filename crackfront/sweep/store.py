@@ -1,79 +1,55 @@
 """The folder of a sweep: the simulations that its files have or lack, its shards, its table.
 
 What is stored are the files of finished simulations (:mod:`crackfront.sweep.curves`). The files of
-shards and of the table are derived from them at any time. A file has one writer, which has the
-lock of the shard; ranks write only their checkpoints.
+shards and of the table are derived from them at any time (:mod:`crackfront.sweep.finished_shards`).
+A file has one writer, which has the lock of the shard (:mod:`crackfront.sweep.shard_locks`); ranks
+write only their checkpoints.
 """
 
 from __future__ import annotations
 
 import contextlib
-import fcntl
 import itertools
-import time
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import IO, Any
+from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
-from crackfront.analysis.table import SweepRow, SweepTable
-from crackfront.core.variables import variables
-from crackfront.core.versions import PHYSICS_VERSION, ROWS_VERSION
-from crackfront.simulate.checksums import MERGED, forget_sums
+from crackfront.analysis.table import SweepTable
+from crackfront.core.versions import ROWS_VERSION
+from crackfront.simulate.checksums import forget_sums
 from crackfront.simulate.costs import expected_cost
 from crackfront.simulate.provenance import Provenance
 from crackfront.simulate.run_simulation import SimulationResult
 from crackfront.simulate.simulation import Simulation
 from crackfront.simulate.storage import (
     UnreadableFileError,
-    read_dataset,
     read_derived,
     set_aside_if_damaged,
     write_text,
 )
 from crackfront.sweep.curves import (
-    SIMULATION,
     StoredRows,
-    concatenated,
     curve_files,
     read_result,
-    read_results,
-    selected,
     stored_rows,
-    write_curves,
 )
 from crackfront.sweep.inventory import (
     Inventory,
     LocatedRows,
     inventory_of_rows,
-    is_older,
     located_rows,
 )
-from crackfront.sweep.parallel import stop_is_requested
 from crackfront.sweep.requests import FOLDER, REQUEST, Request, shard_request, table_request
-from crackfront.sweep.rows import row_columns, sweep_row
+from crackfront.sweep.shard_locks import Announce, locked_folders, locked_names
 from crackfront.sweep.shards import (
     ShardSummary,
     covering,
     shard_columns,
     shard_summary,
-    write_shard,
 )
 from crackfront.sweep.sweep import NamedSpectrum, Shard, Sweep
 from crackfront.sweep.table_file import read_table, write_hysteresis
-
-Announce = Callable[[str], None]
-"""Called with a sentence on a damaged file, or on another process that is waited for."""
-
-_WAIT_SECONDS = 0.5
-"""Time between two attempts to lock a shard that another process has locked. (Units: s)"""
-
-_MOST_MERGED_BYTES = 1e8
-"""Size of the files of a shard beyond which batches stay as they are: merging takes three
-times their memory. (Units: byte)"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,6 +57,7 @@ class Store:
     """Results of a sweep in a folder."""
 
     folder: Path
+    """Folder of the results."""
     announce: Announce = print
     """What is done with a sentence on a damaged file, or on another process."""
 
@@ -213,138 +190,13 @@ class Store:
             total += self.inventory(sweep, item, gap)
         return total
 
-    @contextlib.contextmanager
-    def locked(self, shards: Iterable[Shard]) -> Iterator[None]:
-        """Lock shards while the context is open.
-
-        Waits where another process has one of them, until that has ended in whatever way, and
-        announces it: a killed Snakemake leaves its jobs running, and starts the same ones again.
-        On a file system without locks nothing is locked. KeyboardInterrupt if a stop is requested
-        meanwhile.
-        """
-        with contextlib.ExitStack() as files:
-            # In one order for all processes, so that no two wait for each other.
-            for shard in sorted(shards, key=lambda shard: shard.name):
-                folder = self.curve_folder(shard)
-                folder.mkdir(parents=True, exist_ok=True)
-                file = files.enter_context((folder / ".lock").open("ab"))
-                self._lock(file, shard)
-                # Only this process writes here now: half-written files were left by others.
-                for part in (*folder.glob(".*.part"), *folder.glob(".*.nc")):
-                    part.unlink(missing_ok=True)
-            yield
-
-    def _lock(self, file: IO[bytes], shard: Shard) -> None:
-        """Lock a file, when another process has left it."""
-        for attempt in itertools.count():
-            try:
-                fcntl.lockf(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-                return
-            except (BlockingIOError, PermissionError):
-                if attempt == 1:  # `status` locks for an instant
-                    self.announce(
-                        f"another process simulates {shard.name} in {self.folder} already; waiting "
-                        "for its results"
-                    )
-                if stop_is_requested():
-                    raise KeyboardInterrupt from None
-                time.sleep(_WAIT_SECONDS)
-            except OSError:
-                return  # a file system without locks
+    def locked(self, shards: Iterable[Shard]) -> contextlib.AbstractContextManager[None]:
+        """Lock shards while a context is open, as :func:`locked_folders` does their folders."""
+        return locked_folders([self.curve_folder(shard) for shard in shards], self.announce)
 
     def running_shards(self) -> list[str]:
         """Names of the shards that another process has locked, as far as this machine sees it."""
-        names = []
-        for path in sorted((self.folder / "curves").glob("*/.lock")):
-            with contextlib.suppress(OSError), path.open("ab") as file:
-                try:
-                    fcntl.lockf(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-                except (BlockingIOError, PermissionError):
-                    names.append(path.parent.name)
-        return names
-
-    def finish_shard(self, sweep: Sweep, shard: Shard, origin: Provenance) -> Path:
-        """Merge the files of curves of a shard, and derive the file of its rows.
-
-        The process must have locked the shard. ValueError if simulations are missing.
-        """
-        path = self.shard_path(shard)
-        if self.is_finished(sweep, shard):
-            return path
-        located = self.located(sweep, shard)
-        if n_missing := int(np.count_nonzero(located.missing)):
-            raise ValueError(
-                f"{n_missing} of {located.missing.size} simulations are not in "
-                f"{self.curve_folder(shard)}; run the same command again"
-            )
-        columns = {item.name: located.column(item.name) for item in variables(SweepRow)}
-        remade = [number for number, rows in enumerate(located.files) if is_older(rows)]
-        for number in remade:
-            self._remake(sweep, shard, located, number, columns)
-        arithmetic = {*located.column("arithmetic").tolist()}
-        self._merge(shard, located, columns, origin)
-        forget_sums(self.folder)
-        write_request(self.folder, shard_request(sweep, shard))
-        write_shard(path, sweep, shard, columns, arithmetic, origin)
-        return path
-
-    def _remake(
-        self,
-        sweep: Sweep,
-        shard: Shard,
-        located: LocatedRows,
-        number: int,
-        columns: dict[str, NDArray[Any]],
-    ) -> None:
-        """Make the rows of a file anew from its states, and put them into columns of the shard."""
-        chosen = np.flatnonzero(located.file == number)
-        everything = [*sweep.simulations(shard.item, shard.realisations)]
-        simulations = [everything[position] for position in chosen]
-        path = located.files[number].path
-        results = read_results(path, located.place.ravel()[chosen], simulations)
-        for position, result in zip(chosen.tolist(), results, strict=True):
-            if result is None:
-                continue
-            row = row_columns([sweep_row(result)], (1,))
-            del row["max_sweeps"]  # the limit that it had
-            for name, values in row.items():
-                if values.dtype.kind == "U":  # of any length
-                    columns[name] = columns[name].astype(object)
-                columns[name][position] = values[0]
-
-    def _merge(
-        self,
-        shard: Shard,
-        located: LocatedRows,
-        columns: dict[str, NDArray[Any]],
-        origin: Provenance,
-    ) -> None:
-        """Put all simulations of a shard into one file, and remove those that it replaces."""
-        folder = self.curve_folder(shard)
-        used = [number for number in range(len(located.files)) if np.any(located.file == number)]
-        paths = [located.files[number].path for number in used]
-        if len(paths) == 1 and paths[0].parent == folder and paths[0].name.startswith(MERGED):
-            rows = located.files[used[0]]
-            if not is_older(rows) and len(rows.series) == located.file.size:
-                return
-        if sum(path.stat().st_size for path in paths) > _MOST_MERGED_BYTES:
-            return
-        parts, order = [], []
-        for number in used:
-            chosen = located.place[located.file == number]
-            parts.append(selected(read_dataset(located.files[number].path), chosen))
-            order.append(np.flatnonzero(located.file.ravel() == number))
-        merged = selected(concatenated(parts), np.argsort(np.concatenate(order)))
-        merged = merged.assign(
-            {name: (SIMULATION, values, merged[name].attrs) for name, values in columns.items()}
-        )
-        merged_path = write_curves(folder, MERGED, shard.name, merged, origin)
-        in_merged = stored_rows(merged_path).identities
-        for path in curve_files(folder):
-            rows = stored_rows(path)
-            is_replaced = rows.physics_version < PHYSICS_VERSION or rows.identities <= in_merged
-            if is_replaced and path != merged_path:
-                path.unlink()
+        return locked_names(self.folder / "curves")
 
     def result(self, sweep: Sweep, simulation: Simulation) -> SimulationResult:
         """Stored result of a simulation; `UnreadableFileError` where it is not stored."""

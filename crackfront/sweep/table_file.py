@@ -61,9 +61,7 @@ def write_hysteresis(
     columns = {}
     for variable in variables(SweepRow):
         spectra = [
-            np.concatenate(
-                [columns_of_shard.pop(variable.name) for columns_of_shard in parts], axis=2
-            )
+            np.concatenate([shard.pop(variable.name) for shard in parts], axis=2)
             for parts in shards
         ]
         columns[variable.name] = np.concatenate(spectra)
@@ -131,32 +129,32 @@ def _axes(sweep: Sweep, realisations: range) -> SweepAxes:
     """Coordinates of a sweep, and of some of its realisations."""
     spectra = [item.spectrum for item in sweep.spectra]
     energies = np.array(sweep.elastic_energies)
-    one_per_amplitude = [sweep.one_per_amplitude(item) for item in sweep.spectra]
+    simulations = [sweep.one_per_amplitude(item) for item in sweep.spectra]
     self_affine = all(isinstance(spectrum, SelfAffineSpectrum) for spectrum in spectra)
     is_plain = self_affine and all(item.ensemble == GAUSSIAN for item in sweep.spectra)
-    stated = [first.stated_parameters for first, *_ in one_per_amplitude]
-    texts = [json.dumps(parameters, default=np.ndarray.tolist) for parameters in stated]
+    texts = [
+        json.dumps(first.stated_parameters, default=np.ndarray.tolist) for first, *_ in simulations
+    ]
 
-    def each(name: str) -> NDArray[Any]:
-        return np.array(
-            [[attrgetter(name)(simulation) for simulation in row] for row in one_per_amplitude]
-        )
+    def stated(name: str) -> NDArray[Any]:
+        value = attrgetter(name)
+        return np.array([[value(simulation) for simulation in row] for row in simulations])
 
     return SweepAxes(
         spectrum=np.array([item.name for item in sweep.spectra]),
         short_cutoff=np.array([spectrum.short_cutoff for spectrum in spectra]),
         roll_off=np.array([spectrum.longest_feature for spectrum in spectra]),
         hurst=np.array([getattr(spectrum, "hurst", math.nan) for spectrum in spectra]),
-        correlation_length=each("correlation_length")[:, 0],
+        correlation_length=stated("correlation_length")[:, 0],
         spring=np.array(
-            [[_spring(simulation.schedule) for simulation in row] for row in one_per_amplitude]
+            [[_spring(simulation.schedule) for simulation in row] for row in simulations]
         ),
-        n_angle=each("resolution.n_angle"),
-        sample_spacing=each("resolution.spacing"),
-        tile_side=each("resolution.tile_side"),
-        n_point=each("resolution.n_point"),
-        tolerance=each("solver.tolerance"),
-        series=each("series"),
+        n_angle=stated("resolution.n_angle"),
+        sample_spacing=stated("resolution.spacing"),
+        tile_side=stated("resolution.tile_side"),
+        n_point=stated("resolution.n_point"),
+        tolerance=stated("solver.tolerance"),
+        series=stated("series"),
         amplitude=energies,
         w_rms_requested=2 * np.sqrt(energies),
         realisation=np.array(realisations),

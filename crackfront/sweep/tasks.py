@@ -7,8 +7,7 @@ writes what is finished in batches.
 from __future__ import annotations
 
 import sys
-import time
-from collections.abc import Callable, Generator, Iterable, Sequence
+from collections.abc import Callable, Generator, Sequence
 from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,7 +16,7 @@ from numba.core.errors import NumbaError
 
 from crackfront.core.outcome import DefectError
 from crackfront.core.resources import TooLargeError
-from crackfront.simulate.checksums import BATCH, CHECKPOINT, forget_sums
+from crackfront.simulate.checksums import CHECKPOINT, forget_sums
 from crackfront.simulate.costs import expected_cost
 from crackfront.simulate.cycle_files import read_checkpoint, write_checkpoint
 from crackfront.simulate.provenance import Provenance
@@ -30,8 +29,9 @@ from crackfront.simulate.run_simulation import (
 from crackfront.simulate.simulation import Simulation
 from crackfront.simulate.storage import set_aside, set_aside_if_damaged
 from crackfront.sweep import parallel
+from crackfront.sweep.batches import BatchWriter, checkpoint_files
 from crackfront.sweep.checkpoints import CheckpointTimer
-from crackfront.sweep.curves import FinishedSimulation, curves_dataset, write_curves
+from crackfront.sweep.curves import FinishedSimulation
 from crackfront.sweep.rows import DEFECT, INVALID, failed_row, sweep_row
 from crackfront.sweep.store import Store
 from crackfront.sweep.sweep import Shard
@@ -41,13 +41,6 @@ _STOPPED, _NOT_STORED = "stopped", "not_stored"
 
 _WRITING_ERRORS = (OSError, RuntimeError)
 """What writing a file raises where the machine cannot; netCDF has errors of its own."""
-
-_MOST_WAITING = 2000
-"""Finished simulations that are written at once, however short the time since the last batch."""
-
-_MOST_WAITING_BYTES = 2e8
-"""Size of the fronts of finished simulations that are written at once: the fronts of a minute of
-many ranks would fill the memory of the manager. (Units: byte)"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,50 +54,6 @@ class SimulationOutcome:
 
 class NotStoredError(OSError):
     """The machine could not compute a simulation or store it."""
-
-
-class BatchWriter:
-    """Writes finished simulations of one shard, from time to time, into files of several."""
-
-    def __init__(self, folder: Path, origin: Provenance, seconds: float) -> None:
-        self._folder, self._origin, self._seconds = folder, origin, seconds
-        self._finished: list[FinishedSimulation] = []
-        self._written = time.monotonic()
-        self._count = self._n_byte = 0
-        self.n_written = 0
-
-    def add(self, finished: FinishedSimulation) -> None:
-        """Take a finished simulation; it is written with others in time."""
-        self._finished.append(finished)
-        if finished.record is not None and finished.record.fronts is not None:
-            self._n_byte += finished.record.fronts.nbytes
-        if len(self._finished) >= _MOST_WAITING or self._n_byte >= _MOST_WAITING_BYTES:
-            self.flush()
-
-    def flush_in_time(self) -> None:
-        """Write what is finished if the last batch was long enough ago."""
-        if time.monotonic() - self._written >= self._seconds:
-            self.flush()
-
-    def flush(self) -> None:
-        """Write what is finished, and remove its checkpoints."""
-        self._written = time.monotonic()
-        if not self._finished:
-            return
-        self._count += 1
-        dataset = curves_dataset(self._finished)
-        write_curves(self._folder, BATCH, f"{self._count:06}", dataset, self._origin)
-        for finished in self._finished:
-            for path in checkpoint_files(self._folder, finished.simulation):
-                path.unlink(missing_ok=True)
-        self.n_written += len(self._finished)
-        self._finished, self._n_byte = [], 0
-
-
-def checkpoint_files(folder: Path, simulation: Simulation) -> list[Path]:
-    """Checkpoints of a simulation in the folder of its shard, the latest last."""
-    paths = folder.glob(f"{CHECKPOINT}-{simulation.stem}-*.nc")
-    return sorted(paths, key=lambda path: path.stat().st_mtime)
 
 
 def run_and_store(
@@ -122,11 +71,11 @@ def run_and_store(
     written in the folder, before anything is run; NotStoredError if the machine could not compute a
     simulation or store it; KeyboardInterrupt if a stop was requested.
     """
-    writers, tasks = {}, []
+    writers = _Writers(origin, seconds)
+    tasks = []
     for shard, simulations in shards:
         folder = store.curve_folder(shard)
-        folder.mkdir(parents=True, exist_ok=True)
-        writers[folder] = BatchWriter(folder, origin, seconds)
+        writers.add_folder(folder)
         tasks += [_Task(simulation, folder, origin, seconds) for simulation in simulations]
     if tasks:
         forget_sums(store.folder)
@@ -134,33 +83,16 @@ def run_and_store(
     tasks.sort(key=lambda task: -expected_cost(task.simulation).seconds)
     for solver, kind in {(t.simulation.solver.name, type(t.simulation.schedule)) for t in tasks}:
         compile_solver(solver, kind)
-
-    def write_in_time() -> None:
-        try:
-            for writer in writers.values():
-                writer.flush_in_time()
-        except _WRITING_ERRORS as error:
-            raise NotStoredError(_not_stored_sentence(error)) from error
-
-    def keep(task: _Task, result: _TaskResult) -> SimulationOutcome:
-        try:
-            if result.finished is not None:
-                writers[task.folder].add(result.finished)
-            write_in_time()
-        except _WRITING_ERRORS as error:
-            return SimulationOutcome(_NOT_STORED, sentence=_not_stored_sentence(error))
-        return result.outcome
-
-    runs, done = ranks.run(_run_task, tasks, keep, write_in_time), 0
+    runs, done = ranks.run(_run_task, tasks, writers.keep, writers.write_in_time), 0
     try:
         with closing(runs) as outcomes:
             for task, outcome in outcomes:
                 if outcome.status == _NOT_STORED:
-                    _flush_all(writers.values())
-                    count = sum(writer.n_written for writer in writers.values())
+                    writers.flush()
                     raise NotStoredError(
-                        f"{task.simulation.label}: {outcome.sentence}; {count} of {len(tasks)} "
-                        "simulations were stored, and the same command continues with the others"
+                        f"{task.simulation.label}: {outcome.sentence}; {writers.n_written} of "
+                        f"{len(tasks)} simulations were stored, and the same command continues "
+                        "with the others"
                     )
                 if outcome.status != _STOPPED:
                     done += 1
@@ -171,20 +103,55 @@ def run_and_store(
                 "ones are stored; run the same command to continue"
             )
     finally:
-        unwritten = _flush_all(writers.values())
+        unwritten = writers.flush()
         if unwritten and not isinstance(sys.exception(), NotStoredError):
             raise NotStoredError(unwritten)
 
 
-def _flush_all(writers: Iterable[BatchWriter]) -> str:
-    """Write what is finished of all shards; why some of it could not be written, or nothing."""
-    sentence = ""
-    for writer in writers:
+class _Writers:
+    """Writers of the finished simulations of several shards, in the process that stores them."""
+
+    def __init__(self, origin: Provenance, seconds: float) -> None:
+        self._origin, self._seconds = origin, seconds
+        self._by_folder: dict[Path, BatchWriter] = {}
+
+    def add_folder(self, folder: Path) -> None:
+        """Make the folder of a shard and its writer."""
+        folder.mkdir(parents=True, exist_ok=True)
+        self._by_folder[folder] = BatchWriter(folder, self._origin, self._seconds)
+
+    @property
+    def n_written(self) -> int:
+        """Number of simulations that were written."""
+        return sum(writer.n_written for writer in self._by_folder.values())
+
+    def keep(self, task: _Task, result: _TaskResult) -> SimulationOutcome:
+        """Take the result of a task, and write what is finished if it is time for that."""
         try:
-            writer.flush()
+            if result.finished is not None:
+                self._by_folder[task.folder].add(result.finished)
+            self.write_in_time()
         except _WRITING_ERRORS as error:
-            sentence = _not_stored_sentence(error)
-    return sentence
+            return SimulationOutcome(_NOT_STORED, sentence=_not_stored_sentence(error))
+        return result.outcome
+
+    def write_in_time(self) -> None:
+        """Write what is finished if the last batch was long enough ago, or `NotStoredError`."""
+        try:
+            for writer in self._by_folder.values():
+                writer.flush_in_time()
+        except _WRITING_ERRORS as error:
+            raise NotStoredError(_not_stored_sentence(error)) from error
+
+    def flush(self) -> str:
+        """Write what is finished; why some of it could not be written, or nothing."""
+        sentence = ""
+        for writer in self._by_folder.values():
+            try:
+                writer.flush()
+            except _WRITING_ERRORS as error:
+                sentence = _not_stored_sentence(error)
+        return sentence
 
 
 @dataclass(frozen=True, slots=True)

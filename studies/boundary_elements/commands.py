@@ -72,12 +72,12 @@ def numbers(keep: bool) -> None:
 
     With --keep the table of the package, validity.csv, is written too.
     """
-    from crackfront.analysis.validity import validity_text
+    from crackfront.analysis.csv_records import csv_text
     from crackfront.simulate.storage import write_text
     from studies.boundary_elements.page import kept_surfaces, kept_validity, page_parts
 
     if keep:
-        table = validity_text(kept_validity(kept_surfaces()))
+        table = csv_text(kept_validity(kept_surfaces()))
         write_text(Path("crackfront/analysis/validity.csv"), table)
     for parts, numbers, data in page_parts():
         tell("boundary-elements", parts, numbers=numbers, keep=keep, data=data)

@@ -156,8 +156,10 @@ def _draw_forces(axes: Axes, picture: ValidationPicture) -> None:
         axes.plot(
             penetration, force, color=colour, linewidth=0.8, dashes=_DASHES, label=f"front, {name}"
         )
-        here = np.isclose(penetration, picture.shown_penetration, atol=1e-9)
-        axes.plot(penetration[here], force[here], "o", color=colour, markersize=3.6, zorder=4)
+        is_shown = np.isclose(penetration, picture.shown_penetration, atol=1e-9)
+        axes.plot(
+            penetration[is_shown], force[is_shown], "o", color=colour, markersize=3.6, zorder=4
+        )
     _draw_jumps(axes, picture)
     axes.set(xlabel=PENETRATION_LABEL, ylabel=FORCE_LABEL)
     axes.legend(loc="upper left")
@@ -245,8 +247,8 @@ def hysteresis_figure(rows: Sequence[Hysteresis], short_cutoff: float) -> Figure
         values, ratios = figure.subplots(1, 2)
         for number, shape in enumerate(shapes):
             near, far = (
-                [setting for setting in many if setting.rows[0].scene[:2] == shape]
-                for many in (computed, limits)
+                [setting for setting in candidates if setting.rows[0].scene[:2] == shape]
+                for candidates in (computed, limits)
             )
             look = {"color": COLOURS[number], "marker": MARKERS[number], "linewidth": 0.8}
             spectrum = _spectrum(far[0].rows[0], short_cutoff)

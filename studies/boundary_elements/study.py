@@ -17,7 +17,11 @@ from studies.boundary_elements.differences import Differences, differences
 from studies.boundary_elements.edges import EdgeForces, edge_forces
 from studies.boundary_elements.front import FrontCycle, front_cycle
 from studies.boundary_elements.hysteresis import Hysteresis, hysteresis
-from studies.boundary_elements.parameters import ValidationParameters, validation_cases
+from studies.boundary_elements.parameters import (
+    FrontSection,
+    ValidationParameters,
+    validation_cases,
+)
 from studies.boundary_elements.picture import (
     edge_figure,
     hysteresis_figure,
@@ -54,40 +58,25 @@ def write_validation(
     computed as `watched` yields them, which may show how far this is. A ValueError says if a front
     fails.
     """
-    fronts: dict[tuple[object, ...], FrontCycle] = {}
-
-    def front(case: Case, rotated: bool = True) -> FrontCycle:
-        key = *case.surface, rotated
-        if key not in fronts:
-            front_numerics = parameters.front
-            fronts[key] = front_cycle(
-                case, front_numerics.n_angle, front_numerics.spacing, rotated=rotated
-            )
-        return fronts[key]
-
+    fronts = _Fronts(parameters.front)
     rows: list[Hysteresis] = []
     loops: list[Differences] = []
     edges: list[EdgeForces] = []
     pictured: tuple[float, ...] = ()
     for case in watched(validation_cases(parameters)):
         boundary = _cycle(folder, case, origin, progress)
-        rows.append(hysteresis(case, boundary, front(case)))
+        rows.append(hysteresis(case, boundary, fronts.cycle(case)))
         write_records(folder / "hysteresis.nc", rows, "case", origin)
         if case.loads.steady is None:
-            # The front of a smooth sphere does not know where the crack points.
-            cracks = (True, False) if case.elastic_energy else (True,)
-            loops += [differences(case, boundary, front(case, rotated)) for rotated in cracks]
+            loops += _loop_differences(case, boundary, fronts)
             write_records(folder / "differences.nc", loops, "case", origin)
         elif case.elastic_energy:
-            edges.append(edge_forces(case, boundary, front(case)))
+            edges.append(edge_forces(case, boundary, fronts.cycle(case)))
             write_records(folder / "edges.nc", edges, "case", origin)
-        report = validation_report(rows, loops)
-        write_text(folder / "validation.md", report)
+        write_text(folder / "validation.md", validation_report(rows, loops))
         rank = case.elastic_energy, -case.roll_off, case.n_point
         if case.elastic_energy and rank > pictured:
-            picture = validation_picture(case, boundary, front(case), front(case, rotated=False))
-            write_record(folder / "picture.nc", picture, origin, case=case.label)
-            save_figure(validation_figure(picture), folder / "validation")
+            _write_picture(folder, case, boundary, fronts, origin)
             pictured = rank
         progress(
             f"{case.label}: hysteresis {rows[-1].boundary_difference:.4f} by boundary elements, "
@@ -98,6 +87,39 @@ def write_validation(
     if limit_settings(rows):
         save_figure(hysteresis_figure(rows, parameters.short_cutoff), folder / "hysteresis")
     progress(f"tables: {folder / 'validation.md'}")
+
+
+class _Fronts:
+    """Cycles of the crack front on the surfaces of the cases, each computed once."""
+
+    def __init__(self, numerics: FrontSection) -> None:
+        self._numerics = numerics
+        self._cycles: dict[tuple[object, ...], FrontCycle] = {}
+
+    def cycle(self, case: Case, *, rotated: bool = True) -> FrontCycle:
+        """Cycle on the surface of a case, with a crack that turns with the angle or not."""
+        key = *case.surface, rotated
+        if key not in self._cycles:
+            n_angle, spacing = self._numerics.n_angle, self._numerics.spacing
+            self._cycles[key] = front_cycle(case, n_angle, spacing, rotated=rotated)
+        return self._cycles[key]
+
+
+def _loop_differences(case: Case, boundary: BoundaryCycle, fronts: _Fronts) -> list[Differences]:
+    """Differences of both models over a loop, with a crack that turns with the angle and not."""
+    # The front of a smooth sphere does not know where the crack points.
+    cracks = (True, False) if case.elastic_energy else (True,)
+    return [differences(case, boundary, fronts.cycle(case, rotated=rotated)) for rotated in cracks]
+
+
+def _write_picture(
+    folder: Path, case: Case, boundary: BoundaryCycle, fronts: _Fronts, origin: Provenance
+) -> None:
+    """Write the data and the figure of a case."""
+    rotated, unrotated = fronts.cycle(case), fronts.cycle(case, rotated=False)
+    picture = validation_picture(case, boundary, rotated, unrotated)
+    write_record(folder / "picture.nc", picture, origin, case=case.label)
+    save_figure(validation_figure(picture), folder / "validation")
 
 
 def _cycle(folder: Path, case: Case, origin: Provenance, progress: Progress) -> BoundaryCycle:

@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-import csv
-import io
 from collections.abc import Sequence
-from dataclasses import astuple, dataclass, fields, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, TypeVar
 
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
+from crackfront.analysis.csv_records import csv_rows
 from crackfront.analysis.estimate import mean_estimate
 from crackfront.analysis.law import spectral_breadth
 from crackfront.core.adhesion import (
@@ -25,8 +23,6 @@ from crackfront.core.adhesion import (
 from crackfront.core.variables import variable
 from crackfront.simulate.line.line_loads import LineLoad
 from crackfront.sweep.sweep import Sweep
-
-Row = TypeVar("Row")
 
 COLUMNS = ("e_el", "w_appr", "w_retr", "w_appr_numerical_error", "w_retr_numerical_error")
 """Columns of a sweep's table that k is made of."""
@@ -75,33 +71,6 @@ class LawCell:
 def measured_cells() -> tuple[LawCell, ...]:
     """Rows of the kept `cells.csv`."""
     return csv_rows(MEASURED.read_text(encoding="utf-8"), LawCell)
-
-
-def csv_rows(text: str, kind: type[Row]) -> tuple[Row, ...]:
-    """Records of texts, whole numbers and numbers from comma-separated values.
-
-    ValueError if all rows or a column are missing.
-    """
-    record: Any = kind
-    numbers = {"int": int, "float": float}
-    types = {item.name: numbers.get(str(item.type), str) for item in fields(record)}
-    rows = list(csv.DictReader(text.splitlines()))
-    if not rows or (missing := types.keys() - rows[0].keys()):
-        lacks = f"the column {min(missing)}" if rows else "rows"
-        raise ValueError(
-            f"the table lacks {lacks}; name one that python -m studies law has written"
-        )
-    return tuple(kind(**{name: read(row[name]) for name, read in types.items()}) for row in rows)
-
-
-def csv_text(rows: Sequence[Any]) -> str:
-    """Comma-separated values of records of one kind, numbers to five digits."""
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow([item.name for item in fields(rows[0])])
-    for row in rows:
-        writer.writerow([f"{x:.5g}" if isinstance(x, float) else x for x in astuple(row)])
-    return text.getvalue()
 
 
 def mean_factors(kind: FieldKind, *columns: ArrayLike) -> Means:

@@ -11,6 +11,7 @@ from typing import cast
 import click
 import xarray as xr
 
+from crackfront.analysis.csv_records import Row, csv_rows, csv_text
 from crackfront.cli.option_types import FILE, examples
 from crackfront.cli.output_files import check_writable
 from crackfront.plots.style import save_picture
@@ -19,7 +20,7 @@ from crackfront.simulate.storage import read_dataset, write_text
 from crackfront.sweep.parameters import load_sweep
 from crackfront.sweep.run_sweep import opened
 from crackfront.sweep.sweep import Sweep
-from studies.law.cells import LawCell, Row, csv_rows, csv_text, law_cells, measured_cells
+from studies.law.cells import LawCell, law_cells, measured_cells
 from studies.law.drawing import law_figure, spectra_points
 from studies.law.fitting import fitted_law
 from studies.law.front_sweeps import write_configurations

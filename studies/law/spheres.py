@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
+from crackfront.analysis.csv_records import csv_rows
 from crackfront.analysis.estimate import REACH, Estimate, with_error, with_interval
 from crackfront.analysis.law import spectral_breadth
 from crackfront.analysis.law_spheres import SphereFactors, sphere_factors
@@ -22,7 +23,7 @@ from crackfront.simulate.sphere.steady_branches import SteadySchedule
 from crackfront.simulate.storage import read_dataset
 from crackfront.sweep.rows import sweep_row
 from crackfront.sweep.sweep import Sweep
-from studies.law.cells import COLUMNS, Means, cell_means, csv_rows, mean_factors
+from studies.law.cells import COLUMNS, Means, cell_means, mean_factors
 from studies.law.drawing import LawPoints
 from studies.pages import markdown_table
 

@@ -122,7 +122,9 @@ def _pull_off(parameters: PullOffParameters, spectrum: SelfAffineSpectrum, numbe
 def expected_seconds(parameters: PullOffParameters) -> float:
     """Processor time of all cycles (Units: s)."""
     simulations = map(parameters.simulation_on, parameters.spectra().flat)
-    return parameters.n_surface * sum(expected_cost(each).seconds for each in simulations)
+    return parameters.n_surface * sum(
+        expected_cost(simulation).seconds for simulation in simulations
+    )
 
 
 _EXPECTATION = (

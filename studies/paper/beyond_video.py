@@ -146,7 +146,7 @@ def video_animation(shown: Video) -> Animation:
         edge = np.column_stack([x[state], y[state]]) if touching else np.zeros((3, 2))
         contact.set_xy(edge)
         passed = np.flatnonzero(shown.direction[: state + 1] == direction)[::-_EVERY]
-        perimeters.set_segments([np.column_stack([x[one], y[one]]) for one in passed])
+        perimeters.set_segments([np.column_stack([x[earlier], y[earlier]]) for earlier in passed])
         perimeters.set_color(colours[direction])
         title.set_text(f"{shown.time[state]:.0f} s{'' if touching else ', contact lost'}")
         for branch, drawn in branches.items():

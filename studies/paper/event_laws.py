@@ -175,9 +175,9 @@ def _exponent_check(
 ) -> Check:
     """An exponent against the exponent of the theory, within a tolerance or its own interval."""
     reach = math.hypot(scatter, shift)
-    of_what = f"95% interval: ± {scatter:.2g} by the scatter of the events"
+    interval = f"95% interval: ± {scatter:.2g} by the scatter of the events"
     if shift:
-        of_what += f", ± {shift:.2g} by where the law begins (its change from twice that value on)"
+        interval += f", ± {shift:.2g} by where the law begins (its change from twice that value on)"
     if scatter > _TOLERANCE:
         more = math.ceil((scatter / _TOLERANCE) ** 2)
         remark += f"; a scatter of {_TOLERANCE} would need about {more} times as many events"
@@ -186,7 +186,7 @@ def _exponent_check(
         with_error(expected, max(reach, _TOLERANCE)),
         with_error(measured, reach),
         abs(measured - expected) <= max(reach, _TOLERANCE),
-        f"{of_what}; {remark}",
+        f"{interval}; {remark}",
         expectation=_EXPECTATION,
     )
 

@@ -127,7 +127,7 @@ def ring_loops(parameters: RingsParameters, progress: Progress) -> RingLoops:
     )
 
 
-_KNOWN = {(0.2, 0.3, 0.7, 0.005): (0.3886, 2e-4), (0.2, 0.3, 0.7, 0.1): (0.238, 1e-3)}
+_EXPECTED_HYSTERESIS = {(0.2, 0.3, 0.7, 0.005): (0.3886, 2e-4), (0.2, 0.3, 0.7, 0.1): (0.238, 1e-3)}
 """Hysteresis with its tolerance, by amplitude, window and wavelength, from a separate program."""
 
 _ROUND_OFF = 1e-9
@@ -214,7 +214,7 @@ def _case_checks(loops: RingLoops) -> Iterator[Check]:
     hysteresis = loops.case_retraction - loops.case_approach
     for wavelength, mean_hysteresis in zip(loops.case_wavelength, hysteresis, strict=True):
         name = f"amplitude {delta:g}, rings of {wavelength:g}: mean hysteresis"
-        if reference := _KNOWN.get((delta, low, high, float(wavelength))):
+        if reference := _EXPECTED_HYSTERESIS.get((delta, low, high, float(wavelength))):
             remark = f"mean over b from {low:g} to {high:g}; from an independent program"
             yield near(name, mean_hysteresis, *reference, remark=remark)
         fall = stiffness * wavelength

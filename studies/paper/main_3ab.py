@@ -137,7 +137,7 @@ def instability_record(parameters: InstabilityParameters, progress: Progress) ->
         measured_instabilities(branch.jumps, branch.contact.field, travel) for branch in retractions
     ]
 
-    def both(name: str) -> Array:
+    def retraction_values(name: str) -> Array:
         return np.concatenate([getattr(instability, name) for instability in instabilities])
 
     states = [branch.states for branch in (approach, retractions[STRONG])]
@@ -157,8 +157,8 @@ def instability_record(parameters: InstabilityParameters, progress: Progress) ->
         disorder_index=np.repeat(
             [STRONG, WEAK], [instability.penetration.size for instability in instabilities]
         ),
-        energy=both("dissipated_energy"),
-        **{name: both(name) for name in ("penetration", "extent", "before", "after")},
+        energy=retraction_values("dissipated_energy"),
+        **{name: retraction_values(name) for name in ("penetration", "extent", "before", "after")},
         state_direction=np.repeat([1, -1], [branch_states.shape[1] for branch_states in states]),
         state_penetration=penetration,
         state_radius=radius,

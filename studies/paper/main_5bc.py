@@ -255,14 +255,14 @@ def _instability_check(contact: NanodiamondContact) -> Check:
     low, high = _SEVERAL_TENS
     widest, extents = _MICRO * contact.widest, _MICRO * contact.extents
     mean, order = widest_instability_estimate(contact), np.argsort(widest)
-    each = ", ".join(f"{extent:.0f}" for extent in widest[order])
+    listed = ", ".join(f"{extent:.0f}" for extent in widest[order])
     merged = ", ".join(f"{extents[contact.surface == surface].max():.0f}" for surface in order)
     return Check(
         "instabilities of the approach after jump-in: up to several tens of um wide",
         f"the widest of a surface: {low:g} to {high:g} um, within the 95% interval of the mean",
         f"{with_interval(mean)} um",
         mean.high >= low and mean.low <= high,
-        f"of {widest.size} surfaces: {each} um; connected sites that advance by more than the "
+        f"of {widest.size} surfaces: {listed} um; connected sites that advance by more than the "
         f"correlation length of w_loc, {_MICRO * contact.threshold:.2f} um, separated to "
         f"{1e9 * contact.precision:.2g} nm of penetration; in whole load steps of "
         f"{1e9 * contact.load_step:.0f} nm, which merge some, the widest are {merged} um, and of "

@@ -66,8 +66,9 @@ class WideStep:
     """Load step of an approach in which a wide part of the front has advanced."""
 
     start: float
+    """Penetration of the front before. (Units: reduced vertical length)"""
     end: float
-    """Penetrations at both ends. (Units: reduced vertical length)"""
+    """Penetration of the front after. (Units: reduced vertical length)"""
     before: Array
     after: Array
     extent: float

@@ -12,7 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
 from numpy.typing import NDArray
 
-from crackfront.analysis.estimate import REACH, slope, with_error, with_interval
+from crackfront.analysis.estimate import REACH, least_squares_slope, with_error, with_interval
 from crackfront.analysis.finding import PAPER_FACTOR
 from crackfront.analysis.fit_text import pooled_limits
 from crackfront.analysis.result import SweepFit
@@ -81,7 +81,7 @@ class ParametricStudy:
         return SweepTable(**columns, spring=np.full(self.e_el.shape[:2], np.nan))
 
 
-_OF_FIT = ("kind", "lowest_elastic_energy", "highest_elastic_energy", "n_bootstrap", "seed")
+_FIT_FIELDS = ("kind", "lowest_elastic_energy", "highest_elastic_energy", "n_bootstrap", "seed")
 
 
 def parametric_study(
@@ -89,14 +89,17 @@ def parametric_study(
 ) -> ParametricStudy:
     """Data of the figure from the fit of a sweep."""
     progress(f"{parameters.sweep}: {fit.table.finite.sum()} simulations with a value")
-    of_table = {field.name for field in fields(ParametricStudy)} - {*_OF_FIT, "e_el_requested"}
-    columns = values_of(fit.table, *of_table) | values_of(fit, *_OF_FIT)
+    table_fields = {field.name for field in fields(ParametricStudy)} - {
+        *_FIT_FIELDS,
+        "e_el_requested",
+    }
+    columns = values_of(fit.table, *table_fields) | values_of(fit, *_FIT_FIELDS)
     return ParametricStudy(**columns, e_el_requested=fit.table.amplitude)
 
 
 def study_fit(study: ParametricStudy) -> SweepFit:
     """The fit of a sweep once more, from the data of the figure."""
-    return fit_sweep(study.table, **values_of(study, *_OF_FIT))
+    return fit_sweep(study.table, **values_of(study, *_FIT_FIELDS))
 
 
 def parametric_study_checks(study: ParametricStudy) -> tuple[Check, ...]:
@@ -115,7 +118,7 @@ def parametric_study_checks(study: ParametricStudy) -> tuple[Check, ...]:
             bool(abs(factor.value - PAPER_FACTOR) <= ONE_DIGIT),
             f"{', '.join(['95% interval', *pooled_limits(fit, fit.spectra.factor)])}; k grows with "
             "the size of the contact, and falls with disorder beyond the onset: panels b and c",
-            law=_said(float(factor.value), *law.factor),
+            law=_law_text(float(factor.value), *law.factor),
         ),
         Check(
             "k of any one spectrum and amplitude of the sweep: 3, which the paper draws as a line",
@@ -125,7 +128,7 @@ def parametric_study_checks(study: ParametricStudy) -> tuple[Check, ...]:
             "for its dashed line the paper states one digit, no range, weights, resolution or "
             "number of surfaces; the authors' published code finds the states of this solver "
             "(docs/law.md, The paper's 3)",
-            law=_said(largest, *law.largest),
+            law=_law_text(largest, *law.largest),
         ),
         Check(
             "hysteresis in proportion to w_rms^2: exponent 2",
@@ -133,7 +136,7 @@ def parametric_study_checks(study: ParametricStudy) -> tuple[Check, ...]:
             with_interval(exponent),
             bool(exponent.low <= 2 <= exponent.high),
             "over the range of the fit, where k falls with disorder",
-            law=_said(float(exponent.value), *law.exponent),
+            law=_law_text(float(exponent.value), *law.exponent),
         ),
         Check(
             "independent of the shape of the spectrum: spread of k among the spectra",
@@ -141,7 +144,7 @@ def parametric_study_checks(study: ParametricStudy) -> tuple[Check, ...]:
             f"{100 * spread:.1f}%",
             spread <= _SAME,
             ", ".join(f"{name} {k:.2f}" for name, k in zip(study.spectrum, factors, strict=True)),
-            law=_said(100 * spread, *law.spread, units="%"),
+            law=_law_text(100 * spread, *law.spread, units="%"),
         ),
         _onset_check(study, fit),
     )
@@ -163,7 +166,7 @@ def _by_law(fit: SweepFit) -> _ByLaw:
     if not np.all(np.isfinite(k)):
         return _ByLaw(*[(math.nan, math.nan)] * 4)
     strength = np.log(fit.cells.w_rms[:, fit.in_range])
-    along, weight = slope(strength, np.log(k))
+    along, weight = least_squares_slope(strength, np.log(k))
     # Errors of different amplitudes and spectra count as independent.
     relative = float(np.mean(error / k))
     mean = np.mean(k, axis=1)
@@ -175,7 +178,7 @@ def _by_law(fit: SweepFit) -> _ByLaw:
     )
 
 
-def _said(measured: float, value: float, reach: float, units: str = "") -> str:
+def _law_text(measured: float, value: float, reach: float, units: str = "") -> str:
     """The law's number where what was found agrees with it, else nothing."""
     return f"{with_error(value, reach)}{units}" if abs(measured - value) <= reach else ""
 

@@ -28,14 +28,15 @@ from crackfront.simulate.costs import expected_cost
 from crackfront.simulate.provenance import Provenance, provenance
 from crackfront.simulate.run_simulation import run_simulation
 from crackfront.simulate.storage import write_text
+from crackfront.sweep.batches import BatchWriter
 from crackfront.sweep.curves import FinishedSimulation
+from crackfront.sweep.finished_shards import finish_shard
 from crackfront.sweep.parameters import load_sweep
 from crackfront.sweep.requests import shard_request
 from crackfront.sweep.rows import row_columns, sweep_row
 from crackfront.sweep.shards import write_shard
 from crackfront.sweep.store import Store, write_request
 from crackfront.sweep.sweep import NamedSpectrum, Shard, Sweep
-from crackfront.sweep.tasks import BatchWriter
 from studies.pages import markdown_table
 from studies.speed.machine import in_fresh_process
 
@@ -201,7 +202,7 @@ def synthetic(folder: Path, n_simulation: int, *, curves: bool = True) -> Path:
                     row = replace(first.row, w_appr=w_appr, seed=simulation.seed)
                     writer.add(replace(first, simulation=simulation, row=row))
             writer.flush()
-            store.finish_shard(sweep, shard, origin)
+            finish_shard(store, sweep, shard, origin)
         else:
             columns = _repeated_rows(firsts[shard.item.name], shard, rng)
             write_request(folder, shard_request(sweep, shard))

@@ -86,6 +86,12 @@ def test_the_springs_of_a_sphere_are_a_half_a_third_and_a_fifth_of_its_radius(ra
     assert radius / jkr.spring(radius) == pytest.approx(ratio)
 
 
+def test_the_springs_of_a_sphere_are_infinitely_long_up_to_pull_off():
+    lost = jkr.pull_off_radius(0.7)
+    assert jkr.spring(0.99 * lost, 0.7) == np.inf
+    assert np.isfinite(jkr.spring(1.01 * lost, 0.7))
+
+
 def test_the_interval_holds_the_three_errors(law):
     factor = pinning_factor(0.3, 5.0)
     expected = np.sqrt(factor.statistical**2 + factor.numerical**2 + factor.model**2)

@@ -27,11 +27,11 @@ from crackfront.core.solver.relax import named_solver
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.plots.style import save_figure
 from crackfront.simulate.provenance import provenance
+from crackfront.sweep.batches import BatchWriter
 from crackfront.sweep.curves import FinishedSimulation
 from crackfront.sweep.parameters import load_sweep
 from crackfront.sweep.rows import failed_row
 from crackfront.sweep.store import Store
-from crackfront.sweep.tasks import BatchWriter
 from tests.commands import refused, run
 from tests.measured.made import DETAIL, measure_surfaces_once
 from tests.places import TEST

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.simulate.law_interpolation import combined_error
-from crackfront.simulate.laws import LAW_CUTOFFS, SETTINGS, read_laws
+from crackfront.simulate.laws import LAW_CUTOFFS, SETTINGS, read_laws, sphere_cutoffs
 from crackfront.simulate.numerical_errors import numerical_error
 from crackfront.simulate.settings import chosen_settings
 from studies.accuracy.scenes import SCENES, with_setting
@@ -45,12 +45,29 @@ def test_the_chosen_settings_state_no_more_than_the_error_that_was_asked_for(sce
     assert max(stated(scene, chosen(scene, error))) <= 1.05 * error
 
 
-def test_the_chosen_settings_are_not_much_finer_than_the_error_needs():
-    for scene in SCENES.values():
-        if scene.elastic_energy >= 0.04 and scene.varies_single:
-            # Where avalanches are rare, scatter is kept below the error by up to three.
-            share = 0.65 if scene.elastic_energy >= 0.16 else 0.35
-            assert max(stated(scene, chosen(scene, 0.03))) > share * 0.03
+@given(
+    kind=st.sampled_from(["roughness", "chemical"]),
+    cutoff=st.floats(0.002, 0.1),
+    octaves=st.floats(0, 7),
+    hurst=st.floats(0.1, 1),
+    elastic_energy=st.floats(0.001, 0.4),
+    error=st.floats(0.003, 0.1),
+)
+def test_the_chosen_settings_use_two_thirds_of_the_request_unless_a_range_ends(
+    kind, cutoff, octaves, hurst, elastic_energy, error
+):
+    spectrum = SelfAffineSpectrum(cutoff, cutoff * 2**octaves, hurst)
+    settings = chosen_settings(error, kind, spectrum, elastic_energy)
+    values = {
+        "sites": settings.angles_per_cutoff,
+        "cubic": settings.samples_per_cutoff,
+        "pixels": settings.pixels_per_cutoff,
+        "tolerance": settings.tolerance,
+    }
+    errors = combined_error(kind, spectrum, elastic_energy, values, sphere_cutoffs(spectrum))
+    used = max(errors) / (elastic_energy * error)
+    assert used > 2 / 3 or settings.angles_per_cutoff == 1.4
+    assert used < 1 + 1e-12 or 8 in (settings.pixels_per_cutoff, settings.samples_per_cutoff / 2)
 
 
 @given(scene=scenes)

@@ -22,7 +22,7 @@ from crackfront.simulate.run_simulation import run_simulation
 from crackfront.simulate.simulation import Simulation, simulation_adhesion
 from crackfront.simulate.sphere.steady_branches import (
     SteadySchedule,
-    own_part,
+    branch_part,
     standard_error,
 )
 from crackfront.simulate.tiles import Resolution
@@ -107,7 +107,7 @@ def test_the_approach_ends_when_k_has_the_requested_error():
         shared = np.mean(circles, axis=1) / WORK_OF_ADHESION
 
         def error_of_k(n, values=values, shared=shared, radius=radius, roughness=roughness):
-            parts = own_part(values[:n], shared[:n])
+            parts = branch_part(values[:n], shared[:n])
             spread = math.sqrt(2) * standard_error(parts, radius[:n], roughness[:n], LENGTH)
             return spread / (2 * 0.04)
 

@@ -31,6 +31,7 @@ from crackfront.simulate.run_simulation import run_simulation
 from crackfront.simulate.settings import Settings
 from crackfront.simulate.tiles import correlated_adhesion
 from crackfront.sweep.advice import expectation
+from crackfront.sweep.finished_shards import finish_shard
 from crackfront.sweep.rows import sweep_row
 from crackfront.sweep.store import Store
 from crackfront.sweep.sweep import FitRange, NamedSpectrum, Sweep
@@ -349,7 +350,7 @@ def test_a_sweep_stores_its_states_and_has_its_rows_in_the_table(rough, tmp_path
     store, origin, [shard] = Store(tmp_path), provenance("text"), SWEEP.shards()
     simulations = [*SWEEP.simulations()]
     assert len([*run_and_store(store, [(shard, simulations)], origin)]) == 2
-    store.finish_shard(SWEEP, shard, origin)
+    finish_shard(store, SWEEP, shard, origin)
     store.aggregate(SWEEP, origin)
     again, table = store.result(SWEEP, ROUGH), store.table(SWEEP)
     np.testing.assert_array_equal(again.record.fronts, rough.record.fronts)

@@ -34,7 +34,7 @@ from crackfront.simulate.storage import (
     write_derived,
     write_named_by_digest,
 )
-from crackfront.sweep import tasks
+from crackfront.sweep import batches, tasks
 from crackfront.sweep.curves import curve_files
 from crackfront.sweep.parameters import load_sweep
 from crackfront.sweep.rows import sweep_row
@@ -219,7 +219,8 @@ def test_a_new_version_of_rows_remakes_them_from_states_and_runs_nothing(
     before = stored(folder)
     raise_version(monkeypatch, "ROWS_VERSION")
     monkeypatch.setattr(
-        "crackfront.sweep.store.sweep_row", lambda result: replace(sweep_row(result), w_appr=0.0)
+        "crackfront.sweep.finished_shards.sweep_row",
+        lambda result: replace(sweep_row(result), w_appr=0.0),
     )
     assert "8 of 8 simulations" in refused("aggregate", configuration, "--output", folder)
     assert simulate(configuration, folder) == set()
@@ -289,7 +290,7 @@ def test_what_the_machine_could_not_compute_is_no_row_and_runs_again(
 def test_what_the_machine_could_not_store_runs_again(
     configuration, made, tmp_path, monkeypatch, lacking
 ):
-    error, folder, write = OF_THE_MACHINE[lacking], tmp_path / "sweep", tasks.write_curves
+    error, folder, write = OF_THE_MACHINE[lacking], tmp_path / "sweep", batches.write_curves
 
     def fail_after_three(folder, *arguments):
         if len(curve_files(folder)) == 3:
@@ -298,7 +299,7 @@ def test_what_the_machine_could_not_store_runs_again(
 
     told = ("simulate", configuration, "--output", folder, "--checkpoint", "0.01")
     with monkeypatch.context() as patched:
-        patched.setattr(tasks, "write_curves", fail_after_three)
+        patched.setattr(batches, "write_curves", fail_after_three)
         result = run(*told)
     assert result.exit_code == 1, result.output
     assert isinstance(result.exception, SystemExit)

@@ -241,20 +241,22 @@ class LineLoad(SurfaceLoads):
         Along both axes the tile has the roll-offs and short cutoffs of the numerics or more.
         """
         larkin = larkin_length(kind, spectrum, 2 * math.sqrt(elastic_energy))
-        length = correlation_length(kind, spectrum)
-        spring *= length if self.spring_unit == "correlation_length" else larkin
+        correlation = correlation_length(kind, spectrum)
+        spring_length = spring * (
+            correlation if self.spring_unit == "correlation_length" else larkin
+        )
         settings = numerics.settings_of(
             kind, spectrum, elastic_energy, self.usual_cutoffs(spectrum)
         )
         pixel = spectrum.short_cutoff / settings.pixels_per_cutoff
         least = numerics.tile_side(spectrum)
-        rms = front_rms(force_correlation_length(kind, spectrum), spring / larkin)
+        rms = front_rms(force_correlation_length(kind, spectrum), spring_length / larkin)
         return LineSchedule(
-            spring=spring,
-            length=pixel * _points(max(self.length * spring, least) / pixel),
+            spring=spring_length,
+            length=pixel * _points(max(self.length * spring_length, least) / pixel),
             period=pixel * _points(max(self.period * rms, least) / pixel),
-            lead_in=_LEAD_IN * length + self.transient * rms,
-            step=self.step * length,
+            lead_in=_LEAD_IN * correlation + self.transient * rms,
+            step=self.step * correlation,
             uncorrelated=self.uncorrelated,
         )
 

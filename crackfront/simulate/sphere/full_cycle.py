@@ -109,17 +109,17 @@ class FullCycle(SphereSchedule, LoadSchedule):
 
     def expected_motion(self, surface: RandomSurface) -> ExpectedMotion:
         """States of both branches, until contact is lost."""
-        travel = self.step / jkr.penetration_slope(self.max_penetration)
+        spacing = self.step / jkr.penetration_slope(self.max_penetration)
         # The hysteresis lifts w_retr by about twice e_el, and contact is lost that much later.
         lost_at = jkr.pull_off_penetration(1 + 2 * surface.elastic_energy)
         n_state = (2 * self.max_penetration - lost_at) / self.step
-        return ExpectedMotion(n_state, travel / surface.correlation_length)
+        return ExpectedMotion(n_state, spacing / surface.correlation_length)
 
     def steady_penetration(
-        self, surface: RandomSurface, works: tuple[float, float], travel: float, n_state: int
+        self, surface: RandomSurface, works: tuple[float, float], transient: float, n_state: int
     ) -> float:
         """Penetration that leaves both branches so many steady states at the same radii."""
         low, high = works
-        begin = max(jkr.equilibrium_radius(0.0, low), jkr.pull_off_radius(high) - travel)
+        begin = max(jkr.equilibrium_radius(0.0, low), jkr.pull_off_radius(high) - transient)
         step = self.step / jkr.penetration_slope(self.max_penetration)
-        return float(jkr.equilibrium_penetration(begin + 2 * travel + n_state * step, low))
+        return float(jkr.equilibrium_penetration(begin + 2 * transient + n_state * step, low))

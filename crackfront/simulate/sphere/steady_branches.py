@@ -130,7 +130,7 @@ class SteadySchedule(SphereSchedule):
             steady.append(recorder.states[-1])
             shared.append(_circle_adhesion(field, recorder.states[-1].mean_radius))
             states = columns(steady, ContactState)
-            front_part = own_part(states.apparent_work_of_adhesion, np.array(shared))
+            front_part = branch_part(states.apparent_work_of_adhesion, np.array(shared))
             spread = standard_error(
                 front_part, states.mean_radius, states.rms_radius, correlation_length
             )
@@ -165,31 +165,31 @@ class SteadySchedule(SphereSchedule):
         return ExpectedMotion(2 * min(n_most, n_state), self.travel)
 
     def steady_penetration(
-        self, surface: RandomSurface, works: tuple[float, float], travel: float, n_state: int
+        self, surface: RandomSurface, works: tuple[float, float], transient: float, n_state: int
     ) -> float:
         """Penetration that leaves the approach so many steady states."""
         low, _ = works
-        end = self._begin(surface, low) + self._way(surface, travel, n_state)
+        end = self._begin(surface, low) + self._steady_way(surface, transient, n_state)
         return float(jkr.equilibrium_penetration(end, low))
 
     def steadier_start(
-        self, surface: RandomSurface, works: tuple[float, float], travel: float, n_state: int
+        self, surface: RandomSurface, works: tuple[float, float], transient: float, n_state: int
     ) -> float | None:
         """Start from which the approach has so many steady states; None below first contact."""
         low, _ = works
         end = jkr.equilibrium_radius(self.max_penetration, low)
-        begin = end - self._way(surface, travel, n_state) + surface.correlation_length
+        begin = end - self._steady_way(surface, transient, n_state) + surface.correlation_length
         if begin < jkr.equilibrium_radius(0.0, low):
             return None
         return float(jkr.equilibrium_penetration(begin, low))
 
     def steadier_travel(
-        self, surface: RandomSurface, works: tuple[float, float], travel: float, n_state: int
+        self, surface: RandomSurface, works: tuple[float, float], transient: float, n_state: int
     ) -> float | None:
         """Travel with which the approach has so many steady states; None if it is too small."""
         low, _ = works
         whole = jkr.equilibrium_radius(self.max_penetration, low) - self._begin(surface, low)
-        shorter = float(whole - travel) / (n_state * surface.correlation_length)
+        shorter = float(whole - transient) / (n_state * surface.correlation_length)
         return shorter if shorter > _LEAST_TRAVEL else None
 
     def _begin(self, surface: RandomSurface, work_of_adhesion: float) -> float:
@@ -197,9 +197,10 @@ class SteadySchedule(SphereSchedule):
         radius = jkr.equilibrium_radius(self.start, work_of_adhesion)
         return float(radius) - surface.correlation_length
 
-    def _way(self, surface: RandomSurface, travel: float, n_state: int) -> float:
+    def _steady_way(self, surface: RandomSurface, transient: float, n_state: int) -> float:
         """Way of the approach until it has so many steady states (Units: length)."""
-        return travel + n_state * self.travel * surface.correlation_length
+        correlation_lengths = n_state * self.travel
+        return transient + correlation_lengths * surface.correlation_length
 
 
 def integral_breadth(kind: FieldKind, spectrum: Spectrum) -> float:
@@ -233,7 +234,7 @@ def _circle_adhesion(field: Field, radius: float) -> float:
     return float(np.mean(front_adhesion(circle, field))) / WORK_OF_ADHESION
 
 
-def own_part(values: Array, shared: Array) -> Array:
+def branch_part(values: Array, shared: Array) -> Array:
     """Apparent work of adhesion without what both branches share over the same radii.
 
     The mean of w_loc on the circles raises and lowers both branches alike and adds noise to each,

@@ -38,6 +38,9 @@ def test_a_branch_alone_has_its_work_of_adhesion(rows, name, missing, truth, mod
     assert np.isnan(getattr(result, missing).value)
     assert np.isnan(result.hysteresis.value)
     assert f"{missing:18}unknown" in repr(result)
+    branch = {"w_appr": "approach", "w_retr": "retraction"}[name]
+    [averaged] = [line for line in repr(result).splitlines() if line.startswith("averaged over")]
+    assert averaged.endswith(f": {np.sum(result.in_window)} rows of {branch}")
     assert any(f"{missing} and the hysteresis are unknown" in remark for remark in result.remarks)
 
 
@@ -52,6 +55,11 @@ def test_a_segment_of_a_whole_loop_uses_its_rows_out_of_contact(segment, name):
     result = analyse_loop(WHOLE, Rig(RADIUS, MODULUS, segment=segment))
     assert getattr(result, name).low <= TRUTH[name] <= getattr(result, name).high
     assert any("60 rows out of contact give a drift" in remark for remark in result.remarks)
+
+
+def test_too_few_rows_of_a_branch_alone_are_an_error_on_this_branch():
+    with pytest.raises(ValueError, match=r"retraction has no rows .*; \d+ are needed"):
+        analyse_loop(WHOLE.rows(slice(TURN, None)), Rig(RADIUS, MODULUS, window=(1e-6, 2e-6)))
 
 
 def test_a_segment_that_was_not_recorded_is_an_error_with_the_remedy():

@@ -47,8 +47,9 @@ def test_a_channel_is_chosen_by_name_or_number(tmp_path, noise):
     first_text, two = (write_text(tmp_path / f"{n}.txt", n * noise).read_text() for n in (1, 3))
     path.write_text(first_text + two.replace("Channel: Main", "Channel: Other"))
     by_default, by_name, by_number = (read(path, channel=name) for name in (None, "Other", 1))
-    assert by_default.channel == "'Main', 0 of 2"
-    assert by_name.channel == by_number.channel == "'Other', 1 of 2"
+    assert by_default.channel.startswith("'Main', 0 of 2 ")
+    assert by_name.channel == by_number.channel
+    assert by_name.channel.startswith("'Other', 1 of 2 ")
     assert np.std(by_name.heights) == pytest.approx(3 * np.std(by_default.heights), rel=1e-4)
     message = refusal(path, channel="Phase")
     assert "has no channel 'Phase'; choose by number or name with --channel: 0 'Main'" in message

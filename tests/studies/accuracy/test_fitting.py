@@ -113,4 +113,3 @@ def test_the_laws_of_the_package_are_those_that_the_study_gives():
         before = stored[law.setting, law.direction]
         assert law.bias == pytest.approx(before.bias, abs=0.02)
         assert law.scatter == pytest.approx(before.scatter, abs=0.02)
-        assert law.avalanche == pytest.approx(before.avalanche, abs=0.001)

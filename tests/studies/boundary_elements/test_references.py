@@ -7,11 +7,11 @@ from operator import attrgetter
 import numpy as np
 import pytest
 
+from crackfront.analysis.csv_records import csv_text
 from crackfront.analysis.validity import (
     excess_coefficient,
     front_excess,
     shipped_validity,
-    validity_text,
 )
 from crackfront.simulate.storage import read_attributes
 from studies.boundary_elements.averages import (
@@ -51,7 +51,7 @@ def kept(surfaces):
 
 def test_the_shipped_table_is_that_of_the_kept_surfaces(surfaces):
     told = kept_validity(surfaces)
-    assert validity_text(shipped_validity()) == validity_text(told)
+    assert csv_text(shipped_validity()) == csv_text(told)
     counts = [(row.surfaces, row.fine) for row in told]
     assert counts[:8] == [(24, 5), *[(12, 5)] * 3, (48, 5), *[(24, 5)] * 3]
     sizes = {(row.roll_off, round(row.elastic_energy, 2)): row.size for row in told[:8]}

@@ -6,7 +6,8 @@ import sys
 import pytest
 from click.testing import CliRunner
 
-from crackfront.analysis.validity import validity_of, validity_text
+from crackfront.analysis.csv_records import csv_rows, csv_text
+from crackfront.analysis.validity import ValidityRow
 from crackfront.simulate.storage import UnreadableFileError
 from studies.boundary_elements.averages import limit_settings, rows_by_zone
 from studies.boundary_elements.commands import commands
@@ -76,7 +77,7 @@ def test_tables_figures_and_sentence_are_those_of_the_rows(branch_results):
     text = (branch_results / "validation.md").read_text()
     assert text.startswith(validation_report(rows, []))
     rows_of_all = [row for (*_, zone), row in rows_by_zone(rows, 0.6).items() if not zone]
-    told = validity_of(validity_text(rows_of_all))
+    told = csv_rows(csv_text(rows_of_all), ValidityRow)
     limits = limit_settings(rows)
     assert [[row.n_point for row in limit.rows] for limit in limits] == [[64]]
     assert [row.ratio for row in told] == pytest.approx(

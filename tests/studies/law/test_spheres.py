@@ -3,12 +3,13 @@
 import numpy as np
 import pytest
 
+from crackfront.analysis.csv_records import csv_text
 from crackfront.analysis.law import pinning_factor
 from crackfront.core.adhesion import correlation_length
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.sweep.parameters import load_sweep
 from studies.law.cells import HELD_OUT as HELD_OUT_SHAPES
-from studies.law.cells import csv_text, measured_cells
+from studies.law.cells import measured_cells
 from studies.law.spheres import is_covered, is_within, law_of, read_spheres
 from tests.places import ROOT
 
