@@ -47,10 +47,10 @@ def simulation(elastic_energy=0.04, realisation=0, schedule=SCHEDULE):
     )
 
 
-def field_of(simulated):
-    resolution = simulated.resolution
+def field_of(case):
+    resolution = case.resolution
     return contact_field(
-        simulation_adhesion(simulated),
+        simulation_adhesion(case),
         1.6,
         resolution.n_angle,
         resolution.spacing,

@@ -166,12 +166,8 @@ def test_a_wyko_file_with_two_blocks_of_heights_says_which_is_read_and_how_to_ch
     ]
     pixel = (b"Pixel_size", 7, struct.pack("<f", 1e-3))
     path = write_opd(tmp_path / "scan.opd", [WAVELENGTH, pixel, *heights])
-    default, second_channel = (
-        raw_scan(path, ReadingOptions(channel=channel)) for channel in (None, "OPD")
-    )
+    default, second = (raw_scan(path, ReadingOptions(channel=channel)) for channel in (None, "OPD"))
     assert default.channel.startswith("'RAW_DATA', 0 of 2")
-    assert second_channel.channel.startswith("'OPD', 1 of 2")
-    assert all("--channel" in scan.channel for scan in (default, second_channel))
-    np.testing.assert_allclose(
-        second_channel.topography.heights(), 2 * default.topography.heights()
-    )
+    assert second.channel.startswith("'OPD', 1 of 2")
+    assert all("--channel" in scan.channel for scan in (default, second))
+    np.testing.assert_allclose(second.topography.heights(), 2 * default.topography.heights())
