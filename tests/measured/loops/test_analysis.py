@@ -121,7 +121,7 @@ def test_what_contradicts_itself_is_said(made, rig, remark):
         (
             {},
             {"window": (3e-4, 4e-4)},
-            "have 0 and 0 rows at contact radii within the window; .*um",
+            "have no rows at contact radii within the window; .*um",
         ),
         (
             {"preload": 5.0, "force_noise": 0.01, "without": "radius"},

@@ -36,12 +36,12 @@ class Normal:
         return inner - self.centre - outer[:, :1] * self.slope
 
     def value(self, inner, outer):
-        difference = self._apart(inner, outer)
+        difference = self._difference(inner, outer)
         quadratic = 0.5 * np.einsum("ni,ij,nj->n", difference, self.information, difference)
         return quadratic - np.log(self._outer(outer[:, 0]) + 1e-300)
 
     def expansion(self, inner, outer):
-        difference = self._apart(inner, outer)
+        difference = self._difference(inner, outer)
         change = np.concatenate([np.eye(3), -np.outer(self.slope, [1.0, 0.0])], axis=1)
         slopes = difference @ self.information @ change
         information = change.T @ self.information @ change
