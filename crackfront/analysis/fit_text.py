@@ -101,7 +101,7 @@ def _needed_line(fit: SweepFit) -> str:
     needed = [
         f"±{width:g} needs about {number:.0f}"
         for width, number in zip(HALF_WIDTHS, fit.pooled_n_needed, strict=True)
-        if width < half_width
+        if width < float(f"{half_width:.1g}")  # one that reads as the present one is no narrower
     ]
     further = f"; {', '.join(needed)}" if needed else ""
     spectra = f"{counted(present, 'realisation')} of each spectrum"
