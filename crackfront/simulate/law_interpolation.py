@@ -51,9 +51,8 @@ class LawInterpolation:
     weights: tuple[tuple[str, float], ...]
     """Measured shapes, and the weight of each in the error."""
     lowest: float
-    """Least e_el / w_int; the largest error of the amplitudes up to `highest` counts."""
     highest: float
-    """Largest e_el / w_int of these amplitudes."""
+    """Ends of a range of e_el / w_int; the largest error among its amplitudes counts."""
     independent: float
     """Share of independent cutoffs along a front, relative to the fronts of the laws."""
 
@@ -66,10 +65,10 @@ class LawInterpolation:
         shapes, weights = zip(*self.weights, strict=True)
         branches = []
         for direction in (1, -1):
-            shape_laws = [error_laws()[shape, setting, direction] for shape in shapes]
+            laws_of_shapes = [error_laws()[shape, setting, direction] for shape in shapes]
             errors = [
                 self._largest(laws, np.array([law.parts(values) for law in laws]))
-                for laws in shape_laws
+                for laws in laws_of_shapes
             ]
             branches.append(np.tensordot(weights, errors, axes=1))
         return np.stack(branches, axis=1)
