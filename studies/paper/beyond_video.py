@@ -5,8 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure as Drawing
+from matplotlib.lines import Line2D
 from matplotlib.patches import Polygon
 from numpy.typing import NDArray
 
@@ -111,6 +113,21 @@ def video_figure(shown: Video) -> Drawing:
         return animation.figure
 
 
+def _empty_loop(axes: Axes, force: Array, radius: Array) -> tuple[dict[int, Line2D], Line2D]:
+    """Axes of a loop with a line without points for each branch, and for the shown state."""
+    margins = 0.06 * np.ptp(radius), 0.06 * np.ptp(force)
+    axes.set_xlim(radius.min() - margins[0], radius.max() + margins[0])
+    axes.set_ylim(force.min() - margins[1], force.max() + 3 * margins[1])
+    axes.set(xlabel="mean contact radius (µm)", ylabel="normal force (mN)")
+    branches = {
+        direction: axes.plot([], [], color=colour, label=name)[0]
+        for direction, name, _, colour in BRANCHES
+    }
+    (point,) = axes.plot([], [], "o", color=BLACK, zorder=4, label="frame on the left")
+    axes.legend(loc="upper left")
+    return branches, point
+
+
 def video_animation(shown: Video) -> Animation:
     """Contact area with the perimeters of its branch, and the loop: one frame a state."""
     with house_style():
@@ -126,16 +143,7 @@ def video_animation(shown: Video) -> Animation:
         area_axes.add_collection(perimeters)
         title = area_axes.set_title("0 s")
         force, radius = 1e3 * shown.force, 1e6 * shown.radius
-        margins = 0.06 * np.ptp(radius), 0.06 * np.ptp(force)
-        loop_axes.set_xlim(radius.min() - margins[0], radius.max() + margins[0])
-        loop_axes.set_ylim(force.min() - margins[1], force.max() + 3 * margins[1])
-        loop_axes.set(xlabel="mean contact radius (µm)", ylabel="normal force (mN)")
-        branches = {
-            direction: loop_axes.plot([], [], color=colour, label=name)[0]
-            for direction, name, _, colour in BRANCHES
-        }
-        (point,) = loop_axes.plot([], [], "o", color=BLACK, zorder=4, label="frame on the left")
-        loop_axes.legend(loc="upper left")
+        branches, point = _empty_loop(loop_axes, force, radius)
         explain(figure, f"bright: the contact; lines: its perimeters, one in {_EVERY} frames")
     colours = {direction: colour for direction, _, _, colour in BRANCHES}
     last = shown.direction.size
