@@ -42,9 +42,9 @@ def run_examples(page):
     # The end of a block would pass for output.
     text = page.read_text().replace("```", "")
     test = doctest.DocTestParser().get_doctest(text, {}, page.name, str(page), 0)
-    found = doctest.DocTestRunner().run(test, clear_globs=False)
-    assert found.attempted >= 10
-    assert found.failed == 0
+    outcome = doctest.DocTestRunner().run(test, clear_globs=False)
+    assert outcome.attempted >= 10
+    assert outcome.failed == 0
     return test.globs
 
 
@@ -66,7 +66,7 @@ def test_the_tests_that_pages_name_exist():
     assert len(named) > 40
     for name in named - set(files):
         pattern = name.replace("...", r"\w*")
-        assert any(re.fullmatch(pattern, one) for one in defined), name
+        assert any(re.fullmatch(pattern, test) for test in defined), name
 
 
 def test_the_page_of_the_core_gives_what_it_shows():
@@ -164,8 +164,8 @@ def test_every_link_of_a_page_to_a_file_leads_to_one():
     for path in (ROOT / "README.md", ROOT / "CONTRIBUTING.md", *DOCS.rglob("*.md")):
         text = re.sub(r"```python\n.*?```", "", path.read_text(), flags=re.DOTALL)
         links = re.findall(r"\]\(([^)#\s]+)", text)
-        here = [link for link in links if not re.match(r"\w+:", link)]
-        dead += [(path.name, link) for link in here if not (path.parent / link).exists()]
+        local_links = [link for link in links if not re.match(r"\w+:", link)]
+        dead += [(path.name, link) for link in local_links if not (path.parent / link).exists()]
     assert dead == []
 
 
@@ -193,8 +193,8 @@ def test_every_key_of_a_configuration_has_a_meaning_and_no_other_key():
     sections = {"file": schema} | schema["$defs"]
     keys = {
         (name.removesuffix("Section"), key)
-        for name, one in sections.items()
-        for key in one["properties"]
+        for name, section in sections.items()
+        for key in section["properties"]
     }
     page = (ROOT / "config/README.md").read_text()
     told = set(re.findall(r"^\| (\w+) \| `(\w+)` \| \w.* \|$", page, re.MULTILINE))

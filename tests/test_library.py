@@ -58,6 +58,15 @@ def jumps(surface):
     return cf.find_instabilities(surface, error=0.05, step=0.1)
 
 
+def simulation_of(surface, elastic_energy, load):
+    """The simulation of the surface, whose numerics follow from what was measured on the tile."""
+    numerics = {"error": 0.05, "side": 4.0, "seed": 3}
+    requested = chosen_simulation("roughness", FLAT, 0.05, load, **numerics)
+    measured = chosen_simulation("roughness", FLAT, elastic_energy, load, **numerics)
+    resolution = replace(measured.resolution, n_point=surface.sizes["x"], tile_side=4.0)
+    return replace(requested, resolution=resolution, solver=measured.solver, record_fronts=True)
+
+
 def tile(values, name="height", units=VERTICAL, spacing=0.1):
     """A surface of a user's own."""
     axes = {
@@ -124,13 +133,8 @@ def test_the_loop_of_a_smooth_surface_is_that_of_jkr(smooth):
 
 
 def test_the_loop_of_a_simulation_is_that_of_the_library_to_round_off(surface, loop):
-    load, given = FullCycle(1.0, 0.05), {"error": 0.05, "side": 4.0, "seed": 3}
-    requested = chosen_simulation("roughness", FLAT, 0.05, load, **given)
-    # Sites, samples and tolerance follow from what was measured on the tile.
-    measured = chosen_simulation("roughness", FLAT, float(loop.e_el), load, **given)
-    resolution = replace(measured.resolution, n_point=surface.sizes["x"], tile_side=4.0)
-    one = replace(requested, resolution=resolution, solver=measured.solver, record_fronts=True)
-    record = run_simulation(one).record
+    simulation = simulation_of(surface, float(loop.e_el), FullCycle(1.0, 0.05))
+    record = run_simulation(simulation).record
     # Only the pixel differs, by round-off that fronts enlarge where they are about to jump: the
     # library takes it from the coordinates.
     np.testing.assert_allclose(loop.radius, record.fronts, rtol=1e-7)
@@ -139,15 +143,17 @@ def test_the_loop_of_a_simulation_is_that_of_the_library_to_round_off(surface, l
 
 @pytest.mark.parametrize("kind", ["roughness", "chemical"])
 def test_a_random_surface_is_that_of_the_sweep_of_its_seed(kind):
-    found = cf.random_surface(**COARSE, kind=kind, realisation=2)
+    surface = cf.random_surface(**COARSE, kind=kind, realisation=2)
     simulation = chosen_simulation(
         kind, FLAT, 0.05, FullCycle(1, 1), error=0.05, side=4.0, seed=3, realisation=2
     )
     adhesion = simulation_adhesion(simulation)
     if kind == "chemical":
-        np.testing.assert_allclose(found * WORK_OF_ADHESION, adhesion.work_of_adhesion, rtol=1e-15)
+        np.testing.assert_allclose(
+            surface * WORK_OF_ADHESION, adhesion.work_of_adhesion, rtol=1e-15
+        )
     else:
-        measured = cf.run_loop(found, step=0.5, error=0.05)
+        measured = cf.run_loop(surface, step=0.5, error=0.05)
         assert float(measured.e_el) == pytest.approx(adhesion.e_el, rel=1e-12)
         assert float(measured.w_rms) == pytest.approx(adhesion.w_rms, rel=1e-12)
 
@@ -163,12 +169,12 @@ def test_the_measures_of_a_loop_are_those_of_its_curves(loop):
 
 def test_a_loop_with_a_steady_part_tells_its_works_of_adhesion_and_their_errors():
     fine = cf.random_surface(0.1, 0.02, seed=1)
-    found = cf.run_loop(fine, step=0.05, error=0.1, fronts=False)
-    assert 0 < float(found.w_retr_numerical_error) < 0.1
-    assert "radius" not in found
-    error = float(found.w_retr_error)
+    loop = cf.run_loop(fine, step=0.05, error=0.1, fronts=False)
+    assert 0 < float(loop.w_retr_numerical_error) < 0.1
+    assert "radius" not in loop
+    error = float(loop.w_retr_error)
     digits = 1 - int(np.floor(np.log10(error)))
-    assert f"w_retr {float(found.w_retr):.{digits}f} ± {error:.{digits}f}" in found.attrs["result"]
+    assert f"w_retr {float(loop.w_retr):.{digits}f} ± {error:.{digits}f}" in loop.attrs["result"]
 
 
 def test_the_energies_of_a_loop_sum_up_to_its_work(loop):
@@ -177,8 +183,8 @@ def test_the_energies_of_a_loop_sum_up_to_its_work(loop):
     radius = np.vstack([loop.radius, loop.radius[-1:]])
     # While the penetration changes the front is held.
     held = [
-        jkr.force(front, (one + other) / 2).mean()
-        for front, one, other in zip(radius, b, b[1:], strict=False)
+        jkr.force(front, (b_start + b_end) / 2).mean()
+        for front, b_start, b_end in zip(radius, b, b[1:], strict=False)
     ]
     work = float(np.sum(held * np.diff(b)))
     assert float(loop.dissipated_energy.sum()) + pull_off == pytest.approx(work, abs=1e-3)
@@ -219,32 +225,29 @@ def test_heights_in_nanometres_give_the_loop_of_reduced_ones(surface, loop):
 
 
 def test_a_surface_may_come_with_its_dimensions_in_any_order(surface):
-    one, other = (
-        cf.run_loop(given, step=0.5, error=0.05) for given in (surface, surface.transpose("y", "x"))
+    loop, loop_of_transposed = (
+        cf.run_loop(heights, step=0.5, error=0.05)
+        for heights in (surface, surface.transpose("y", "x"))
     )
-    np.testing.assert_array_equal(one.radius, other.radius)
+    np.testing.assert_array_equal(loop.radius, loop_of_transposed.radius)
 
 
-def test_instabilities_sweep_what_the_front_travels_and_lose_energy(surface, jumps):
+def test_instabilities_sweep_what_the_front_travels_and_lose_energy(surface, loop, jumps):
     assert jumps.sizes["instability"] > 3
     assert np.all(jumps.dissipated_energy > 0)
     assert np.all(jumps.after <= jumps.before + 1e-12)
     assert np.all(np.diff(jumps.penetration) < 0)
     swept = 0.5 * (jumps.before**2 - jumps.after**2).sum("angle") * 2 * np.pi / jumps.sizes["angle"]
     np.testing.assert_allclose(jumps.area, swept, rtol=1e-9)
-    simulation = chosen_simulation(
-        "roughness", FLAT, 0.05, FullCycle(1.0, 0.1), error=0.05, side=4.0, seed=3
-    )
-    if simulation.resolution.n_angle == jumps.sizes["angle"]:
-        field, last = simulation_field(simulation), jumps.isel(instability=-1)
-        expected = dissipated_energy(
-            last.before.values, last.after.values, float(last.penetration), field
-        )
-        assert float(last.dissipated_energy) == pytest.approx(expected, rel=1e-9)
+    simulation = simulation_of(surface, float(loop.e_el), FullCycle(1.0, 0.1))
+    field, last = simulation_field(simulation), jumps.isel(instability=-1)
+    before, after = last.before.values, last.after.values
+    expected = dissipated_energy(before, after, float(last.penetration), field)
+    assert float(last.dissipated_energy) == pytest.approx(expected, rel=1e-6)
 
 
 @pytest.mark.parametrize(
-    ("given", "sentence"),
+    ("changes", "sentence"),
     [
         ({"short_cutoff": -1.0}, "short_cutoff is -1.0;"),
         ({"elastic_energy": 1.5}, "elastic_energy is 1.5; it must be less than 1"),
@@ -257,25 +260,31 @@ def test_instabilities_sweep_what_the_front_travels_and_lose_energy(surface, jum
         ({"seed": -1}, "seed is -1; it must be greater"),
     ],
 )
-def test_a_surface_that_cannot_be_is_refused(given, sentence):
+def test_a_surface_that_cannot_be_is_refused(changes, sentence):
     with pytest.raises(ValueError, match=sentence):
-        cf.random_surface(**(COARSE | given))
+        cf.random_surface(**(COARSE | changes))
 
 
 @pytest.mark.parametrize(
     ("change", "sentence"),
     [
-        (lambda one: one.rename("z"), "named 'z'; say what its values are by the name height or"),
-        (lambda one: one.rename(None), "named None; say what its values are"),
-        (lambda one: one.assign_attrs(units="nm"), "has the units 'nm'; .* in_reduced_units"),
-        (lambda one: one.assign_attrs(units=FORCE), "height has the units 'pi w_int R'"),
-        (lambda one: one.drop_attrs(), "states no units"),
-        (lambda one: one.rename(x="u"), r"dimensions \(u, y\); a tile must have x and y"),
-        (lambda one: one.drop_vars("x"), "no coordinate x"),
-        (lambda one: one.where(one.x > one.x[0]), "height is nan at x index 0, y index 0"),
-        (lambda one: one.assign_attrs(short_cutoff=0.8, roll_off=0.8), "waves shorter than its"),
-        (lambda one: 6 * one, "energy of full conformity is"),
-        (lambda one: one[::4, ::4], "but the finest numerics on"),
+        (
+            lambda array: array.rename("z"),
+            "named 'z'; say what its values are by the name height or",
+        ),
+        (lambda array: array.rename(None), "named None; say what its values are"),
+        (lambda array: array.assign_attrs(units="nm"), "has the units 'nm'; .* in_reduced_units"),
+        (lambda array: array.assign_attrs(units=FORCE), "height has the units 'pi w_int R'"),
+        (lambda array: array.drop_attrs(), "states no units"),
+        (lambda array: array.rename(x="u"), r"dimensions \(u, y\); a tile must have x and y"),
+        (lambda array: array.drop_vars("x"), "no coordinate x"),
+        (lambda array: array.where(array.x > array.x[0]), "height is nan at x index 0, y index 0"),
+        (
+            lambda array: array.assign_attrs(short_cutoff=0.8, roll_off=0.8),
+            "waves shorter than its",
+        ),
+        (lambda array: 6 * array, "energy of full conformity is"),
+        (lambda array: array[::4, ::4], "but the finest numerics on"),
     ],
 )
 def test_a_surface_that_cannot_be_used_is_refused(surface, change, sentence):
@@ -342,8 +351,8 @@ def test_an_array_is_the_same_surface_in_all_units():
         ("w_int", 1 + WAVE, SPHERE),
     ):
         side = 4.0 if sphere is None else f"{1e6 * 4 * SPHERE.lateral!r}um"
-        found = cf.surface(values, side, kind="chemical", units=units, sphere=sphere)
-        xr.testing.assert_allclose(found, expected, rtol=1e-14)
+        array_surface = cf.surface(values, side, kind="chemical", units=units, sphere=sphere)
+        xr.testing.assert_allclose(array_surface, expected, rtol=1e-14)
     nanometres = cf.surface(
         1e9 * SPHERE.vertical * WAVE / 10, 4 * SPHERE.lateral, units="nm", sphere=SPHERE
     )
@@ -356,9 +365,9 @@ def test_an_array_is_the_same_surface_in_all_units():
     in_metres = cf.in_si_units(nanometres, SPHERE)
     again = cf.surface(in_metres, 4 * SPHERE.lateral, sphere=SPHERE)
     xr.testing.assert_allclose(again, nanometres, rtol=1e-12)
-    for one in (4 * 1e6 * SPHERE.lateral, 0.0, -4.0):
+    for place in (4 * 1e6 * SPHERE.lateral, 0.0, -4.0):
         with pytest.raises(ValueError, match=r"^side is .*; it must lie between 1e-09 and 1 m"):
-            cf.surface(WAVE, one, sphere=SPHERE)
+            cf.surface(WAVE, place, sphere=SPHERE)
     plain = nanometres.drop_attrs().assign_attrs(units="reduced")
     np.testing.assert_array_equal(
         cf.run_loop(plain, step=0.5).force, cf.run_loop(nanometres, step=0.5).force
@@ -366,7 +375,7 @@ def test_an_array_is_the_same_surface_in_all_units():
 
 
 @pytest.mark.parametrize(
-    ("values", "given", "sentence"),
+    ("values", "side", "sentence"),
     [
         (
             1 + WAVE,
@@ -404,9 +413,9 @@ def test_an_array_is_the_same_surface_in_all_units():
         ),
     ],
 )
-def test_an_array_that_is_no_surface_is_refused_with_the_likely_cause(values, given, sentence):
+def test_an_array_that_is_no_surface_is_refused_with_the_likely_cause(values, side, sentence):
     with pytest.raises(ValueError, match=sentence):
-        cf.surface(values, **({"kind": "chemical", "side": 4.0} | given))
+        cf.surface(values, **({"kind": "chemical", "side": 4.0} | side))
 
 
 @pytest.mark.parametrize("unit", ["um", "m", "reduced"])
@@ -415,8 +424,8 @@ def test_a_side_and_the_coordinate_of_an_array_are_compared_in_one_unit(unit):
     x = 100e-6 / places * np.arange(32) / 32
     axes = {name: (name, x, {"units": unit}) for name in "xy"}
     values = xr.DataArray(WAVE, axes, ("x", "y"), attrs={"units": "nm"})
-    one, other = (cf.surface(values, side, sphere=SPHERE) for side in ("100um", 100e-6))
-    xr.testing.assert_allclose(one, other, rtol=1e-12)
+    of_text, of_number = (cf.surface(values, side, sphere=SPHERE) for side in ("100um", 100e-6))
+    xr.testing.assert_allclose(of_text, of_number, rtol=1e-12)
     for side in ("50um", 50e-6):
         with pytest.raises(ValueError, match=rf"^side is {side}, but .* {unit}; give this side"):
             cf.surface(values, side, sphere=SPHERE)
@@ -428,34 +437,34 @@ def test_loads_are_visited_up_and_down_by_library_and_command_alike(straight, tm
     cf.save_result(patches, tmp_path / "patches.nc")
     (tmp_path / "loads.txt").write_text("# up, down, up, hold, down\n0 0.5 0.2\n0.5\n0.5, 0")
     pressed = cf.straight_front(patches, spring=2.0) if straight else patches
-    found = cf.run_loop(pressed, loads=LOADS, step=0.1, energy=True)
+    loop = cf.run_loop(pressed, loads=LOADS, step=0.1, energy=True)
     up, down = 0.1 * np.arange(6), [0.4, 0.3, 0.2]
-    load = found["spring_position" if straight else "penetration"]
+    load = loop["spring_position" if straight else "penetration"]
     np.testing.assert_allclose(load[:13], [*up, *down, 0.3, 0.4, 0.5, 0.5], atol=1e-12)
-    assert found.direction.values[:15].tolist() == [1] * 6 + [-1] * 3 + [1] * 4 + [-1] * 2
-    front = found["position" if straight else "radius"]
+    assert loop.direction.values[:15].tolist() == [1] * 6 + [-1] * 3 + [1] * 4 + [-1] * 2
+    front = loop["position" if straight else "radius"]
     # By no passing, a minor loop ends at the front that it began with, and a hold changes nothing.
     np.testing.assert_allclose(front[11:13], front[[5, 5]], atol=1e-5)
     options = ["--spring", "2"] if straight else []
-    given = ["--loads", tmp_path / "loads.txt", "--step", "0.1", "--output", tmp_path / "out.nc"]
-    result = run("cycle", "--field", tmp_path / "patches.nc", *options, *given)
+    command = ["--loads", tmp_path / "loads.txt", "--step", "0.1", "--output", tmp_path / "out.nc"]
+    result = run("cycle", "--field", tmp_path / "patches.nc", *options, *command)
     assert result.exit_code == 0, result.output
     written = xr.load_dataset(tmp_path / "out.nc")
     for name in ("direction", load.name, "e_el", "w_rms", "correlation_length"):
-        np.testing.assert_array_equal(written[name], found[name])
+        np.testing.assert_array_equal(written[name], loop[name])
     last = "pinning_force" if straight else "force"
-    np.testing.assert_array_equal(written[last], found[last])
+    np.testing.assert_array_equal(written[last], loop[last])
 
 
 def test_a_straight_front_has_the_works_of_adhesion_of_a_period_of_its_tile():
     surface = cf.random_surface(short_cutoff=0.4, elastic_energy=0.04, side=4, seed=2)
-    found = cf.run_loop(cf.straight_front(surface, spring=4.0), loads=[0, 12, 0], step=0.25)
+    loop = cf.run_loop(cf.straight_front(surface, spring=4.0), loads=[0, 12, 0], step=0.25)
     for name, direction in (("w_appr", 1), ("w_retr", -1)):
-        period = found.pinning_force[found.direction == direction][-16:]
-        exact = float(1 - found.e_el - period.mean())
-        assert float(found[name]) == pytest.approx(exact, abs=1e-5)
-    assert float(found.hysteresis) > 3 * float(found.hysteresis_error) > 0
-    assert f"w_appr {float(found.w_appr):.3f}" in found.attrs["result"]
+        period = loop.pinning_force[loop.direction == direction][-16:]
+        exact = float(1 - loop.e_el - period.mean())
+        assert float(loop[name]) == pytest.approx(exact, abs=1e-5)
+    assert float(loop.hysteresis) > 3 * float(loop.hysteresis_error) > 0
+    assert f"w_appr {float(loop.w_appr):.3f}" in loop.attrs["result"]
     short = cf.run_loop(cf.straight_front(surface, spring=4.0), loads=[0, 1, 0], step=0.1)
     assert np.isnan(short.hysteresis)
     assert "so load further" in short.attrs["steady_sentence"]
@@ -488,8 +497,8 @@ def test_loads_that_cannot_be_are_refused(surface, loads, sentence):
 
 
 def test_scales_take_texts_with_units():
-    given = cf.Scales("1.25mm", "63mJ/m2", contact_modulus="0.9333333333333333 MPa")
-    assert asdict(given) == pytest.approx(asdict(SPHERE), rel=1e-12)
+    scales = cf.Scales("1.25mm", "63mJ/m2", contact_modulus="0.9333333333333333 MPa")
+    assert asdict(scales) == pytest.approx(asdict(SPHERE), rel=1e-12)
     with pytest.raises(ValueError, match=r"0\.0007 Pa, too soft to be solid; was '0.7MPa' meant"):
         cf.Scales("1mm", "63mJ/m2", "0.7mPa")
     with pytest.raises(
@@ -518,10 +527,10 @@ def test_a_part_of_a_larger_map_is_refused_as_a_tile(rng):
 
 def test_a_scan_is_a_surface_to_press_on_that_says_what_was_done_to_it():
     small = cf.Scales("20um", "63mJ/m2", SPHERE.contact_modulus)
-    found = cf.read_scan(SCAN, small, shortest="0.4um")
-    assert found.sizes == {"x": 288, "y": 288}
-    assert float(found.x[144]) == 0
-    told = found.attrs
+    scan_surface = cf.read_scan(SCAN, small, shortest="0.4um")
+    assert scan_surface.sizes == {"x": 288, "y": 288}
+    assert float(scan_surface.x[144]) == 0
+    told = scan_surface.attrs
     assert told["source"].startswith(f"{SCAN}, al3d, checksum ")
     assert told["levelling"].startswith("the paraboloid was subtracted")
     assert told["tile"].startswith("the scan mirrored at its edges")
@@ -564,7 +573,7 @@ def test_simulations_without_a_value_are_warned_of(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("run", "given", "sentence"),
+    ("run", "arguments", "sentence"),
     [
         (cf.run_loop, {"solver": "magic"}, "solver is 'magic'; it must be one of newton"),
         (cf.run_loop, {"step": 0.0}, "step is 0.0; it must be greater"),
@@ -577,9 +586,9 @@ def test_simulations_without_a_value_are_warned_of(tmp_path):
         (cf.find_instabilities, {"precision": 2e-3}, "within a precision of 0.002 a front moves"),
     ],
 )
-def test_a_loop_that_cannot_be_run_is_refused(surface, run, given, sentence):
+def test_a_loop_that_cannot_be_run_is_refused(surface, run, arguments, sentence):
     with pytest.raises(ValueError, match=sentence):
-        run(surface, **({"error": 0.05} | given))
+        run(surface, **({"error": 0.05} | arguments))
 
 
 def test_a_smooth_sphere_has_no_instability_before_pull_off():
@@ -587,12 +596,12 @@ def test_a_smooth_sphere_has_no_instability_before_pull_off():
 
 
 def test_truth_is_saved_as_a_number_and_what_netcdf_cannot_hold_is_refused(surface, tmp_path):
-    given = surface.assign_attrs(periodic=True)
-    cf.save_result(given, tmp_path / "surface.nc")
+    with_truth = surface.assign_attrs(periodic=True)
+    cf.save_result(with_truth, tmp_path / "surface.nc")
     loaded = cf.load_result(tmp_path / "surface.nc")
     assert loaded.attrs["periodic"] == 1
     np.testing.assert_array_equal(loaded.values, surface.values)
-    assert given.attrs["periodic"] is True
+    assert with_truth.attrs["periodic"] is True
     with pytest.raises(TypeError, match="attribute notes is None; give numbers or a text"):
         cf.save_result(surface.assign_attrs(notes=None), tmp_path / "surface.nc")
     with pytest.raises(TypeError, match="path is None; it must be the path"):
@@ -615,16 +624,16 @@ def test_what_is_in_si_units_already_is_said_so(surface):
     ],
 )
 def test_units_of_another_quantity_are_refused(surface, units, sentence):
-    given = cf.in_si_units(surface, SPHERE).assign_attrs(units=units)
+    changed_units = cf.in_si_units(surface, SPHERE).assign_attrs(units=units)
     with pytest.raises(ValueError, match=sentence):
-        cf.in_reduced_units(given, SPHERE)
+        cf.in_reduced_units(changed_units, SPHERE)
 
 
 def test_what_was_converted_for_one_sphere_comes_back_for_no_other(surface):
-    other = cf.Scales("2mm", "100mJ/m2", "1MPa")
+    second_sphere = cf.Scales("2mm", "100mJ/m2", "1MPa")
     with pytest.raises(ValueError, match="converted for another sphere, radius"):
-        cf.in_reduced_units(cf.in_si_units(surface, SPHERE), other)
-    same = cf.Scales(*(np.nextafter(one, 1) for one in asdict(SPHERE).values()))
+        cf.in_reduced_units(cf.in_si_units(surface, SPHERE), second_sphere)
+    same = cf.Scales(*(np.nextafter(value, 1) for value in asdict(SPHERE).values()))
     xr.testing.assert_allclose(cf.in_reduced_units(cf.in_si_units(surface, SPHERE), same), surface)
     with pytest.raises(ValueError, match="in reduced units already; nothing is to be converted"):
         cf.in_reduced_units(surface, SPHERE)
@@ -640,10 +649,10 @@ def test_unknown_variables_have_no_units_to_convert(loop):
 
 
 def test_plots_draw_on_given_axes_and_leave_nothing_behind(surface, loop, jumps):
-    given = axes_of_a_figure()
-    assert cf.plot_loop(loop, given) is given
+    target_axes = axes_of_a_figure()
+    assert cf.plot_loop(loop, target_axes) is target_axes
     branch = loop.direction.values == 1
-    markers = next(line for line in given.get_lines() if line.get_label() == "approach")
+    markers = next(line for line in target_axes.get_lines() if line.get_label() == "approach")
     np.testing.assert_array_equal(markers.get_ydata(), loop.mean_radius[branch])
     for drawn in (
         cf.plot_fronts(loop, surface, axes_of_a_figure()),
@@ -657,7 +666,9 @@ def test_plots_draw_on_given_axes_and_leave_nothing_behind(surface, loop, jumps)
 
 
 def test_what_is_in_si_units_is_drawn_in_them(surface, loop, jumps):
-    surface_si, loop_si, jumps_si = (cf.in_si_units(one, SPHERE) for one in (surface, loop, jumps))
+    surface_si, loop_si, jumps_si = (
+        cf.in_si_units(item, SPHERE) for item in (surface, loop, jumps)
+    )
     drawn = cf.plot_loop(loop_si, axes_of_a_figure())
     approach = next(line for line in drawn.get_lines() if line.get_label() == "approach")
     branch = loop_si.isel(step=loop_si.direction.values == 1)
@@ -676,8 +687,8 @@ def test_what_is_in_si_units_is_drawn_in_them(surface, loop, jumps):
     np.testing.assert_allclose(density[0], reduced[0] / SPHERE.lateral, rtol=1e-9)
     square = (SPHERE.lateral * SPHERE.vertical) ** 2
     np.testing.assert_allclose(density[1], reduced[1] * square, rtol=1e-9)
-    for one in (surface, surface_si):
-        fronts = cf.plot_fronts(loop_si, one, axes_of_a_figure()).get_lines()
+    for item in (surface, surface_si):
+        fronts = cf.plot_fronts(loop_si, item, axes_of_a_figure()).get_lines()
         largest = float(loop_si.radius.max())
     assert np.max(np.hypot(*fronts[0].get_data())) <= largest * (1 + 1e-12)
     [patches] = cf.plot_instabilities(jumps_si, axes_of_a_figure()).collections

@@ -134,9 +134,11 @@ def test_the_recipe_has_the_version_and_needs_of_the_package():
     assert recipe["context"]["version"] == CITATION["version"]
     assert PROJECT["project"]["requires-python"] == f">={recipe['context']['python_min']}"
     texts = (PROJECT["project"]["dependencies"], PROJECT["build-system"]["requires"])
-    run, host = ([one.lower().replace(">=", " >=") for one in listed] for listed in texts)
-    found = [one.replace("matplotlib-base", "matplotlib") for one in recipe["requirements"]["run"]]
-    assert found == ["python >=${{ python_min }}", *run]
+    run, host = ([line.lower().replace(">=", " >=") for line in listed] for listed in texts)
+    requirements = [
+        line.replace("matplotlib-base", "matplotlib") for line in recipe["requirements"]["run"]
+    ]
+    assert requirements == ["python >=${{ python_min }}", *run]
     assert recipe["requirements"]["host"] == ["python ${{ python_min }}.*", "pip", *host]
 
 

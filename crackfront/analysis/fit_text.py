@@ -79,7 +79,7 @@ def fit_result(fit: SweepFit) -> str:
     law = finite_mean(np.where(compared, fit.cells.law_factor.value, np.nan))
     mean = float(finite_mean(law))
     pooled = f"{mean:.2f}" if np.isfinite(mean) else MISSING
-    by_law = "; ".join([pooled, *_range_of(law)])
+    by_law = "; ".join([pooled + _covered_words(fit), *_range_of(law)])
     return (
         f"# Hysteresis: w_retr, w_appr = {_mean_adhesion(fit)} ± k e_el\n\n"
         f"- k of this sweep ({_used_simulations(fit)}): {_pooled_entry(fit, 'factor')}\n"
@@ -118,8 +118,25 @@ def _law_exponent_entry(fit: SweepFit) -> str:
     """Pooled exponent by the law, and the range of the spectra."""
     pooled = float(fit.pooled_law_exponent)
     if not np.isfinite(pooled):
-        return MISSING
-    return "; ".join([f"{pooled:.2f}", *_range_of(fit.law_exponent)])
+        return MISSING + _covered_words(fit)
+    return "; ".join([f"{pooled:.2f}{_covered_words(fit)}", *_range_of(fit.law_exponent)])
+
+
+def _names(fit: SweepFit, *, covered: bool) -> list[str]:
+    """Names of the spectra that the law of k covers, or of the others."""
+    table = fit.table
+    return [
+        str(name) for index, name in enumerate(table.spectrum) if table.is_covered(index) == covered
+    ]
+
+
+def _covered_words(fit: SweepFit) -> str:
+    """Which spectra a number by the law is for; empty if the law covers all."""
+    if not _names(fit, covered=False):
+        return ""
+    if names := _names(fit, covered=True):
+        return f" (of {', '.join(names)} alone)"
+    return " (the law covers no spectrum of this sweep)"
 
 
 def _used_simulations(fit: SweepFit) -> str:
@@ -183,7 +200,9 @@ def pooled_limits(fit: SweepFit, spectra: Estimate) -> tuple[str, ...]:
     """Range of the spectra and numerical bias of a pooled k, which its interval leaves out."""
     bias = _largest_numerical_error(fit)
     limits = _range_of(spectra.value)
-    return (*limits, f"numerical bias to {bias.error:.2f}") if bias else limits
+    if bias is None:
+        return limits
+    return (*limits, f"numerical bias to {bias.error:.2f}{_covered_words(fit)}")
 
 
 def _range_of(values: Array) -> tuple[str, ...]:
@@ -337,9 +356,7 @@ def _trend_text(trend: Estimate, unit: str) -> str:
 
 def _uncovered_sentences(fit: SweepFit) -> Iterator[str]:
     """Spectra that the law of k does not cover."""
-    table = fit.table
-    names = [str(name) for index, name in enumerate(table.spectrum) if not table.is_covered(index)]
-    if names:
+    if names := _names(fit, covered=False):
         yield (
             f"The law of k does not cover {', '.join(names)}: {MEASURED_ON}. They have neither a k "
             "by the law nor a numerical error."

@@ -147,7 +147,7 @@ class BranchSize(NamedTuple):
     work_of_adhesion: float
     """Apparent work of adhesion. (Units: w_int)"""
     size: float
-    """g; infinite at and below pull-off."""
+    """Size g; infinite at and below pull-off."""
 
 
 class SpringSizes(NamedTuple):
@@ -156,7 +156,7 @@ class SpringSizes(NamedTuple):
     approach: BranchSize
     retraction: BranchSize
     smooth: float
-    """g without hysteresis, at the mean of w_loc."""
+    """Size g without hysteresis, at the mean of w_loc."""
     spring: float
     """L_kappa of the smooth contact. (Units: as the spectrum)"""
     larkin_length: float

@@ -73,15 +73,6 @@ class LawInterpolation:
             branches.append(np.tensordot(weights, errors, axes=1))
         return np.stack(branches, axis=1)
 
-    def avalanche(self) -> float:
-        """Change of w_appr by the largest avalanche for :data:`LAW_CUTOFFS` (Units: e_el)."""
-        avalanche = 0.0
-        for shape, weight in self.weights:
-            laws = error_laws()[shape, "sites", 1]
-            measured = np.array([[law.avalanche] for law in laws])
-            avalanche += weight * float(self._largest(laws, measured)[0])
-        return avalanche
-
     def _largest(self, laws: Sequence[ErrorLaw], measured: Array) -> Array:
         """Largest value in the range of amplitudes, interpolated between the laws."""
         energies = np.array([law.elastic_energy for law in laws])
@@ -124,7 +115,7 @@ def law_interpolation(
     )
 
 
-def _interpolated(places: ArrayLike, measured: Array, values: Array) -> Array:
+def _interpolated(places: float | Array, measured: Array, values: Array) -> Array:
     """Values (n_measured, ...) at other places, linear between the measured ones, constant beyond.
 
     The measured places increase.

@@ -65,9 +65,6 @@ class ErrorLaw:
     """Coefficients (c_0, c_1) of the logarithm of the bias. (Units: e_el)"""
     scatter: tuple[float, float]
     """Coefficients (c_0, c_1) of the logarithm of the scatter. (Units: e_el)"""
-    avalanche: float
-    """Change by one avalanche, for :data:`LAW_CUTOFFS`; equal for all settings of a shape and an
-    amplitude. (Units: e_el)"""
 
     def parts(self, values: ArrayLike) -> Array:
         """Bias and scatter at values of the setting, for :data:`LAW_CUTOFFS` (Units: e_el)."""
@@ -105,7 +102,6 @@ def read_laws() -> Iterator[ErrorLaw]:
                 int(row["direction"]),
                 (float(row["bias_0"]), float(row["bias_1"])),
                 (float(row["scatter_0"]), float(row["scatter_1"])),
-                float(row["avalanche"]),
             )
 
 

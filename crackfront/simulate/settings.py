@@ -110,9 +110,8 @@ def _chosen_values(
     """Coarsest values of all settings whose errors together are at most the requested one."""
     values = {setting: _allowed_values(setting) for setting in _SHARES}
     errors = {setting: interpolation.errors(setting, values[setting]) for setting in _SHARES}
-    rarity = _avalanche_margin(error, interpolation, cutoffs)
     for setting in _SHARES:
-        errors[setting][1] *= rarity * math.sqrt(LAW_CUTOFFS / cutoffs)
+        errors[setting][1] *= math.sqrt(LAW_CUTOFFS / cutoffs)
     low, high = _LEAST_SHARES, _MOST_SHARES
     for _ in range(_N_BISECTION):
         middle = math.sqrt(low * high)
@@ -139,18 +138,6 @@ def _coarsest(
         is_enough = larger_branch[:-1] <= share * shares * error
         places[setting] = int(np.argmax(np.append(is_enough, True)))
     return places
-
-
-def _avalanche_margin(error: float, interpolation: LawInterpolation, cutoffs: float) -> float:
-    """Factor by which scatter must be below a requested error: few surfaces have an avalanche."""
-    avalanche = interpolation.avalanche() * (LAW_CUTOFFS / cutoffs)
-    # The mean square of eight surfaces has the mean s^2 and, of avalanches of one size a, the
-    # variance s^2 (a^2 + 2 s^2) / 8. Where the mean and three standard deviations are the bound,
-    # x = s^2 is the positive root of 5/4 x^2 + 2 half x - bound^2.
-    bound = (1.5 * error) ** 2
-    half = bound + 9 / 16 * avalanche**2
-    square = bound**2 / (half + math.sqrt(half**2 + 5 / 4 * bound**2))
-    return float(np.clip(error / math.sqrt(square), 1.0, 3.0))
 
 
 def _allowed_values(setting: SettingName) -> Array:

@@ -184,7 +184,7 @@ class Store:
         return self.inventory(sweep, item, range(start, stop)) if start < stop else Inventory()
 
     def locked(self, shards: Iterable[Shard]) -> contextlib.AbstractContextManager[None]:
-        """Lock shards while a context is open, as :func:`locked_folders` does their folders."""
+        """Lock the folders of shards while a context is open."""
         return locked_folders([self.curve_folder(shard) for shard in shards], self.announce)
 
     def running_shards(self) -> list[str]:

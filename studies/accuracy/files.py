@@ -1,8 +1,9 @@
-"""The five studies of a scene, and the files that they write."""
+"""The six studies of a scene, and the files that they write."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, NamedTuple, TypeVar
 
@@ -11,9 +12,10 @@ import xarray as xr
 
 from crackfront.core.variables import Variable, variables
 from crackfront.simulate.labels import labelled, labelled_fields
+from crackfront.simulate.settings import Settings
 from crackfront.simulate.storage import UnreadableFileError, read_dataset
 from studies.accuracy import averages
-from studies.accuracy.scenes import HELD_OUT, SCENES, Progress, Scene, Trial
+from studies.accuracy.scenes import FINER, HELD_OUT, SCENES, Progress, Scene, Trial
 from studies.accuracy.study import Errors, SceneErrors, scene_errors, trial_seconds
 from studies.records import read_records, stacked
 
@@ -27,6 +29,9 @@ _COVERED = (0.1, 0.03, 0.01)
 _UNSEEN = (0.03, 0.01)
 """Errors of k that are requested on surfaces to which no law was fitted."""
 
+_EXPECTED = (0.1, 0.03, 0.01, 0.003)
+"""Errors of k that are requested where rare avalanches are counted on many such surfaces."""
+
 
 class Study(NamedTuple):
     """What is measured on a number of surfaces of a scene, and the time that one takes in s."""
@@ -35,14 +40,22 @@ class Study(NamedTuple):
     seconds: Callable[[Scene], float]
 
 
-def _of_trials(trials: Callable[[Scene], list[Trial]], first: int = 0) -> Study:
-    """Study of the errors of trials, on surfaces from a number on."""
+def _of_trials(
+    trials: Callable[[Scene], list[Trial]], first: int = 0, reference: Settings | None = None
+) -> Study:
+    """Study of the errors of trials, on surfaces from a number on.
+
+    They are compared with the reference of their scene unless another one is given.
+    """
+
+    def compared(scene: Scene) -> Scene:
+        return scene if reference is None else replace(scene, reference=reference)
 
     def measured(scene: Scene, n_realisation: int, progress: Progress) -> xr.Dataset:
         surfaces = range(first, first + n_realisation)
-        return errors_dataset(scene_errors(scene, trials(scene), surfaces, progress))
+        return errors_dataset(scene_errors(compared(scene), trials(scene), surfaces, progress))
 
-    return Study(measured, lambda scene: trial_seconds(scene, trials(scene)))
+    return Study(measured, lambda scene: trial_seconds(compared(scene), trials(scene)))
 
 
 def _averages(scene: Scene, n_realisation: int, progress: Progress) -> xr.Dataset:
@@ -61,6 +74,7 @@ STUDIES = {
     "settings": _of_trials(lambda scene: scene.single_trials),
     "requested": _of_trials(lambda scene: scene.requested_trials()),
     "unseen": _of_trials(lambda scene: scene.requested_trials(_UNSEEN), HELD_OUT),
+    "expected": _of_trials(lambda scene: scene.requested_trials(_EXPECTED), HELD_OUT, FINER),
     "averages": Study(_averages, averages.sampling_seconds),
     "coverage": Study(_coverage, lambda scene: averages.coverage_seconds(scene, _COVERED)),
 }

@@ -16,9 +16,6 @@ from studies.accuracy.study import SceneErrors
 _LEAST = 3e-4
 """Least error of k that counts, as nobody asks for less."""
 
-_FEW = 0.1
-"""Scatter of k up to which the size of avalanches is measured; above, surfaces have many."""
-
 _SLOWEST: dict[SettingName, float] = {
     "sites": -0.6,
     "cubic": -2.0,
@@ -48,20 +45,8 @@ def fit_laws(studies: Iterable[SceneErrors]) -> Iterator[ErrorLaw]:
     an avalanche that changes, and logarithms would count those without one as much.
     """
     for study in studies:
-        avalanche = _avalanche(study)
         for setting in SETTINGS:
-            yield from _laws(study, setting, avalanche)
-
-
-def _avalanche(study: SceneErrors) -> float:
-    """Typical size of an avalanche in k, from settings that leave little scatter."""
-    deviations = np.concatenate([setting_errors(study, setting)[1] for setting in SETTINGS])
-    deviations -= deviations.mean(axis=1, keepdims=True)
-    few = np.mean(deviations**2, axis=1, keepdims=True) < _FEW**2
-    counted = np.where(few, deviations, 0.0)
-    total = float(np.sum(counted**2))
-    # Of rare avalanches the ratio of the fourth moment to the second is the square of their size.
-    return float(np.sqrt(np.sum(counted**4) / total)) if total > 0 else 0.0
+            yield from _laws(study, setting)
 
 
 def setting_errors(study: SceneErrors, setting: SettingName) -> tuple[Array, Array]:
@@ -78,7 +63,7 @@ def setting_errors(study: SceneErrors, setting: SettingName) -> tuple[Array, Arr
     return values, np.array(added) / study.scene.elastic_energy
 
 
-def _laws(study: SceneErrors, setting: SettingName, avalanche: float) -> Iterator[ErrorLaw]:
+def _laws(study: SceneErrors, setting: SettingName) -> Iterator[ErrorLaw]:
     """Laws of one setting, the approach before the retraction."""
     tried, values = setting_errors(study, setting)
     x = abscissa(setting, tried)
@@ -93,7 +78,7 @@ def _laws(study: SceneErrors, setting: SettingName, avalanche: float) -> Iterato
         seen = np.count_nonzero(certain) > 1
         bias_line = _falling_line(x[certain], bias[certain, branch], slowest) if seen else _NO_BIAS
         shape, energy = study.scene.shape, study.scene.elastic_energy
-        yield ErrorLaw(shape, energy, setting, direction, bias_line, scatter_line, avalanche)
+        yield ErrorLaw(shape, energy, setting, direction, bias_line, scatter_line)
 
 
 def _falling_line(x: Array, values: Array, slowest: float) -> tuple[float, float]:
@@ -119,8 +104,8 @@ def laws_text(laws: Iterable[ErrorLaw]) -> str:
     text = io.StringIO()
     columns = ("shape", "elastic_energy", "setting", "direction")
     writer = csv.writer(text, lineterminator="\n")
-    writer.writerow([*columns, "bias_0", "bias_1", "scatter_0", "scatter_1", "avalanche"])
+    writer.writerow([*columns, "bias_0", "bias_1", "scatter_0", "scatter_1"])
     for law in laws:
-        coefficients = [f"{value:.4f}" for value in (*law.bias, *law.scatter, law.avalanche)]
+        coefficients = [f"{value:.4f}" for value in (*law.bias, *law.scatter)]
         writer.writerow([*(getattr(law, name) for name in columns), *coefficients])
     return text.getvalue()

@@ -29,7 +29,7 @@ HELD_OUT = 2000
 _SEED = 20241121
 """Seed of the surfaces of all scenes."""
 
-_FINER = Settings(
+FINER = Settings(
     angles=None,
     angles_per_cutoff=8,
     samples_per_cutoff=12,
@@ -37,14 +37,14 @@ _FINER = Settings(
     pixels_per_cutoff=10,
     tolerance=1e-9,
 )
-"""What shows that the reference has converged, where single settings are varied."""
+"""What shows that the reference has converged, and the reference of expected errors."""
 
 _REFERENCE = replace(
-    _FINER, angles_per_cutoff=6, samples_per_cutoff=8, pixels_per_cutoff=8, tolerance=1e-8
+    FINER, angles_per_cutoff=6, samples_per_cutoff=8, pixels_per_cutoff=8, tolerance=1e-8
 )
 _LARGE_REFERENCE = replace(_REFERENCE, angles_per_cutoff=4, samples_per_cutoff=6)
 _STRONG_REFERENCE = replace(_REFERENCE, angles_per_cutoff=12, samples_per_cutoff=12)
-_STRONG_FINER = replace(_FINER, angles_per_cutoff=16, samples_per_cutoff=16)
+_STRONG_FINER = replace(FINER, angles_per_cutoff=16, samples_per_cutoff=16)
 
 _STRONG = 0.2
 """Largest e_el / w_int where the numerics of moderate disorder have converged."""
@@ -114,7 +114,7 @@ class Scene:
     @property
     def single_trials(self) -> list[Trial]:
         """The finer numerics, other numbers of sites, and few sites with another setting varied."""
-        finer, values, n_few = _FINER, _VALUES, _FEW_SITES
+        finer, values, n_few = FINER, _VALUES, _FEW_SITES
         if self.elastic_energy > _STRONG:
             finer, values, n_few = _STRONG_FINER, _STRONG_VALUES, _FEW_STRONG_SITES
         few = with_setting(self.reference, "sites", n_few)
@@ -194,6 +194,7 @@ def _unseen() -> list[Scene]:
         ("h02", "roughness", (0.012, 0.1, 0.2), 80, (0.005, 0.02, 0.4)),
         ("h05", "roughness", (0.008, 0.08, 0.5), 80, wide),
         ("h09", "roughness", (0.01, 0.16, 0.9), 96, (0.02, 0.06, 0.25)),
+        ("octaves", "roughness", (0.02, 0.08, 0.8), 64, (0.01, 0.02, 0.05, 0.1, 0.2)),
     )
     return [
         Scene(

@@ -135,14 +135,14 @@ def motion_figure(shown: AnimatedCycle) -> Drawing:
 def motion_animation(shown: AnimatedCycle) -> Animation:
     """The front over the field, and the loop: one frame a state, and some without contact."""
     with house_style():
-        figure = blank_figure(PAGE, 0.49 * PAGE)
+        figure = blank_figure(PAGE, 0.53 * PAGE)
         map_axes, loop_axes = figure.subplots(1, 2)
         mean, reach = 1 - shown.elastic_energy, 4 * np.sqrt(shown.elastic_energy)
         draw_field(map_axes, shown.x, shown.y, shown.patch, mean, reach)
-        loop_axes.set(xlabel=f"mean {RADIUS_LABEL}", ylabel=FORCE_LABEL)
+        loop_axes.set(xlabel=FORCE_LABEL, ylabel=f"mean {RADIUS_LABEL}")
         limits = (
-            (shown.mean_radius, loop_axes.set_xlim, 0.06),
-            (shown.force, loop_axes.set_ylim, 0.2),
+            (shown.force, loop_axes.set_xlim, 0.06),
+            (shown.mean_radius, loop_axes.set_ylim, 0.06),
         )
         for values, setter, above in limits:
             low, high = values.min(), values.max()
@@ -153,10 +153,8 @@ def motion_animation(shown: AnimatedCycle) -> Animation:
             direction: loop_axes.plot([], [], color=colour, label=name)[0]
             for direction, name, _, colour in BRANCHES
         }
-        (point,) = loop_axes.plot(
-            [], [], "o", color=BLACK, zorder=4, label="state of the front beside"
-        )
-        loop_axes.legend(loc="upper left")
+        (point,) = loop_axes.plot([], [], "o", color=BLACK, zorder=4, label="front on the left")
+        loop_axes.legend(loc="lower right")
         explain(figure, f"unit of the penetration: ${VERTICAL.tex}$")
     last = shown.direction.size
 
@@ -168,9 +166,9 @@ def motion_animation(shown: AnimatedCycle) -> Animation:
         title.set_text(f"penetration ${b:+.2f}${'' if touching else ', contact lost'}")
         for direction, drawn in branches.items():
             branch = np.flatnonzero(shown.direction[: state + 1] == direction)
-            drawn.set_data(shown.mean_radius[branch], shown.force[branch])
+            drawn.set_data(shown.force[branch], shown.mean_radius[branch])
         seen = slice(state, state + 1) if touching else slice(0, 0)
-        point.set_data(shown.mean_radius[seen], shown.force[seen])
+        point.set_data(shown.force[seen], shown.mean_radius[seen])
 
     return Animation(figure, (line, title, *branches.values(), point), last + _LAST_FRAMES, show)
 

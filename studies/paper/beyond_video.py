@@ -5,10 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure as Drawing
-from matplotlib.lines import Line2D
 from matplotlib.patches import Polygon
 from numpy.typing import NDArray
 
@@ -113,21 +111,6 @@ def video_figure(shown: Video) -> Drawing:
         return animation.figure
 
 
-def _empty_loop(axes: Axes, force: Array, radius: Array) -> tuple[dict[int, Line2D], Line2D]:
-    """Axes of a loop with a line without points for each branch, and for the shown state."""
-    margins = 0.06 * np.ptp(radius), 0.06 * np.ptp(force)
-    axes.set_xlim(radius.min() - margins[0], radius.max() + margins[0])
-    axes.set_ylim(force.min() - margins[1], force.max() + 3 * margins[1])
-    axes.set(xlabel="mean contact radius (µm)", ylabel="normal force (mN)")
-    branches = {
-        direction: axes.plot([], [], color=colour, label=name)[0]
-        for direction, name, _, colour in BRANCHES
-    }
-    (point,) = axes.plot([], [], "o", color=BLACK, zorder=4, label="frame on the left")
-    axes.legend(loc="upper left")
-    return branches, point
-
-
 def video_animation(shown: Video) -> Animation:
     """Contact area with the perimeters of its branch, and the loop: one frame a state."""
     with house_style():
@@ -143,7 +126,16 @@ def video_animation(shown: Video) -> Animation:
         area_axes.add_collection(perimeters)
         title = area_axes.set_title("0 s")
         force, radius = 1e3 * shown.force, 1e6 * shown.radius
-        branches, point = _empty_loop(loop_axes, force, radius)
+        margins = 0.06 * np.ptp(radius), 0.06 * np.ptp(force)
+        loop_axes.set_xlim(force.min() - margins[1], force.max() + margins[1])
+        loop_axes.set_ylim(radius.min() - margins[0], radius.max() + margins[0])
+        loop_axes.set(xlabel="normal force (mN)", ylabel="mean contact radius (µm)")
+        branches = {
+            direction: loop_axes.plot([], [], color=colour, label=name)[0]
+            for direction, name, _, colour in BRANCHES
+        }
+        (point,) = loop_axes.plot([], [], "o", color=BLACK, zorder=4, label="frame on the left")
+        loop_axes.legend(loc="lower right")
         explain(figure, f"bright: the contact; lines: its perimeters, one in {_EVERY} frames")
     colours = {direction: colour for direction, _, _, colour in BRANCHES}
     last = shown.direction.size
@@ -159,9 +151,9 @@ def video_animation(shown: Video) -> Animation:
         title.set_text(f"{shown.time[state]:.0f} s{'' if touching else ', contact lost'}")
         for branch, drawn in branches.items():
             seen = np.flatnonzero(shown.direction[: state + 1] == branch)
-            drawn.set_data(radius[seen], force[seen])
+            drawn.set_data(force[seen], radius[seen])
         now = slice(state, state + 1) if touching else slice(0, 0)
-        point.set_data(radius[now], force[now])
+        point.set_data(force[now], radius[now])
 
     moving = (contact, perimeters, title, *branches.values(), point)
     return Animation(figure, moving, last + _LAST_FRAMES, show)

@@ -11,7 +11,7 @@ from typing import Annotated
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 from pydantic import Field, model_validator
 
 from crackfront.core import jkr
@@ -304,7 +304,7 @@ def _draw_release(axes: Axes, loops: RingLoops, index: int, limits: tuple[float,
     release = jkr.apparent_work_of_adhesion(radius, 0.0)
     axes.plot(radius, release, color=style.BLACK, linewidth=0.8, label=r"$G_\mathrm{JKR}(b=0,a)$")
     for direction, name, short, _ in BRANCHES:
-        _draw_branch(axes, loops, index, direction, jkr.apparent_work_of_adhesion, name)
+        _draw_branch(axes, loops, index, direction, _radius_and_release, name)
         level = 1 - direction * loops.amplitude
         axes.axhline(level, color="0.3", linewidth=0.6, dashes=(4, 2), zorder=1)
         label, below = rf"$w_\mathrm{{{short}}}$", "top" if direction > 0 else "bottom"
@@ -319,21 +319,21 @@ def _draw_release(axes: Axes, loops: RingLoops, index: int, limits: tuple[float,
 
 
 def _draw_forces(axes: Axes, loops: RingLoops) -> None:
-    """Force against radius of both loops between the JKR curves of the extremes."""
+    """Radius against force of both loops between the JKR curves of the extremes."""
     radius = np.linspace(0.0, _REACH, 400)
     for index in (1, 0):
         for direction, name, *_ in BRANCHES:
             label = rf"{name}, $d={loops.wavelength[index]:g}$"
-            _draw_branch(axes, loops, index, direction, jkr.force, label)
+            _draw_branch(axes, loops, index, direction, _force_and_radius, label)
             if index == 0:
                 contact = loops.radius_at_zero(0, direction)
-                place = contact, float(jkr.force(contact, 0.0))
-                _draw_state(axes, direction, place, (7, 3) if direction > 0 else (2, -8))
+                place = float(jkr.force(contact, 0.0)), contact
+                _draw_state(axes, direction, place, (-8, -5) if direction > 0 else (-7, 4))
     for direction, _, short, _ in BRANCHES:
         adhesion = 1 - direction * loops.amplitude
         axes.plot(
-            radius,
             jkr.equilibrium_force(radius, adhesion),
+            radius,
             color="0.3",
             linewidth=0.8,
             dashes=(4, 2) if direction > 0 else (1.5, 1.5),
@@ -341,12 +341,22 @@ def _draw_forces(axes: Axes, loops: RingLoops) -> None:
             zorder=1,
         )
     axes.plot(
-        radius, jkr.force(radius, 0.0), color=style.BLACK, linewidth=0.8, label="$b=0$", zorder=1
+        jkr.force(radius, 0.0), radius, color=style.BLACK, linewidth=0.8, label="$b=0$", zorder=1
     )
     axes.set(
-        xlim=(0, _REACH), ylim=(-2.7, 2.7), xlabel=parts.RADIUS_LABEL, ylabel=parts.FORCE_LABEL
+        xlim=(-2.7, 2.7), ylim=(0, _REACH), xlabel=parts.FORCE_LABEL, ylabel=parts.RADIUS_LABEL
     )
-    axes.legend(loc="upper left", ncols=2, columnspacing=1.0, fontsize=6)
+    axes.legend(loc="lower right", fontsize=6)
+
+
+def _radius_and_release(radius: ArrayLike, penetration: ArrayLike) -> tuple[Array, Array]:
+    """Point of the energy release rate against the radius."""
+    return np.asarray(radius), np.asarray(jkr.apparent_work_of_adhesion(radius, penetration))
+
+
+def _force_and_radius(radius: ArrayLike, penetration: ArrayLike) -> tuple[Array, Array]:
+    """Point of the radius against the force."""
+    return np.asarray(jkr.force(radius, penetration)), np.asarray(radius)
 
 
 def _draw_state(
@@ -364,27 +374,31 @@ def _draw_branch(
     loops: RingLoops,
     index: int,
     direction: int,
-    value: Callable[[Array, Array], Array],
+    curve: Callable[[ArrayLike, ArrayLike], tuple[Array, Array]],
     label: str,
 ) -> None:
-    """Quantity of the contact on a branch: heavy where it is pinned, arrows where it jumps."""
+    """Curve of the contact on a branch: heavy where it is pinned, arrows where it jumps.
+
+    `curve` maps radii and penetrations to points.
+    """
     branch, colour = loops.branch(index, direction), _COLOURS[index][direction]
     radius, penetration = loops.radius[branch], loops.penetration[branch]
     starts = np.flatnonzero(loops.jump[branch])
     pieces = zip(np.split(radius, starts), np.split(penetration, starts), strict=True)
     for number, (held, load) in enumerate(piece for piece in pieces if piece[0].size):
         name = label if number == 0 else None
-        axes.plot(held, value(held, load), color=colour, linewidth=1.4, label=name)
+        axes.plot(*curve(held, load), color=colour, linewidth=1.4, label=name)
     jumps = list(zip(np.r_[0.0, radius][starts], radius[starts], penetration[starts], strict=True))
     if direction < 0:
         jumps.append((radius[-1], 0.0, penetration[-1]))
     for before, after, load in jumps:
         # The energy release rate is not defined at radius zero.
         path = np.linspace(max(before, 1e-6), max(after, 1e-6), 40)
-        axes.plot(path, value(path, load), color=colour, linewidth=0.7)
+        abscissa, ordinate = curve(path, load)
+        axes.plot(abscissa, ordinate, color=colour, linewidth=0.7)
         if index == 0:
             middle = slice(path.size // 2, path.size // 2 + 2)
-            parts.draw_arrow(axes, path[middle], value(path, load)[middle], colour)
+            parts.draw_arrow(axes, abscissa[middle], ordinate[middle], colour)
 
 
 FIGURE = Figure(

@@ -350,26 +350,26 @@ def _finish_quarters(axes: Axes, record: InstabilityRecord) -> None:
 
 
 def _draw_cycle(axes: Axes, record: InstabilityRecord) -> None:
-    """Force against radius of the stronger disorder."""
+    """Radius against force of the stronger disorder."""
     for direction, name, _, colour in BRANCHES:
         branch = record.state_direction == direction
         radius, force = record.state_radius[branch], record.state_force[branch]
-        axes.plot(radius, force, color=colour, linewidth=0.8, label=name)
+        axes.plot(force, radius, color=colour, linewidth=0.8, label=name)
         end = 0 if direction > 0 else -1
-        start, stop = ((0.0, 0.0), (radius[end], force[end]))[::direction]
+        start, stop = ((0.0, 0.0), (force[end], radius[end]))[::direction]
         draw_jump(axes, start, stop, PURPLE, linewidth=0.9, mutation_scale=7)
     axes.plot([], [], color=PURPLE, linewidth=0.9, label="jumps in and out")
     radius = np.linspace(0.0, 1.6, 200)
     force = jkr.force(radius, 0.0)
-    axes.plot(radius, force, color="black", linewidth=0.7, label="$b = 0$", zorder=1)
-    for letter, place, aside in zip("AB", _radii_at_zero(record), ((-9, -7), (6, -5)), strict=True):
-        state = place, float(jkr.force(place, 0.0))
+    axes.plot(force, radius, color="black", linewidth=0.7, label="$b = 0$", zorder=1)
+    for letter, place, aside in zip("AB", _radii_at_zero(record), ((5, -9), (-10, 4)), strict=True):
+        state = float(jkr.force(place, 0.0)), place
         axes.plot(*state, "o", color="black", markersize=2.8, zorder=5)
         write_beside(axes, letter, state, aside, fontweight="bold")
-    axes.set_xlim(0.0, 1.08 * record.state_radius.max())
-    axes.set_ylim(1.25 * record.state_force.min(), 0.1)
+    axes.set_xlim(1.25 * record.state_force.min(), 0.1)
+    axes.set_ylim(0.0, 1.08 * record.state_radius.max())
     axes.legend(loc="lower left")
-    axes.set(xlabel=RADIUS_LABEL, ylabel=FORCE_LABEL)
+    axes.set(xlabel=FORCE_LABEL, ylabel=RADIUS_LABEL)
 
 
 FIGURE = Figure(

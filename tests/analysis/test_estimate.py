@@ -34,9 +34,9 @@ def test_bootstrap_samples_of_n_minus_one_give_the_standard_error_of_a_mean(rng)
 
 def test_a_combination_of_independent_estimates_follows_welch():
     parts = student_estimate(np.array([1.0, 2.0, np.nan]), np.array([0.3, 0.4, np.nan]), [3, 3, 0])
-    both = combination(parts, np.array([3, 3, 0]), np.array([1.0, 1.0, 0.0]))
-    assert both.value == 3.0
-    assert both.standard_error == pytest.approx(0.5)
+    combined = combination(parts, np.array([3, 3, 0]), np.array([1.0, 1.0, 0.0]))
+    assert combined.value == 3.0
+    assert combined.standard_error == pytest.approx(0.5)
     freedom = 0.25**2 / (0.09**2 / 3 + 0.16**2 / 3)
-    assert both.high == pytest.approx(student_estimate(3.0, 0.5, freedom).high, rel=1e-12)
+    assert combined.high == pytest.approx(student_estimate(3.0, 0.5, freedom).high, rel=1e-12)
     assert np.isnan(combination(parts, np.array([3, 3, 0]), np.zeros(3)).value)

@@ -98,9 +98,9 @@ def test_the_interval_holds_the_three_errors(law):
     assert factor.factor.standard_error == pytest.approx(expected)
     assert factor.warning == ""
     # Without a breadth the law's error is that between the narrowest and the broadest spectrum too.
-    known = pinning_factor(0.3, 5.0, breadth=TYPICAL_BREADTH)
+    factor_at_5 = pinning_factor(0.3, 5.0, breadth=TYPICAL_BREADTH)
     ends = law_value(law.coefficients, 0.3, 5.0, np.array(law.breadth))
-    assert factor.model == pytest.approx(np.hypot(known.model, np.ptp(ends) / np.sqrt(12)))
+    assert factor.model == pytest.approx(np.hypot(factor_at_5.model, np.ptp(ends) / np.sqrt(12)))
     assert pinning_factor(0.3, np.inf).factor.value > factor.factor.value
 
 
@@ -160,7 +160,10 @@ def test_a_sphere_has_the_k_of_the_straight_front_at_the_springs_of_either_branc
 
 
 def test_narrow_spectra_have_the_smallest_k_at_strong_disorder_and_nearly_the_same_at_weak():
-    breadths = [spectral_breadth("roughness", one) for one in (RING, *SPECTRA)]
+    breadths = [
+        spectral_breadth("roughness", spectrum_or_breadth)
+        for spectrum_or_breadth in (RING, *SPECTRA)
+    ]
     assert breadths[0] < 0.5 < breadths[1] < breadths[2]
     ring, flat, broad = (
         pinning_factor(0.84, np.inf, breadth=breadth).factor.value for breadth in breadths[:3]
@@ -168,7 +171,10 @@ def test_narrow_spectra_have_the_smallest_k_at_strong_disorder_and_nearly_the_sa
     assert ring < flat < broad
     weak = [pinning_factor(WEAKEST, 3.0, breadth=breadth).factor.value for breadth in breadths]
     assert weak == pytest.approx([weak[0]] * 4, rel=0.04)
-    limits = [pinning_factor(WEAKEST, np.inf, breadth=one).factor.value for one in breadths]
+    limits = [
+        pinning_factor(WEAKEST, np.inf, breadth=spectrum_or_breadth).factor.value
+        for spectrum_or_breadth in breadths
+    ]
     assert limits == pytest.approx([limits[0]] * 4)
 
 
@@ -177,8 +183,8 @@ def test_a_spectrum_in_pieces_of_equal_variance_is_as_broad_as_their_number():
     pair = TabulatedSpectrum(
         (4.8, 4.796, 4.0, 3.996, 1.2, 1.199, 1.0), (1e-7, 64.0, 64.0, 1e-7, 1e-7, 1.0, 1.0)
     )
-    one, two = (spectral_breadth("roughness", spectrum) - 0.25 for spectrum in (RING, pair))
-    assert two == pytest.approx(2 * one, rel=0.02)
+    ring_excess, two = (spectral_breadth("roughness", spectrum) - 0.25 for spectrum in (RING, pair))
+    assert two == pytest.approx(2 * ring_excess, rel=0.02)
 
 
 @pytest.mark.parametrize(

@@ -85,8 +85,8 @@ def test_without_noise_the_fit_returns_the_planted_law_to_round_off(rng):
             estimate = getattr(law, name)
             np.testing.assert_allclose(estimate.value, np.full(shape, truth), atol=1e-11)
             np.testing.assert_allclose(estimate.high - estimate.low, np.zeros(shape), atol=1e-9)
-    for branch, apart in (("approach", 0.001), ("retraction", -0.002)):
-        for name, expected in ((branch, apart), (f"{branch}_largest", abs(apart))):
+    for branch, drift in (("approach", 0.001), ("retraction", -0.002)):
+        for name, expected in ((branch, drift), (f"{branch}_largest", abs(drift))):
             assert getattr(fit.from_force, name) == pytest.approx([expected] * 3)
     assert fit.pooled_size_slope.value == pytest.approx(0.0, abs=1e-11)
     assert any("Numerical errors: up to 0.015 of k" in note for note in fit_notes(fit))
@@ -140,9 +140,14 @@ def test_intervals_are_those_of_the_seed_and_point_estimates_do_not_depend_on_it
     first, second = fit_all(table), fit_all(shuffled, seed=5)
     np.testing.assert_array_equal(first.pooled.factor.low, fit_all(table).pooled.factor.low)
     for name in LAW:
-        for one, other in ((first.spectra, second.spectra), (first.pooled, second.pooled)):
+        for first_estimates, second_estimates in (
+            (first.spectra, second.spectra),
+            (first.pooled, second.pooled),
+        ):
             np.testing.assert_allclose(
-                getattr(one, name).value, getattr(other, name).value, rtol=1e-11
+                getattr(first_estimates, name).value,
+                getattr(second_estimates, name).value,
+                rtol=1e-11,
             )
     assert not np.array_equal(
         first.spectra.factor.standard_error, second.spectra.factor.standard_error

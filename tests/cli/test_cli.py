@@ -111,7 +111,8 @@ def test_a_sweep_of_straight_fronts_is_fitted_and_drawn(tmp_path, monkeypatch):
     # The tiles have an rms of their own.
     np.testing.assert_allclose(dataset.cell_size[1], 2 * dataset.cell_size[0], rtol=0.3)
     law, weak = (
-        one.sel(bound=["low", "value", "high"]) for one in (dataset.cell_law_factor, dataset.k_0)
+        variable.sel(bound=["low", "value", "high"])
+        for variable in (dataset.cell_law_factor, dataset.k_0)
     )
     assert np.all(law[..., 0] <= law[..., 1])
     assert weak[0] < weak[1] < weak[2]
@@ -220,9 +221,9 @@ def test_every_command_is_listed_and_shows_examples_of_itself():
 @pytest.mark.parametrize(("name", "line"), list(commands_of_help()))
 def test_the_examples_of_the_help_name_options_that_exist(name, line):
     words = shlex.split(line.replace("$(", " ").replace(")", " "))
-    given = {word for word in words if word.startswith("--")}
-    known = {option for item in main.commands[name].params for option in item.opts}
-    assert given <= known
+    named_options = {word for word in words if word.startswith("--")}
+    defined_options = {option for item in main.commands[name].params for option in item.opts}
+    assert named_options <= defined_options
 
 
 def test_the_plan_names_the_amplitudes_of_the_fit_where_it_leaves_some_out(tmp_path):
@@ -252,14 +253,14 @@ def test_machines_read_the_plan_the_progress_and_the_fit(tmp_path, copy_store):
         assert run(command, TEST, *output[:2]).exit_code == 0
     after = json.loads(run("plan", TEST, *output).stdout)
     assert (after["missing"], after["core_seconds"]) == (0, 0)
-    assert [re.match(r"\w+ has g", one)[0] for one in after["warnings"]] == [
+    assert [re.match(r"\w+ has g", entry)[0] for entry in after["warnings"]] == [
         "flat has g",
         "rough has g",
     ]
     status = json.loads(run("status", tmp_path, "--json").stdout)
     assert status["reasons_to_run_again"] == []
     spectra = status["spectra"]
-    assert [(one["name"], one["done"], one["left"]) for one in spectra] == [
+    assert [(entry["name"], entry["done"], entry["left"]) for entry in spectra] == [
         ("flat", 4, 0),
         ("rough", 4, 0),
     ]
@@ -285,10 +286,10 @@ def test_a_cycle_tells_in_a_line_what_it_found_and_draws_it(rough_surface, tmp_p
     monkeypatch.setattr("crackfront.sweep.watching._SECONDS_IN_LOG", 0.0)
     result = cycle(rough_surface, tmp_path, "--figure", tmp_path / "pictures/loop", step=0.02)
     assert result.exit_code == 0, result.output
-    found = xr.load_dataset(tmp_path / "out.nc")
+    written_cycle = xr.load_dataset(tmp_path / "out.nc")
     assert "state 2, approach: " in result.stderr
     count, pdf, png, told, lost = result.stdout.splitlines()
-    assert count == f"{found.sizes['step']} states: {tmp_path / 'out.nc'}"
+    assert count == f"{written_cycle.sizes['step']} states: {tmp_path / 'out.nc'}"
     assert [pdf, png] == [f"figure: {tmp_path / 'pictures/loop'}.{kind}" for kind in ("pdf", "png")]
     assert (tmp_path / "pictures/loop.png").stat().st_size > 10_000
     numbers = re.fullmatch(
@@ -296,12 +297,12 @@ def test_a_cycle_tells_in_a_line_what_it_found_and_draws_it(rough_surface, tmp_p
         r"jump-in force (\S+), pull-off force (\S+) \(pi w_int R\)",
         told,
     )
-    measures = [float(found[name]) for name in ("w_appr", "w_retr", "hysteresis")]
-    measures += [float(found.force[0]), float(found.force.min())]
+    measures = [float(written_cycle[name]) for name in ("w_appr", "w_retr", "hysteresis")]
+    measures += [float(written_cycle.force[0]), float(written_cycle.force.min())]
     assert list(map(float, numbers.groups())) == pytest.approx(measures, rel=0.02)
-    assert found.attrs["result"] == told
+    assert written_cycle.attrs["result"] == told
     assert lost.startswith("contact was lost at penetration")
-    assert float(found.e_el) == pytest.approx(0.05, rel=0.3)
+    assert float(written_cycle.e_el) == pytest.approx(0.05, rel=0.3)
 
 
 def stopped_cycle(monkeypatch, signal_number, *arguments):
@@ -382,14 +383,14 @@ def test_a_cycle_overwrites_nothing_that_it_has_not_written(
 
 
 def test_loads_in_a_list_may_have_blanks_and_must_be_numbers(rough_surface, tmp_path):
-    given = ("cycle", "--field", rough_surface, "--output", tmp_path / "o.nc", "--step", 0.5)
-    assert "; jump-in force " in run(*given, "--loads", "0, 0.5, 0").stdout
-    assert "; first force " in run(*given, "--loads", "0.5, 0").stdout
+    arguments = ("cycle", "--field", rough_surface, "--output", tmp_path / "o.nc", "--step", 0.5)
+    assert "; jump-in force " in run(*arguments, "--loads", "0, 0.5, 0").stdout
+    assert "; first force " in run(*arguments, "--loads", "0.5, 0").stdout
     assert xr.load_dataset(tmp_path / "o.nc").penetration.values.max() == 0.5
-    assert "a load is ''; write numbers alone" in refused(*given, "--loads", "0,,0.5")
+    assert "a load is ''; write numbers alone" in refused(*arguments, "--loads", "0,,0.5")
     picture = tmp_path / "loads.png"
     picture.write_bytes(b"\x89PNG")
-    assert "which is not a text" in refused(*given, "--loads", picture)
+    assert "which is not a text" in refused(*arguments, "--loads", picture)
 
 
 @pytest.mark.parametrize("harm", ["a flipped bit", "cut off", "something else"])

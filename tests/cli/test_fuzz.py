@@ -209,9 +209,9 @@ def mutated(rng, content):
             part = part[step]
         change = rng.random()
         if isinstance(part[key], int | float) and change < 0.7:
-            other = part[key] * 10 ** rng.normal(0, 1.5) if change < 0.5 else odd_number(rng)
-            whole = isinstance(part[key], int) and math.isfinite(other)
-            part[key] = int(other) if whole else other
+            altered = part[key] * 10 ** rng.normal(0, 1.5) if change < 0.5 else odd_number(rng)
+            whole = isinstance(part[key], int) and math.isfinite(altered)
+            part[key] = int(altered) if whole else altered
         elif change < 0.8:
             part[key] = odd_value(rng)
         elif change < 0.9:
@@ -312,12 +312,12 @@ def configuration_case(rng, folder):
         if result.exception is not None and not isinstance(result.exception, SystemExit):
             return f"traceback: run: {type(result.exception).__name__}: {result.exception}"
         paths = curve_paths(store) if result.exit_code == 0 else []
-        found = (
+        content = (
             selected(dataset, np.array([place]))
             for dataset in map(xr.load_dataset, paths)
             for place in range(dataset.sizes[SIMULATION])
         )
-        return next((told for curve in found if (told := wrong_curve(curve))), "")
+        return next((told for curve in content if (told := wrong_curve(curve))), "")
 
     return Case(["plan", str(path), "--output", str(store), "--json"], wrong)
 
@@ -442,15 +442,17 @@ def field_case(rng, folder):
             return told
         written = xr.load_dataset(output)
         if same and "penetration" in written and np.all(values == WORK_OF_ADHESION):
-            exact = [jkr.equilibrium_radius(float(one)) for one in written["penetration"]]
+            exact = [
+                jkr.equilibrium_radius(float(penetration)) for penetration in written["penetration"]
+            ]
             if not np.allclose(written["mean_radius"], exact, rtol=1e-3):
                 return "wrong: a smooth field that is not that of JKR"
         result = CliRunner().invoke(main, [*arguments, "--solver", "reference"])
         if result.exit_code != 0:
             return f"wrong: the reference says {result.stderr}"
-        other, place = xr.load_dataset(output), "mean_radius"
-        place = place if place in other else "mean_position"
-        if other.sizes != written.sizes or not np.allclose(other[place], written[place], atol=1e-4):
+        cycle, place = xr.load_dataset(output), "mean_radius"
+        place = place if place in cycle else "mean_position"
+        if cycle.sizes != written.sizes or not np.allclose(cycle[place], written[place], atol=1e-4):
             return "wrong: the reference finds other states"
         return ""
 
@@ -596,11 +598,11 @@ def numbered_case(kind, number, folder):
 
 def faults(kind, numbers, folder):
     """Faults of the cases of some numbers."""
-    found = {}
+    failures = {}
     for number in numbers:
         if told := fault(numbered_case(kind, number, folder / f"{kind}-{number}")):
-            found[number] = told
-    return found
+            failures[number] = told
+    return failures
 
 
 @pytest.fixture(scope="module")

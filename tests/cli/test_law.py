@@ -30,14 +30,14 @@ def answer(options, *more):
 
 
 def test_a_front_has_the_k_of_the_law_in_both_branches():
-    found, k = answer(FRONT | {"--g": "7"}), pinning_factor(0.4, 7.0)
-    assert (found["k"], found["k_low"], found["k_high"]) == pytest.approx(
+    answered, k = answer(FRONT | {"--g": "7"}), pinning_factor(0.4, 7.0)
+    assert (answered["k"], answered["k_low"], answered["k_high"]) == pytest.approx(
         (k.factor.value, k.factor.low, k.factor.high)
     )
-    assert found["k_appr"] == found["k_retr"] == found["k"]
-    assert (found["w_rms"], found["g"]) == (0.4, 7.0)
+    assert answered["k_appr"] == answered["k_retr"] == answered["k"]
+    assert (answered["w_rms"], answered["g"]) == (0.4, 7.0)
     for name in ("statistical", "numerical", "model", "negative_share", "warning"):
-        assert found[name] == getattr(k, name)
+        assert answered[name] == getattr(k, name)
 
 
 def test_an_infinite_front_is_json_that_is_read_everywhere():
@@ -95,10 +95,10 @@ def test_what_cannot_be_answered_is_refused_with_a_sentence(options, sentence):
 
 
 def test_a_breadth_is_that_of_the_law_and_narrows_the_interval():
-    found, k = answer(FRONT, "--breadth", "0.92"), pinning_factor(0.4, math.inf, breadth=0.92)
-    assert (found["k"], found["breadth"]) == (k.factor.value, 0.92)
+    answered, k = answer(FRONT, "--breadth", "0.92"), pinning_factor(0.4, math.inf, breadth=0.92)
+    assert (answered["k"], answered["breadth"]) == (k.factor.value, 0.92)
     anybody = answer(FRONT)
-    assert found["k_high"] - found["k_low"] < anybody["k_high"] - anybody["k_low"]
+    assert answered["k_high"] - answered["k_low"] < anybody["k_high"] - anybody["k_low"]
     assert "breadth 0.92" in run(FRONT, "--breadth", "0.92").stdout
 
 

@@ -14,8 +14,8 @@ from tests.places import ROOT
 @pytest.fixture
 def table(tmp_path):
     """A table with semicolons and decimal commas."""
-    one, path = loop(0), tmp_path / "rig.csv"
-    rows = zip(1e3 * one.force, 1e6 * one.radius, strict=True)
+    simulated, path = loop(0), tmp_path / "rig.csv"
+    rows = zip(1e3 * simulated.force, 1e6 * simulated.radius, strict=True)
     lines = [f"{force:.6f};{radius:.4f}".replace(".", ",") for force, radius in rows]
     path.write_text("Rig 7\nForce (mN);Contact radius (um)\n" + "\n".join(lines) + "\n")
     return path
@@ -45,9 +45,9 @@ def test_the_example_of_the_page_has_the_simulated_hysteresis():
     options = "--radius 100um --modulus 0.7MPa --poisson 0.5"
     assert f"crackfront loop examples/rig.csv {options}" in (ROOT / "docs/loops.md").read_text()
     done = run(ROOT / "examples/rig.csv", *options.split(), "--json")
-    found = json.loads(done.stdout)["hysteresis"]
-    assert found["low"] < 11.29e-3 < found["high"]
-    assert found["high"] - found["low"] < 4e-3
+    hysteresis = json.loads(done.stdout)["hysteresis"]
+    assert hysteresis["low"] < 11.29e-3 < hysteresis["high"]
+    assert hysteresis["high"] - hysteresis["low"] < 4e-3
 
 
 @pytest.mark.parametrize(

@@ -25,9 +25,9 @@ def pace(monkeypatch):
     monkeypatch.setattr(tqdm.std, "time", lambda: now[0])
 
     def paced(number, seconds):
-        for one in range(number):
+        for step in range(number):
             now[0] += seconds
-            yield one
+            yield step
 
     return paced
 

@@ -44,7 +44,9 @@ def sphere(**changes):
 
 def reservations(content):
     """Sentences of the reservations in JSON."""
-    return [one["sentence"] for one in content["remarks"] if one["severity"] == "reservation"]
+    return [
+        remark["sentence"] for remark in content["remarks"] if remark["severity"] == "reservation"
+    ]
 
 
 @pytest.fixture(autouse=True)
@@ -141,11 +143,11 @@ def test_json_has_units_for_everything_that_is_predicted(predict, surface):
     content = json.loads(predict("--json").stdout)
     assert set(content["prediction"]) == {item.name for item in variables(Prediction)}
     for item in variables(Prediction):
-        found, entry = getattr(prediction, item.name), content["prediction"][item.name]
+        estimate, entry = getattr(prediction, item.name), content["prediction"][item.name]
         assert (entry["units"], entry["long_name"]) == (item.units, item.attributes["long_name"])
-        number = {"value": found}
-        if isinstance(found, Estimate):
-            number = {name: getattr(found, name) for name in ("value", "low", "high")}
+        number = {"value": estimate}
+        if isinstance(estimate, Estimate):
+            number = {name: getattr(estimate, name) for name in ("value", "low", "high")}
         for name, expected in number.items():
             is_finite = np.isfinite(expected)
             assert entry[name] == (pytest.approx(expected, rel=1e-12) if is_finite else None)
@@ -171,24 +173,30 @@ def test_simulations_find_what_is_predicted(predict):
     )
     assert result.exit_code == 0, result.output
     content = json.loads(result.stdout)
-    found, law = content["simulation"], content["prediction"]
-    assert found["realisations"] == 3
-    assert found["remark"] == ""
-    assert found["w_appr"]["low"] < found["w_appr"]["value"] < found["w_appr"]["high"]
-    both = content["factors"]["both"]
-    k = found["k"]
-    own = (k["high"] - k["low"]) / 2
-    assert abs(k["value"] - both["value"]) < np.hypot(own, (both["high"] - both["low"]) / 2)
+    simulation_json, law = content["simulation"], content["prediction"]
+    assert simulation_json["realisations"] == 3
+    assert simulation_json["remark"] == ""
+    assert (
+        simulation_json["w_appr"]["low"]
+        < simulation_json["w_appr"]["value"]
+        < simulation_json["w_appr"]["high"]
+    )
+    simulated_factor = content["factors"]["both"]
+    k = simulation_json["k"]
+    law_half_width = (k["high"] - k["low"]) / 2
+    assert abs(k["value"] - simulated_factor["value"]) < np.hypot(
+        law_half_width, (simulated_factor["high"] - simulated_factor["low"]) / 2
+    )
     assert law["k_appr"]["value"] == content["factors"]["approach"]["factor"]["value"]
-    for works in (found, found["corrected"]):
+    for works in (simulation_json, simulation_json["corrected"]):
         appr, retr, lost = (works[name]["value"] for name in ("w_appr", "w_retr", "hysteresis"))
         assert lost == pytest.approx(retr - appr)
     ratio = content["excess"]["ratio"]["value"]
-    assert found["hysteresis"]["value"] == pytest.approx(ratio * lost)
+    assert simulation_json["hysteresis"]["value"] == pytest.approx(ratio * lost)
     # The front beside the front, what is corrected beside the headline.
     for simulated, prediction in (
-        (found, law["front_hysteresis"]),
-        (found["corrected"], law["hysteresis"]),
+        (simulation_json, law["front_hysteresis"]),
+        (simulation_json["corrected"], law["hysteresis"]),
     ):
         assert prediction["low"] < simulated["hysteresis"]["value"] < prediction["high"]
 
@@ -223,7 +231,7 @@ def test_a_surface_alone_has_no_energy_and_with_a_sphere_it_has(surface):
 
 
 def test_no_command_overwrites_what_it_reads(tmp_path):
-    scan, other = (shutil.copy(OVERVIEW, tmp_path / f"{name}.al3d") for name in "ab")
+    scan, second_scan = (shutil.copy(OVERVIEW, tmp_path / f"{name}.al3d") for name in "ab")
     line, grid = tmp_path / "line.csv", tmp_path / "grid.nc"
     line.write_text("x (um),z (nm)\n0,1\n1,3\n2,2\n")
     xr.DataArray(np.eye(4), dims=("x", "y"), name="height").to_netcdf(grid)
@@ -231,11 +239,11 @@ def test_no_command_overwrites_what_it_reads(tmp_path):
     before = {path: path.read_bytes() for path in tmp_path.iterdir()}
     for words in (
         ("predict", scan, *sphere(), "--csv", scan),
-        ("predict", other, *sphere(), "--csv", scan),  # the name of the table was forgotten
-        ("predict", other, *sphere(), "--csv", line),
+        ("predict", second_scan, *sphere(), "--csv", scan),  # the name of the table was forgotten
+        ("predict", second_scan, *sphere(), "--csv", line),
         ("surface", scan, *sphere(), "--field", scan),
-        ("surface", other, *sphere(), "--field", grid),
-        ("surface", other, *sphere(), "--field", scan),
+        ("surface", second_scan, *sphere(), "--field", grid),
+        ("surface", second_scan, *sphere(), "--field", scan),
         ("samples", table, *sphere(), "--csv", table),
         ("samples", table, *sphere(), "--csv", scan),
     ):
@@ -278,15 +286,15 @@ def test_a_surface_may_be_given_by_a_density_or_by_numbers(tmp_path):
     rows = zip(q, spectrum.density(q), strict=True)
     path.write_text("q (1/m),C2D (m^4)\n" + "".join(f"{a},{b}\n" for a, b in rows))
     surfaces = (("--psd", path), NUMBERS)
-    found = []
+    answers = []
     for surface in surfaces:
         result = run("predict", *surface, *sphere(), "--no-figure", "--json")
         assert result.exit_code == 0, result.output
-        found.append(json.loads(result.output))
-    energies = [content["prediction"]["e_el"]["value"] for content in found]
+        answers.append(json.loads(result.output))
+    energies = [content["prediction"]["e_el"]["value"] for content in answers]
     assert energies[0] == pytest.approx(energies[1], rel=0.01)
     assert energies[1] == pytest.approx(SCENE.contact_modulus / 4 * spectrum.mean_square(0.5))
-    for content in found:
+    for content in answers:
         assert content["measurements"] == []
         assert any("Without heights" in text for text in reservations(content))
     page = run("predict", *NUMBERS, *sphere(), "--figure", tmp_path / "figure.png", "--long")

@@ -225,14 +225,14 @@ def checkpoint_at_the_limit(folder, results, command):
 def test_a_time_limit_keeps_what_runs_and_the_next_job_goes_on_from_there(tmp_path):
     # It would take ten minutes.
     changes = (("angles: 128", "angles: 2000"), ("step: 0.1", "step: 0.00002"))
-    one = (("realisations: 2", "realisations: 1"), ("[0.02, 0.1]", "[0.1]"))
-    sweep, results = configuration(tmp_path, *changes, *one), tmp_path / "results"
+    replacements = (("realisations: 2", "realisations: 1"), ("[0.02, 0.1]", "[0.1]"))
+    sweep, results = configuration(tmp_path, *changes, *replacements), tmp_path / "results"
     command = f"exec {SRUN} -n 2 {sys.executable} -m crackfront simulate {sweep} "
     command += f"--output {results} --checkpoint 1"
     first, then = (checkpoint_at_the_limit(tmp_path, results, command) for _ in range(2))
-    known, more = first["mean_radius"], then["mean_radius"]
-    assert 0 < known.size < more.size
-    assert more.values[: known.size].tobytes() == known.values.tobytes()
+    first_radii, more = first["mean_radius"], then["mean_radius"]
+    assert 0 < first_radii.size < more.size
+    assert more.values[: first_radii.size].tobytes() == first_radii.values.tobytes()
     assert then.attrs["cpu_seconds"] > first.attrs["cpu_seconds"]
 
 

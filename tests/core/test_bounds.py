@@ -109,9 +109,9 @@ def tile(tmp_path):
     ],
 )
 def test_absurd_options_of_a_cycle_are_refused(tile, tmp_path, options, sentence):
-    given = {"--max-penetration": 1, "--step": 0.25, "--output": tmp_path / "out.nc"} | options
+    arguments = {"--max-penetration": 1, "--step": 0.25, "--output": tmp_path / "out.nc"} | options
     assert sentence in refused(
-        *("cycle", "--field", tile), *(part for pair in given.items() for part in pair)
+        *("cycle", "--field", tile), *(part for pair in arguments.items() for part in pair)
     )
 
 

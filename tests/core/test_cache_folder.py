@@ -66,28 +66,28 @@ def permissions(folder):
 def test_a_folder_below_one_that_others_can_change_is_neither_used_nor_touched(
     tmp_path, monkeypatch, harm, depth
 ):
-    given = tmp_path / "a/b/c"
-    monkeypatch.setattr(cache_folder.numba.config, "CACHE_DIR", str(given))
+    nested = tmp_path / "a/b/c"
+    monkeypatch.setattr(cache_folder.numba.config, "CACHE_DIR", str(nested))
     folder = kernel_folder()
     if depth > 0:
         folder.rmdir()
     harm([folder, *folder.parents][depth])
     before = permissions(tmp_path)
-    assert given not in folder_now().parents
+    assert nested not in folder_now().parents
     shutil.rmtree(tmp_path / "cache")
     assert permissions(tmp_path) == before
 
 
 @pytest.mark.usefixtures("fresh_cache")
 def test_a_parent_may_be_writable_where_everybody_renames_only_their_own(tmp_path, monkeypatch):
-    given = tmp_path / "given"
-    given.mkdir()
-    given.chmod(0o1777)
-    monkeypatch.setattr(cache_folder.numba.config, "CACHE_DIR", str(given))
-    assert kernel_folder().parent == given
+    parent = tmp_path / "given"
+    parent.mkdir()
+    parent.chmod(0o1777)
+    monkeypatch.setattr(cache_folder.numba.config, "CACHE_DIR", str(parent))
+    assert kernel_folder().parent == parent
     # In the folder itself everybody could add files.
     kernel_folder().chmod(0o1777)
-    assert folder_now().parent != given
+    assert folder_now().parent != parent
 
 
 @pytest.mark.parametrize("is_named", [True, False])

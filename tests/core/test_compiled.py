@@ -96,9 +96,9 @@ def started(package, code=ASKED, **environment):
 
 def answer(process):
     """What the process wrote to standard output and to standard error."""
-    printed, said = process.communicate(timeout=120)
-    assert process.returncode == 0, said
-    return printed.strip(), said
+    printed, errors = process.communicate(timeout=120)
+    assert process.returncode == 0, errors
+    return printed.strip(), errors
 
 
 @pytest.mark.slow
@@ -130,9 +130,9 @@ def test_without_a_usable_folder_nothing_is_kept_not_even_next_to_the_sources(pa
         package.with_name("cache").write_text("not a folder")
     code = f"import tempfile; tempfile.tempdir = {__file__!r}\n{ASKED}"
     for _ in range(2):
-        printed, said = answer(started(package, code))
+        printed, errors = answer(started(package, code))
         assert printed == "30 True ''"
-        assert said.count("\n") == ("XDG_CACHE_HOME" in said) == (place == "nowhere")
+        assert errors.count("\n") == ("XDG_CACHE_HOME" in errors) == (place == "nowhere")
     assert [path for path in package.parent.rglob("*.nb?") if path.is_file()] == []
 
 

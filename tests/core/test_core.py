@@ -92,9 +92,9 @@ assert settings() == before, (settings(), before)
 
 @pytest.mark.slow
 def test_the_core_runs_without_any_other_library_and_its_import_changes_nothing():
-    found = output(f"{ALONE}{UNCHANGED}{IMPORTS}{CYCLE}")
-    assert found == f"{cycle()}\n"
-    assert found.startswith("LOST_CONTACT")
+    printed = output(f"{ALONE}{UNCHANGED}{IMPORTS}{CYCLE}")
+    assert printed == f"{cycle()}\n"
+    assert printed.startswith("LOST_CONTACT")
 
 
 def test_the_face_names_what_it_has_and_refuses_the_rest():

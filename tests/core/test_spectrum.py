@@ -173,8 +173,8 @@ def test_a_table_of_a_self_affine_spectrum_is_that_spectrum(hurst):
         ends = order, 0.03, 0.2
         assert table.mean_square_between(*ends) == pytest.approx(exact.mean_square_between(*ends))
     for wavelength in (0.05, 0.7):
-        longer, known = (one.longer_than(wavelength) for one in (table, exact))
-        assert longer.elastic_energy == pytest.approx(known.elastic_energy, rel=1e-12)
+        longer, expected = (spectrum.longer_than(wavelength) for spectrum in (table, exact))
+        assert longer.elastic_energy == pytest.approx(expected.elastic_energy, rel=1e-12)
     assert table.dominant_wavelengths(0.5) == pytest.approx(exact.dominant_wavelengths(0.5))
 
 

@@ -42,10 +42,10 @@ def test_a_scene_without_positive_finite_parameters_is_refused(name, value):
 
 def value_of(formula):
     """Value of a formula of w_int, R and E' for the contact of the nanodiamond."""
-    python = re.sub(r"(\d+)E'(\^2)?", lambda found: f"({found[1]}*E{found[2] or ''})", formula)
+    python = re.sub(r"(\d+)E'(\^2)?", lambda match: f"({match[1]}*E{match[2] or ''})", formula)
     python = re.sub(r"(?<=[\w)])\s*(times)?\s+(?=[\w(])", "*", python.replace("^", "**"))
-    known = {"pi": math.pi, "w_int": 63e-3, "R": 1.25e-3, "E": NANODIAMOND.contact_modulus}
-    return eval(python, known)
+    constants = {"pi": math.pi, "w_int": 63e-3, "R": 1.25e-3, "E": NANODIAMOND.contact_modulus}
+    return eval(python, constants)
 
 
 @pytest.mark.parametrize("unit", ReducedUnit)

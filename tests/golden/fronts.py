@@ -55,8 +55,8 @@ def recorded(record: CycleRecord) -> Values:
         values["pull-off energy"] = np.array(record.pull_off_energy)
     if record.fronts is not None:
         n_state, n_site = record.fronts.shape
-        each = -(-n_site // _MOST_SITES)
-        values["fronts"] = record.fronts[[n_state // 3, n_state - 2], ::each]
+        group_size = -(-n_site // _MOST_SITES)
+        values["fronts"] = record.fronts[[n_state // 3, n_state - 2], ::group_size]
     return values
 
 

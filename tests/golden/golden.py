@@ -73,9 +73,9 @@ def movements(
     """Quantities of computed scenes that moved from the golden ones, the largest first."""
     moved = []
     for scene, values in computed.items():
-        known = golden.get(scene, {})
-        for quantity in dict.fromkeys((*known, *values)):
-            difference = _difference(known.get(quantity), values.get(quantity))
+        stored = golden.get(scene, {})
+        for quantity in dict.fromkeys((*stored, *values)):
+            difference = _difference(stored.get(quantity), values.get(quantity))
             if difference > tolerance:
                 moved.append(Movement(scene, quantity, difference, tolerance))
     return sorted(moved, key=lambda movement: -movement.difference)
@@ -122,23 +122,23 @@ def renewed(golden: Golden, version: int, computed: Scenes, name: str) -> Golden
     """
     if version != golden.version:
         return replace(golden, version=version, scenes=computed)
-    known = {scene: values for scene, values in computed.items() if scene in golden.scenes}
-    if moved := movements(golden.scenes, known):
+    kept_scenes = {scene: values for scene, values in computed.items() if scene in golden.scenes}
+    if moved := movements(golden.scenes, kept_scenes):
         raise NotRaisedError(f"{name} is still {version}, but {advice(moved, name)}")
-    return replace(golden, scenes=computed | {scene: golden.scenes[scene] for scene in known})
+    return replace(golden, scenes=computed | {scene: golden.scenes[scene] for scene in kept_scenes})
 
 
 def read_golden(path: Path) -> Golden:
     """Content of a file."""
     content = json.loads(path.read_text())
-    scenes, given = (
+    scenes, inputs = (
         {
             scene: {name: np.array(values, float) for name, values in quantities.items()}
             for scene, quantities in content.get(part, {}).items()
         }
         for part in ("scenes", "given")
     )
-    return Golden(content["version"], scenes, given)
+    return Golden(content["version"], scenes, inputs)
 
 
 def write_golden(path: Path, golden: Golden) -> None:

@@ -85,10 +85,10 @@ SIMULATIONS = {
 """Simulations whose states are stored, by their names in the file."""
 
 
-def completed(given: Scenes) -> Scenes:
+def completed(inputs: Scenes) -> Scenes:
     """Stored states, and those of simulations that have none yet, as the file is to have them."""
     return {
-        name: given.get(name) or states_to_store(run_simulation(simulation))
+        name: inputs.get(name) or states_to_store(run_simulation(simulation))
         for name, simulation in SIMULATIONS.items()
     }
 
@@ -175,9 +175,9 @@ def _fit(
     }
 
 
-def rows_and_fits(given: Scenes) -> Scenes:
+def rows_and_fits(inputs: Scenes) -> Scenes:
     """Rows of all stored states and the fits of their two tables."""
-    results = {name: _result(SIMULATIONS[name], stored) for name, stored in given.items()}
+    results = {name: _result(SIMULATIONS[name], stored) for name, stored in inputs.items()}
     rows = {name: sweep_row(result) for name, result in results.items()}
     line = results["line 0"]
     passing = passing_adhesion(line.record, line.simulation.correlation_length, 1.0, 2.0)

@@ -64,11 +64,11 @@ def test_the_default_tolerance_finds_the_same_states_to_its_precision(scene):
 
 
 def test_a_simulation_without_stored_states_is_simulated_and_others_are_not():
-    given = golden(ROWS).given
-    scenes = completed({name: states for name, states in given.items() if name != "line 0"})
-    assert [name for name in given if scenes[name] is not given[name]] == ["line 0"]
-    assert set(scenes["line 0"]) == set(given["line 0"])
-    assert scenes["line 0"]["status"] == given["line 0"]["status"]
+    inputs = golden(ROWS).given
+    scenes = completed({name: states for name, states in inputs.items() if name != "line 0"})
+    assert [name for name in inputs if scenes[name] is not inputs[name]] == ["line 0"]
+    assert set(scenes["line 0"]) == set(inputs["line 0"])
+    assert scenes["line 0"]["status"] == inputs["line 0"]["status"]
 
 
 def test_rows_and_fits_of_stored_states_have_not_moved():
@@ -104,7 +104,7 @@ def test_other_entries_of_a_scene_are_a_movement(values):
 
 
 def test_moved_numbers_are_not_renewed_before_the_version_is_raised():
-    other = {"scene": {"force": np.array([2.1, -1.0])}}
+    moved = {"scene": {"force": np.array([2.1, -1.0])}}
     with pytest.raises(NotRaisedError, match="VERSION is still 3"):
-        renewed(SOME, 3, other, "VERSION")
-    assert renewed(SOME, 4, other, "VERSION") == Golden(4, other)
+        renewed(SOME, 3, moved, "VERSION")
+    assert renewed(SOME, 4, moved, "VERSION") == Golden(4, moved)

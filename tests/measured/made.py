@@ -48,7 +48,7 @@ def write_text(path, heights, cell=lambda row, column, text: text):
 
 def one_cell(text):
     """What replaces a cell in the middle by a text."""
-    return lambda row, column, known: text if (row, column) == (20, 7) else known
+    return lambda row, column, cell: text if (row, column) == (20, 7) else cell
 
 
 def write_line(path, heights, pixel):
@@ -57,9 +57,9 @@ def write_line(path, heights, pixel):
     return path
 
 
-def read(path, **given):
+def read(path, **options):
     """Measurement of a file, read by options as a user gives them."""
-    return read_measurements([path], reading_options(given, 1))[0]
+    return read_measurements([path], reading_options(options, 1))[0]
 
 
 def measured_once(paths, options):
@@ -72,9 +72,9 @@ def _measured(paths, options, batches):
     return read_surface(paths, options)
 
 
-def shipped_surface(*paths, **given):
+def shipped_surface(*paths, **options):
     """Surface of scans that are shipped, read by options as a user gives them."""
-    return measured_once(paths, reading_options(given, len(paths)))
+    return measured_once(paths, reading_options(options, len(paths)))
 
 
 def measure_surfaces_once(monkeypatch):
@@ -93,10 +93,10 @@ def run_simulations_once(monkeypatch):
     monkeypatch.setattr(place, simulated_once)
 
 
-def refusal(*paths, **given):
+def refusal(*paths, **options):
     """Sentence for files that are refused."""
     with pytest.raises(ValueError, match=r".") as caught:
-        read_surface(paths, reading_options(given, len(paths)))
+        read_surface(paths, reading_options(options, len(paths)))
     message = str(caught.value)
     assert "\n" not in message
     return message
@@ -109,9 +109,9 @@ def write_smooth(path):
     return write_al3d(path, heights, 25.6e-6, "smooth")
 
 
-def measured_mean_square(one, order):
+def measured_mean_square(scan, order):
     """Mean square of a derivative of a scan over its trusted wavelengths, as it stands."""
-    waves, (low, high) = one.waves, (2 * np.pi / length for length in one.band.wavelengths[::-1])
+    waves, (low, high) = scan.waves, (2 * np.pi / length for length in scan.band.wavelengths[::-1])
     inside = (waves.wavevector >= low) & (waves.wavevector <= high)
     power = waves.count[inside] * waves.power[inside]
     steps = np.prod([step / (2 * np.pi) for step in waves.steps])

@@ -17,19 +17,25 @@ from tests.measured.made import DETAIL, OVERVIEW, SCENE, measure_surfaces_once
 
 
 def test_texts_and_numbers_mean_the_same():
-    given = {"channel": 1, "detrend": 3, "size": [50, 40.0], "shortest": 4e-7, "mask": ()}
+    numbers = {"channel": 1, "detrend": 3, "size": [50, 40.0], "shortest": 4e-7, "mask": ()}
     texts = {"channel": "1", "detrend": "3", "size": "50,40", "shortest": "0.4um", "crop": None}
-    one, other = (checked_options(ReadingOptions, values) for values in (given, texts))
-    assert one.shortest == pytest.approx(other.shortest, rel=1e-12)
-    assert (one.channel, one.detrend, one.size) == (other.channel, other.detrend, other.size)
+    from_numbers, from_texts = (
+        checked_options(ReadingOptions, values) for values in (numbers, texts)
+    )
+    assert from_numbers.shortest == pytest.approx(from_texts.shortest, rel=1e-12)
+    assert (from_numbers.channel, from_numbers.detrend, from_numbers.size) == (
+        from_texts.channel,
+        from_texts.detrend,
+        from_texts.size,
+    )
     assert checked_options(PredictionOptions, {"range": 3e-10, "unit": "m"}).range == 3e-10
 
 
 def test_an_option_is_given_once_for_all_scans_or_once_for_each():
     crops = ["0:1um,0:1um", "1um:2um,0um:1um"]
-    each = reading_options({"crop": crops, "channel": ("A",), "unit": "um"}, 2)
-    assert [one.channel for one in each] == ["A", "A"]
-    np.testing.assert_allclose([one.crop[0] for one in each], [(0, 1e-6), (1e-6, 2e-6)])
+    options = reading_options({"crop": crops, "channel": ("A",), "unit": "um"}, 2)
+    assert [option.channel for option in options] == ["A", "A"]
+    np.testing.assert_allclose([option.crop[0] for option in options], [(0, 1e-6), (1e-6, 2e-6)])
     with pytest.raises(ValueError, match=r"--channel is given 2 times for 3 scans"):
         reading_options({"channel": ["A", "B"]}, 3, "--")
     with pytest.raises(ValueError, match=r"^mask is for one scan, and 2 are named"):
@@ -37,7 +43,7 @@ def test_an_option_is_given_once_for_all_scans_or_once_for_each():
 
 
 @pytest.mark.parametrize(
-    ("given", "sentence"),
+    ("arguments", "sentence"),
     [
         ({"channel": "Phase"}, "has no channel 'Phase'"),
         ({"crop": "1um"}, "^crop is '1um'; write both ends"),
@@ -54,9 +60,9 @@ def test_an_option_is_given_once_for_all_scans_or_once_for_each():
         ({"mask": (((0.0,),),)}, "^mask is "),
     ],
 )
-def test_options_that_cannot_be_used_are_refused_by_their_names(given, sentence):
+def test_options_that_cannot_be_used_are_refused_by_their_names(arguments, sentence):
     with pytest.raises(ValueError, match=sentence):
-        cf.read_scan(DETAIL, SCENE, **given)
+        cf.read_scan(DETAIL, SCENE, **arguments)
 
 
 def test_an_option_that_does_not_exist_is_refused():
@@ -86,13 +92,13 @@ def test_reservations_fail_where_the_library_is_strict():
 
 def test_a_unit_may_be_given_for_each_file():
     files = [Path("a.txt"), Path("data/b.txt"), Path("c.txt")]
-    given = for_files({"unit": ("b.txt=um", "c.txt=nm"), "size": ("a.txt=5,4",)}, files)
-    options = reading_options(given, 3, "--")
-    assert [one.unit for one in options] == [None, "um", "nm"]
-    assert [one.size for one in options] == [(5, 4), None, None]
+    arguments = for_files({"unit": ("b.txt=um", "c.txt=nm"), "size": ("a.txt=5,4",)}, files)
+    options = reading_options(arguments, 3, "--")
+    assert [option.unit for option in options] == [None, "um", "nm"]
+    assert [option.size for option in options] == [(5, 4), None, None]
     in_order = reading_options({"unit": ["um", "nm", None], "size": [50, 40]}, 3)
-    assert [one.unit for one in in_order] == ["um", "nm", None]
-    assert {one.size for one in in_order} == {(50, 40)}
+    assert [option.unit for option in in_order] == ["um", "nm", None]
+    assert {option.size for option in in_order} == {(50, 40)}
     assert for_files({"channel": ("x=1",)}, files) == {"channel": ("x=1",)}
     for unit in (("d.txt=um",), ("a.txt=um", "a.txt=nm"), ("a.txt=um", "nm")):
         with pytest.raises(ValueError, match=r"--unit is .*write FILE=VALUE once"):

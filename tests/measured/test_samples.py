@@ -55,9 +55,9 @@ def test_a_row_means_the_same_in_every_form(tmp_path, name):
     assert first.numbers.short_cutoff == pytest.approx(20e-9)
     assert first.measured["hysteresis"].value == pytest.approx(2e-3)
     assert second.measured == {}
-    for one in (first, second):
-        assert one.scales.radius == pytest.approx(SCENE.radius)
-        assert one.scales.contact_modulus == pytest.approx(SCENE.contact_modulus)
+    for table_path in (first, second):
+        assert table_path.scales.radius == pytest.approx(SCENE.radius)
+        assert table_path.scales.contact_modulus == pytest.approx(SCENE.contact_modulus)
 
 
 def test_a_sample_may_have_several_scans_psds_and_units(tmp_path):
@@ -68,12 +68,12 @@ def test_a_sample_may_have_several_scans_psds_and_units(tmp_path):
         "sample,scans,psd,unit,psd_sides,tip radius (nm),detrend\n"
         "A,a-*.txt,,um,,20,slope\nB,b.txt | a-1.txt,,,,,slope\nC,,psd.csv,,one,,\n"
     )
-    one, two, three = read_samples(path, SPHERE)
-    assert [file.name for file in one.scans] == ["a-1.txt", "a-2.txt"]
+    first, two, three = read_samples(path, SPHERE)
+    assert [file.name for file in first.scans] == ["a-1.txt", "a-2.txt"]
     assert [file.name for file in two.scans] == ["b.txt", "a-1.txt"]
-    assert {by.unit for by in one.reading} == {"um"}
-    assert {by.detrend for by in (*one.reading, *two.reading)} == {"slope"}
-    assert one.reading[0].tip_radius == pytest.approx(20e-9)
+    assert {by.unit for by in first.reading} == {"um"}
+    assert {by.detrend for by in (*first.reading, *two.reading)} == {"slope"}
+    assert first.reading[0].tip_radius == pytest.approx(20e-9)
     assert (three.psd, three.density.psd_sides) == (tmp_path / "psd.csv", "one")
 
 
@@ -81,7 +81,7 @@ def test_the_page_shows_the_table_of_the_example_and_its_scans_are_there():
     path = ROOT / "examples/samples.csv"
     assert path.read_text("utf-8") in (ROOT / "docs/surfaces.md").read_text("utf-8")
     first, second = read_samples(path, SPHERE)
-    assert [len(one.scans) for one in (first, second)] == [2, 1]
+    assert [len(sample.scans) for sample in (first, second)] == [2, 1]
     assert first.measured["hysteresis"].value == pytest.approx(27e-3)
 
 
@@ -102,10 +102,10 @@ def test_a_comma_that_may_separate_thousands_is_refused_unless_another_number_se
         with pytest.raises(ValueError, match=sentence):
             write(radius, "20")
     for radius, cutoff in (("1,250", "20,5"), ("1,250", "0,250"), ("1,2500", "20")):
-        [found] = write(radius, cutoff)
-        assert found.scales.radius == pytest.approx(1.25e-6)
-    [found] = write("1250", "20.5")
-    assert found.scales.radius == pytest.approx(1.25e-3)
+        [sample_row] = write(radius, cutoff)
+        assert sample_row.scales.radius == pytest.approx(1.25e-6)
+    [sample_row] = write("1250", "20.5")
+    assert sample_row.scales.radius == pytest.approx(1.25e-3)
     with pytest.raises(ValueError, match=r"line 2: .* numbers with decimal points and"):
         write("1,250", "20.5")
 
@@ -168,20 +168,20 @@ def test_what_a_row_lacks_is_refused_before_any_work(tmp_path):
         read_samples(path, SPHERE)
     path.write_text(CSV)
     with pytest.raises(ValueError, match=r"line 4: the sphere is incomplete; name all of modulus"):
-        read_samples(path, {name: one for name, one in SPHERE.items() if name != "radius"})
+        read_samples(path, {name: value for name, value in SPHERE.items() if name != "radius"})
     path.write_text("sample,rms\n")
     with pytest.raises(ValueError, match="has 0 samples; write a row for each"):
         read_samples(path, SPHERE)
-    other = tmp_path / "samples.yaml"
-    other.write_text("samples: {A: 1}\n")
+    incomplete = tmp_path / "samples.yaml"
+    incomplete.write_text("samples: {A: 1}\n")
     with pytest.raises(ValueError, match="lacks a list of samples; write 'samples:'"):
-        read_samples(other, SPHERE)
-    other.write_text("samples:\n  - {sample: A\n  - B: [\n")
+        read_samples(incomplete, SPHERE)
+    incomplete.write_text("samples:\n  - {sample: A\n  - B: [\n")
     with pytest.raises(ValueError, match=r"samples.yaml, line \d: this is not YAML: "):
-        read_samples(other, SPHERE)
-    other.write_text("samples:\n  - {sample: A, rms: 20nm, hurst: 0.8}\n")
+        read_samples(incomplete, SPHERE)
+    incomplete.write_text("samples:\n  - {sample: A, rms: 20nm, hurst: 0.8}\n")
     with pytest.raises(ValueError, match=r"samples.yaml, line 2: a self-affine surface needs"):
-        read_samples(other, SPHERE)
+        read_samples(incomplete, SPHERE)
 
 
 def test_a_sample_that_fails_later_keeps_the_rows_of_the_others(tmp_path):

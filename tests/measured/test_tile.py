@@ -54,9 +54,9 @@ def test_oblong_pixels_are_read_and_made_square_for_a_field(tmp_path, heights, s
     assert oblong.pixels == pytest.approx((SIDE / 128, SIDE / 64))
     assert oblong.shortest == pytest.approx(4 * SIDE / 64)
     square = replace(whole, shortest=oblong.shortest)
-    both = [measured_adhesion(item, SCENE) for item in (square, oblong)]
-    assert both[1].pixel == pytest.approx(both[0].pixel)
-    assert both[1].e_el == pytest.approx(both[0].e_el, rel=0.02)
+    adhesions = [measured_adhesion(item, SCENE) for item in (square, oblong)]
+    assert adhesions[1].pixel == pytest.approx(adhesions[0].pixel)
+    assert adhesions[1].e_el == pytest.approx(adhesions[0].e_el, rel=0.02)
 
 
 def test_the_tile_of_a_map_is_its_mirror_images_around_it(scan):
@@ -67,8 +67,8 @@ def test_the_tile_of_a_map_is_its_mirror_images_around_it(scan):
     mean = np.mean(adhesion.work_of_adhesion) / WORK_OF_ADHESION
     assert mean == pytest.approx(1 - adhesion.e_el)
     measured = SCENE.contact_modulus / 4 * measured_mean_square(analysed_scan(measurement), 0.5)
-    found = adhesion.e_el * SCENE.work_of_adhesion
-    assert found == pytest.approx(measured, rel=0.25)
+    energy = adhesion.e_el * SCENE.work_of_adhesion
+    assert energy == pytest.approx(measured, rel=0.25)
     # The sum over x leaves a function of y alone, even about the edges of the scan.
     along_front = adhesion.work_of_adhesion.sum(axis=0)
     assert along_front == pytest.approx(np.roll(along_front[::-1], 128), rel=1e-9)

@@ -112,17 +112,22 @@ def line_table():
     energy = np.array([0.01, 0.04])
     lengths, springs = np.array([1.0, 2.0]), np.array([2.0, 20.0, 200.0])
     cutoff = np.repeat(lengths, 3)
-    spectra = [SelfAffineSpectrum(one, one, 1.0) for one in cutoff]
+    spectra = [SelfAffineSpectrum(cutoff_length, cutoff_length, 1.0) for cutoff_length in cutoff]
     length = np.array([spectrum.correlation_length for spectrum in spectra])
     spring = np.repeat((np.tile(springs, 2) * length)[:, None], 2, axis=1)
     whole = np.broadcast_to(energy[:, None], (6, 2, 2)).copy()
     unknown = np.full(whole.shape, np.nan)
     rms = 2 * np.sqrt(energy)
-    larkin = [[larkin_length("roughness", one, each) for each in rms] for one in spectra]
+    larkin = [
+        [larkin_length("roughness", cutoff_length, rms_value) for rms_value in rms]
+        for cutoff_length in spectra
+    ]
     k = law_value(shipped_law().coefficients, rms, spring / np.array(larkin))
     k = k[..., None] * np.array([0.99, 1.01])
     return SweepTable(
-        spectrum=np.array([f"flat{one:g}-L{two:g}" for one in lengths for two in springs]),
+        spectrum=np.array(
+            [f"flat{cutoff_length:g}-L{two:g}" for cutoff_length in lengths for two in springs]
+        ),
         short_cutoff=cutoff,
         roll_off=cutoff,
         hurst=np.ones(6),
@@ -184,9 +189,9 @@ def test_a_figure_is_the_same_file_again_whatever_the_user_settings(fit, tmp_pat
         second = save_figure(hysteresis_figure(fit), tmp_path / "two" / "figure.0")
         assert matplotlib.rcParams["font.size"] == 20.0
     assert [path.name for path in first] == ["figure.0.pdf", "figure.0.png"]
-    for one, two in zip(first, second, strict=True):
-        assert one.read_bytes() == two.read_bytes()
-        assert one.stat().st_size > 1000
+    for first_file, two in zip(first, second, strict=True):
+        assert first_file.read_bytes() == two.read_bytes()
+        assert first_file.stat().st_size > 1000
 
 
 def test_k_is_shown_against_disorder_and_size(table, fit):

@@ -52,14 +52,14 @@ def test_a_checksum_that_was_cut_short_confirms_nothing(tmp_path):
 
 @pytest.mark.parametrize("values", ["numbers", "counts"])
 def test_no_flipped_bit_of_an_array_in_a_netcdf_file_is_believed(tmp_path, rng, values):
-    known = {
+    checksums = {
         "numbers": rng.standard_normal(4000),
         "counts": rng.integers(2**60, size=4000),
     }[values]
     path = tmp_path / "array.nc"
-    write_dataset(path, xr.Dataset({"a": ("x", known)}), provenance())
-    assert np.array_equal(read_dataset(path).a, known)
-    start = path.read_bytes().index(known.tobytes()[:16000])
+    write_dataset(path, xr.Dataset({"a": ("x", checksums)}), provenance())
+    assert np.array_equal(read_dataset(path).a, checksums)
+    start = path.read_bytes().index(checksums.tobytes()[:16000])
     for bit in (8 * start + rng.integers(8 * 16000, size=40)).tolist():
         with (
             flipped(path, bit),

@@ -21,14 +21,14 @@ from tests.places import ROOT
 SWEEP = load_sweep(ROOT / "config/test.yaml")
 ONE = SWEEP.simulation(SWEEP.spectra[0], 0.1, 0)
 
-# Processor times of an AMD EPYC with other work on its cores: medians of four realisations of the
-# default sweep, of two of line-quick, and single runs of the others.
+# Processor times of an AMD EPYC with other work on its cores: medians of two realisations of
+# line-quick, and single runs of the others.
 MEASURED = [
-    ("default", "flat", 0.002, 1.59),
-    ("default", "flat-coarse", 0.002, 0.436),
-    ("default", "h08", 0.002, 1.9),
-    ("default", "h03-wide", 0.002, 1.35),
-    ("default", "h03", 0.002, 0.724),
+    ("default", "flat", 0.002, 1.26),
+    ("default", "flat-coarse", 0.002, 0.34),
+    ("default", "h08", 0.002, 1.17),
+    ("default", "h03-wide", 0.002, 0.97),
+    ("default", "h03", 0.002, 0.67),
     ("line-quick", "flat-L3", 0.01, 0.125),
     ("line-quick", "flat-L10", 0.1764, 0.485),
     ("test", "flat", 0.1, 0.0253),

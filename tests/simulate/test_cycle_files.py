@@ -32,18 +32,18 @@ LINE = replace(LINES.simulation(LINES.spectra[0], 0.16, 1), record_fronts=True)
 @functools.cache
 def checkpoints(simulation):
     """Undisturbed result of a simulation, and its checkpoint at every state."""
-    found = []
-    result = run_simulation(simulation, keep=lambda make: found.append(make()))
-    assert len(found) == result.record.states.direction.size
-    return result, found
+    saved = []
+    result = run_simulation(simulation, keep=lambda make: saved.append(make()))
+    assert len(saved) == result.record.states.direction.size
+    return result, saved
 
 
 @pytest.mark.parametrize("simulation", [CYCLE, STEADY, LINE], ids=["cycle", "steady", "line"])
 def test_a_run_goes_on_from_any_state_to_the_same_bits(tmp_path, simulation):
-    undisturbed, found = checkpoints(simulation)
+    undisturbed, saved = checkpoints(simulation)
     directions = undisturbed.record.states.direction
     assert {1, -1} == set(directions.tolist())
-    for partial in found[:: 1 + len(found) // 20]:
+    for partial in saved[:: 1 + len(saved) // 20]:
         path = write_checkpoint(tmp_path, "checkpoint", partial, provenance())
         resumed = read_checkpoint(path, simulation)
         computed = []
@@ -55,14 +55,14 @@ def test_a_run_goes_on_from_any_state_to_the_same_bits(tmp_path, simulation):
 
 
 def test_a_checkpoint_of_another_load_is_refused():
-    _, found = checkpoints(CYCLE)
+    _, saved = checkpoints(CYCLE)
     with pytest.raises(ValueError, match="it belongs to other loads"):
-        run_simulation(replace(CYCLE, schedule=FullCycle(0.5, 0.25)), resume=found[5])
+        run_simulation(replace(CYCLE, schedule=FullCycle(0.5, 0.25)), resume=saved[5])
 
 
 def test_a_truncated_checkpoint_and_that_of_another_simulation_are_refused(tmp_path):
-    _, found = checkpoints(CYCLE)
-    path = write_checkpoint(tmp_path, "checkpoint", found[2], provenance())
+    _, saved = checkpoints(CYCLE)
+    path = write_checkpoint(tmp_path, "checkpoint", saved[2], provenance())
     with pytest.raises(UnreadableFileError, match="is not a checkpoint of"):
         read_checkpoint(path, STEADY)
     path.write_bytes(path.read_bytes()[:3000])
@@ -80,9 +80,9 @@ def test_a_checkpoint_of_another_version_of_the_physics_is_refused(tmp_path, mon
 
 @pytest.mark.parametrize("n_rename", [0, 1, 2])
 def test_a_kill_while_states_of_a_cycle_are_replaced_leaves_some(tmp_path, monkeypatch, n_rename):
-    _, found = checkpoints(CYCLE)
+    _, saved = checkpoints(CYCLE)
     stored = CycleCheckpoint(tmp_path / "out.checkpoint.nc", "key", CYCLE.geometry)
-    stored.write(found[0].checkpoint)
+    stored.write(saved[0].checkpoint)
     rename, renamed = Path.replace, []
 
     def killed(path, target):
@@ -93,7 +93,7 @@ def test_a_kill_while_states_of_a_cycle_are_replaced_leaves_some(tmp_path, monke
 
     with monkeypatch.context() as patched, contextlib.suppress(KeyboardInterrupt):
         patched.setattr(Path, "replace", killed)
-        stored.write(found[1].checkpoint)
+        stored.write(saved[1].checkpoint)
     checkpoint = stored.read(pytest.fail)
     assert checkpoint is not None
     assert checkpoint.record.states.direction.size == (1 if n_rename == 0 else 2)

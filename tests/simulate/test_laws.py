@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.simulate.law_interpolation import combined_error
-from crackfront.simulate.laws import LAW_CUTOFFS, SETTINGS, read_laws
+from crackfront.simulate.laws import LAW_CUTOFFS, SETTINGS, read_laws, sphere_cutoffs
 from crackfront.simulate.numerical_errors import numerical_error
 from crackfront.simulate.settings import chosen_settings
 from studies.accuracy.scenes import SCENES, with_setting
@@ -45,12 +45,29 @@ def test_the_chosen_settings_state_no_more_than_the_error_that_was_asked_for(sce
     assert max(stated(scene, chosen(scene, error))) <= 1.05 * error
 
 
-def test_the_chosen_settings_are_not_much_finer_than_the_error_needs():
-    for scene in SCENES.values():
-        if scene.elastic_energy >= 0.04 and scene.varies_single:
-            # Where avalanches are rare, scatter is kept below the error by up to three.
-            share = 0.65 if scene.elastic_energy >= 0.16 else 0.35
-            assert max(stated(scene, chosen(scene, 0.03))) > share * 0.03
+@given(
+    kind=st.sampled_from(["roughness", "chemical"]),
+    cutoff=st.floats(0.002, 0.1),
+    octaves=st.floats(0, 7),
+    hurst=st.floats(0.1, 1),
+    elastic_energy=st.floats(0.001, 0.4),
+    error=st.floats(0.003, 0.1),
+)
+def test_the_chosen_settings_use_two_thirds_of_the_request_unless_a_range_ends(
+    kind, cutoff, octaves, hurst, elastic_energy, error
+):
+    spectrum = SelfAffineSpectrum(cutoff, cutoff * 2**octaves, hurst)
+    settings = chosen_settings(error, kind, spectrum, elastic_energy)
+    values = {
+        "sites": settings.angles_per_cutoff,
+        "cubic": settings.samples_per_cutoff,
+        "pixels": settings.pixels_per_cutoff,
+        "tolerance": settings.tolerance,
+    }
+    errors = combined_error(kind, spectrum, elastic_energy, values, sphere_cutoffs(spectrum))
+    used = max(errors) / (elastic_energy * error)
+    assert used > 2 / 3 or settings.angles_per_cutoff == 1.4
+    assert used < 1 + 1e-12 or 8 in (settings.pixels_per_cutoff, settings.samples_per_cutoff / 2)
 
 
 @given(scene=scenes)
@@ -94,14 +111,17 @@ def test_a_measured_scene_takes_its_own_laws(name):
     chosen_values = {"sites": 2.2, "cubic": 3.0, "pixels": 3.0, "tolerance": 1e-4}
     errors = combined_error(scene.kind, scene.spectrum, 0.16, chosen_values, LAW_CUTOFFS)
     for direction, error in zip((1, -1), errors, strict=True):
-        own = {
+        laws_of_scene = {
             law.setting: law.parts(chosen_values[law.setting])
             for law in read_laws()
             if (law.shape, law.elastic_energy, law.direction) == (scene.shape, 0.16, direction)
             and law.setting != "linear"
         }
-        bias = max(own["cubic"][0], own["sites"][0] + own["pixels"][0] + own["tolerance"][0])
-        scatter = math.hypot(*(scatter for _, scatter in own.values()))
+        bias = max(
+            laws_of_scene["cubic"][0],
+            laws_of_scene["sites"][0] + laws_of_scene["pixels"][0] + laws_of_scene["tolerance"][0],
+        )
+        scatter = math.hypot(*(scatter for _, scatter in laws_of_scene.values()))
         assert error == pytest.approx(0.16 * math.hypot(bias, scatter))
 
 
@@ -122,10 +142,10 @@ def test_an_error_is_refused_at_amplitudes_where_none_was_measured(elastic_energ
 
 
 def test_a_straight_front_asks_for_the_same_in_all_units():
-    found = {
+    settings_found = {
         chosen_settings(
             0.03, "roughness", SelfAffineSpectrum(size, 4 * size, 0.8), 0.005, LAW_CUTOFFS
         )
         for size in (1e-3, 0.02, 1.0)
     }
-    assert len(found) == 1
+    assert len(settings_found) == 1

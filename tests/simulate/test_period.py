@@ -69,14 +69,14 @@ def test_a_front_begins_within_its_field_however_long_the_steps_are():
     fine = run(weak)
     assert coarse.status is Status.STEADY
     for direction in (1, -1):
-        one, other = (
+        short_steps, long_steps = (
             record.fronts[
                 (record.states.direction == direction)
                 & np.isclose(record.states.spring_position, period)
             ][0]
             for record in (coarse, fine)
         )
-        np.testing.assert_allclose(one, other, atol=1e-5)
+        np.testing.assert_allclose(short_steps, long_steps, atol=1e-5)
 
 
 def test_the_mirrored_surface_with_the_opposite_sign_swaps_the_branches():
@@ -88,12 +88,12 @@ def test_the_mirrored_surface_with_the_opposite_sign_swaps_the_branches():
     assert last == pytest.approx(round(last), abs=1e-9)
     places = (round(last) - np.arange(len(values))) % len(values)
     mirrored = replace(adhesion, work_of_adhesion=(2 * values.mean() - values)[places])
-    one, other = (
+    original, opposite = (
         period_adhesion(run(plain, item), plain.schedule.n_period, 1.0, 1.0)
         for item in (adhesion, mirrored)
     )
-    assert one.w_appr - 1 == pytest.approx(1 - other.w_retr, rel=1e-9)
-    assert one.w_retr - 1 == pytest.approx(1 - other.w_appr, rel=1e-9)
+    assert original.w_appr - 1 == pytest.approx(1 - opposite.w_retr, rel=1e-9)
+    assert original.w_retr - 1 == pytest.approx(1 - opposite.w_appr, rel=1e-9)
 
 
 def test_without_disorder_no_force_is_needed():

@@ -103,9 +103,9 @@ def test_the_key_changes_with_everything_that_determines_the_result(change):
 
 
 def test_the_key_is_a_digest_of_the_parameters_as_json_with_the_realisation():
-    other = replace(SIMULATION, elastic_energy=0.07, realisation=7)
-    text = json.dumps(other.parameters, sort_keys=True)
-    assert other.key == f"{hashlib.sha256(text.encode()).hexdigest()[:16]}-7"
+    changed = replace(SIMULATION, elastic_energy=0.07, realisation=7)
+    text = json.dumps(changed.parameters, sort_keys=True)
+    assert changed.key == f"{hashlib.sha256(text.encode()).hexdigest()[:16]}-7"
 
 
 @pytest.mark.parametrize(

@@ -47,18 +47,22 @@ def simulation(elastic_energy=0.04, realisation=0, schedule=SCHEDULE):
     )
 
 
-def field_of(one):
-    resolution = one.resolution
+def field_of(case):
+    resolution = case.resolution
     return contact_field(
-        simulation_adhesion(one), 1.6, resolution.n_angle, resolution.spacing, band_limited=True
+        simulation_adhesion(case),
+        1.6,
+        resolution.n_angle,
+        resolution.spacing,
+        band_limited=True,
     )
 
 
 @pytest.mark.parametrize("elastic_energy", [0.0005, 0.01, 0.04, 0.177])
 def test_its_fronts_are_those_of_the_full_cycle(elastic_energy):
-    one = simulation(elastic_energy)
-    field = field_of(one)
-    steady = run_simulation(one).record
+    case = simulation(elastic_energy)
+    field = field_of(case)
+    steady = run_simulation(case).record
     assert steady.status is Status.STEADY
     # The cycle goes deeper, so that both of its branches are steady over the same radii.
     n_approach = np.count_nonzero(steady.states.direction > 0)
@@ -67,12 +71,12 @@ def test_its_fronts_are_those_of_the_full_cycle(elastic_energy):
     cycle = Recorder(fronts=True)
     cycle.run(field, first_touch(field), loads, Newton(1e-9))
     expected = cycle.record()
-    found = np.delete(expected.fronts, n_approach, axis=0)
+    fronts = np.delete(expected.fronts, n_approach, axis=0)
     travel = np.delete(expected.states.least_travel, n_approach)
     compared = (travel >= LENGTH) & (steady.states.least_travel >= LENGTH)
     assert np.count_nonzero(compared[:n_approach]) >= 5
     assert np.count_nonzero(compared[n_approach:]) >= 3
-    difference = np.max(np.abs(found - steady.fronts)[compared])
+    difference = np.max(np.abs(fronts - steady.fronts)[compared])
     assert difference < 1e-5 * SPECTRUM.short_cutoff
 
 
@@ -90,7 +94,7 @@ def test_it_passes_the_same_radii_in_both_directions_and_not_many_more():
 
 
 def test_the_approach_ends_when_k_has_the_requested_error():
-    found = {}
+    results = {}
     field = field_of(simulation())
     for error in (1e-6, 0.25, 1.0):
         record = run_simulation(simulation(schedule=replace(SCHEDULE, standard_error=error))).record
@@ -99,24 +103,24 @@ def test_the_approach_ends_when_k_has_the_requested_error():
             getattr(record.states, name)[steady]
             for name in ("apparent_work_of_adhesion", "mean_radius", "rms_radius")
         )
-        circles = [front_adhesion(np.full(320, one), field) for one in radius]
+        circles = [front_adhesion(np.full(320, mean), field) for mean in radius]
         shared = np.mean(circles, axis=1) / WORK_OF_ADHESION
 
         def error_of_k(n, values=values, shared=shared, radius=radius, roughness=roughness):
             parts = branch_part(values[:n], shared[:n])
-            both = math.sqrt(2) * standard_error(parts, radius[:n], roughness[:n], LENGTH)
-            return both / (2 * 0.04)
+            spread = math.sqrt(2) * standard_error(parts, radius[:n], roughness[:n], LENGTH)
+            return spread / (2 * 0.04)
 
-        found[error] = values.size
+        results[error] = values.size
         if error > 1e-3:
             assert error_of_k(values.size) <= error
             assert values.size == 8 or error_of_k(values.size - 1) > error
-    assert 8 == found[1.0] < found[0.25] < found[1e-6]
+    assert 8 == results[1.0] < results[0.25] < results[1e-6]
 
 
 @pytest.mark.slow
 def test_at_weak_disorder_k_scatters_by_the_error_that_was_asked_for():
-    asked, factors, stated, apart = 0.1, [], [], []
+    asked, factors, stated, distances = 0.1, [], [], []
     spectrum = SelfAffineSpectrum(short_cutoff=0.025, roll_off=0.025, hurst=1.0)
     fine = replace(
         simulation(0.002, schedule=SteadySchedule(0.4, 2.0, travel=1.5, standard_error=asked)),
@@ -130,11 +134,11 @@ def test_at_weak_disorder_k_scatters_by_the_error_that_was_asked_for():
         unit = 2 * result.measures.e_el
         factors.append(adhesion.hysteresis / unit)
         stated.append(adhesion.hysteresis_error / unit)
-        apart.append(math.hypot(adhesion.w_appr_error, adhesion.w_retr_error) / unit)
+        distances.append(math.hypot(adhesion.w_appr_error, adhesion.w_retr_error) / unit)
     scatter = np.std(factors, ddof=1)
     assert 0.6 * asked < scatter < 1.7 * asked
     # The errors of both branches by themselves would say far more, as they share most of it.
-    assert 0.6 < np.mean(stated) / scatter < 1.7 < np.mean(apart) / scatter
+    assert 0.6 < np.mean(stated) / scatter < 1.7 < np.mean(distances) / scatter
 
 
 def test_contact_that_is_lost_on_the_way_back_is_told():

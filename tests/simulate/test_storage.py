@@ -63,9 +63,9 @@ def finished(result):
     return FinishedSimulation(result.simulation, sweep_row(result), result.record, "processor")
 
 
-def assert_same(one: CycleRecord, other: CycleRecord):
+def assert_same(record: CycleRecord, expected: CycleRecord):
     """Two records agree in every bit."""
-    np.testing.assert_equal(asdict(one), asdict(other))
+    np.testing.assert_equal(asdict(record), asdict(expected))
 
 
 def without_states(record: CycleRecord, status: Status):
@@ -123,7 +123,7 @@ def test_every_file_says_where_it_comes_from(tmp_path, result):
 def test_simulations_are_read_back_with_their_costs(tmp_path, result):
     plain = replace(result, record=replace(result.record, fronts=None))
     written = [plain, result]
-    dataset = curves_dataset([finished(one) for one in written])
+    dataset = curves_dataset([finished(source) for source in written])
     path = write_curves(tmp_path, "curves", "flat", dataset, ORIGIN)
     for place, expected in enumerate(written):
         again = read_result(path, place, expected.simulation)
@@ -215,22 +215,22 @@ def test_a_file_with_two_surfaces_is_refused(tmp_path):
 @pytest.fixture(scope="module")
 def results():
     """Results of the whole sweep; one of them failed, and one has no steady part."""
-    found = {}
+    outcomes = {}
     for simulation in SWEEP.simulations():
-        found[simulation.spectrum_name, simulation.elastic_energy, simulation.realisation] = (
+        outcomes[simulation.spectrum_name, simulation.elastic_energy, simulation.realisation] = (
             run_simulation(simulation)
         )
-    failed = found["flat", 0.02, 1]
-    found["flat", 0.02, 1] = replace(
+    failed = outcomes["flat", 0.02, 1]
+    outcomes["flat", 0.02, 1] = replace(
         failed, record=without_states(failed.record, Status.STEP_LIMIT)
     )
-    still = found["rough", 0.1, 0]
+    still = outcomes["rough", 0.1, 0]
     travel = np.zeros_like(still.record.states.least_travel)
-    found["rough", 0.1, 0] = replace(
+    outcomes["rough", 0.1, 0] = replace(
         still,
         record=replace(still.record, states=replace(still.record.states, least_travel=travel)),
     )
-    return found
+    return outcomes
 
 
 @pytest.fixture
@@ -296,11 +296,11 @@ def test_every_value_states_its_statistical_and_its_numerical_error(hysteresis, 
     simulation = results["flat", 0.1, 0].simulation
     # Nearer states count as one: the error lies between those of one and of all states.
     cutoffs = math.pi * float(cell["lowest_radius"] + cell["highest_radius"]) / 0.1
-    few, many = (
+    few, many_states = (
         numerical_error(simulation, count * cutoffs, 2 * math.pi * float(cell["highest_radius"]))
         for count in (1, int(cell["n_approach"]))
     )
-    assert many[0] <= cell["w_appr_numerical_error"] <= few[0]
+    assert many_states[0] <= cell["w_appr_numerical_error"] <= few[0]
 
 
 def test_a_fit_is_written_for_machines_and_for_people(tmp_path, hysteresis):

@@ -169,7 +169,7 @@ def _place(geometry, place):
 
 
 @implements(base.weight_slope, Cylinder)
-def _one(geometry):
+def _state_at_one_load(geometry):
     return 1.0
 
 

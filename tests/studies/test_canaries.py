@@ -50,10 +50,14 @@ def test_a_stored_number_that_was_changed_is_reported_in_units_of_its_error(tmp_
 
 def test_every_canary_is_stored_with_errors_and_no_other_number(monkeypatch):
     monkeypatch.chdir(ROOT)
-    known = {study: stored(study).canaries for study in STUDIES}
-    names = {(study, name.split(", ")[0]) for study, numbers in known.items() for name in numbers}
+    stored_canaries = {study: stored(study).canaries for study in STUDIES}
+    names = {
+        (study, name.split(", ")[0])
+        for study, numbers in stored_canaries.items()
+        for name in numbers
+    }
     assert names == set(canaries())
-    assert all(number.error for numbers in known.values() for number in numbers.values())
+    assert all(number.error for numbers in stored_canaries.values() for number in numbers.values())
 
 
 def test_a_canary_that_was_never_stored_says_what_to_run(tmp_path, monkeypatch):

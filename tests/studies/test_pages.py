@@ -19,7 +19,7 @@ CHECKS = """\
 ORIGIN = {"command": "studies law", "commit": "1a2b3c4d5e", "machine": "EPYC", "date": "2026-11-28"}
 
 
-def known(text):
+def quoted_texts(text):
     """Stored tables of two studies, and a number."""
     number = Number(8.0, 0.5, command="studies speed", commit="9f8e7d6c5b", date="2026-11-27")
     law, counts = Table(text, **ORIGIN), Table("3 of 3 agree", **ORIGIN)
@@ -39,7 +39,7 @@ def known(text):
 
 
 def test_each_study_with_tables_has_a_page_whose_last_line_says_where_they_were_measured():
-    pages = written_pages(known("# k\n\n| 3 |"))
+    pages = written_pages(quoted_texts("# k\n\n| 3 |"))
     assert set(pages) == {TABLES / "law.md", TABLES / "paper.md", GALLERY}
     lines = pages[TABLES / "law.md"].splitlines()
     assert [line for line in lines if line.startswith("#")][1:] == ["## Limit", "## k"]
@@ -55,7 +55,7 @@ def test_each_table_of_a_page_has_its_command_below_its_heading():
 
 
 def test_the_gallery_begins_with_the_counts_and_the_checks_that_do_not_agree():
-    text = written_pages(known("| 3 |"))[GALLERY]
+    text = written_pages(quoted_texts("| 3 |"))[GALLERY]
     differing = "](tables/paper.md#checks-main-1d) | k | 3 | 2 | differs as the law of k says: 2 |"
     picture = "![Fig. 1d: a sphere](figures/main-1d.png)"
     cost = "Scale quick, 3 s of one core"
@@ -65,7 +65,7 @@ def test_the_gallery_begins_with_the_counts_and_the_checks_that_do_not_agree():
 
 
 def test_all_checks_of_a_figure_are_on_the_page_of_tables():
-    lines = written_pages(known("| 3 |"))[TABLES / "paper.md"].splitlines()
+    lines = written_pages(quoted_texts("| 3 |"))[TABLES / "paper.md"].splitlines()
     assert lines.index("## Checks, main-1d") < lines.index("| radius | 1 | 1 | agrees | exact |")
     assert "![Fig. 1d: a sphere](figures/main-1d.png)" not in lines
 
@@ -83,7 +83,7 @@ def test_all_checks_of_a_figure_are_on_the_page_of_tables():
 )
 def test_a_quote_is_a_number_in_a_form_or_a_cell_or_a_table(place, shown, tmp_path):
     page = tmp_path / "page.md"
-    studies = known("| a | b |\n| --- | --- |\n| 1 | 2 |\n| **1** | 3 |")
+    studies = quoted_texts("| a | b |\n| --- | --- |\n| 1 | 2 |\n| **1** | 3 |")
     quote = Quote(page, f"it is {place} times")
     assert quote.text(studies) == f"it is {shown} times"
     page.write_text(f"So it\nis {shown} times as large.")
@@ -102,7 +102,7 @@ def test_a_quote_is_a_number_in_a_form_or_a_cell_or_a_table(place, shown, tmp_pa
 )
 def test_a_quote_of_what_was_not_measured_names_it(place, message):
     with pytest.raises(ValueError, match=message):
-        Quote(Path("page.md"), place).text(known("| 3 |"))
+        Quote(Path("page.md"), place).text(quoted_texts("| 3 |"))
 
 
 def test_what_is_stored_is_read_again_and_leaves_the_rest(tmp_path, monkeypatch):

@@ -42,9 +42,9 @@ def retraction(field, start=0.8, stop=0.2, precision=1e-6, tolerance=1e-9, trave
 def test_the_steps_follow_each_other_and_end_where_one_large_step_does():
     field = rough_field()
     motions = retraction(field)
-    for one, other in itertools.pairwise(motions):
-        assert other.start == one.end
-        np.testing.assert_array_equal(other.before, one.after)
+    for motion, following in itertools.pairwise(motions):
+        assert following.start == motion.end
+        np.testing.assert_array_equal(following.before, motion.after)
     direct = relax(motions[0].before, motions[-1].end, -1, field, Newton(1e-9)).front
     np.testing.assert_allclose(motions[-1].after, direct, atol=1e-6)
 
@@ -64,8 +64,10 @@ def test_rings_jump_where_their_running_minimum_does():
 
 
 def energies(motions, field, *, unstable):
-    chosen = [one for one in motions if one.unstable == unstable]
-    return np.array([dissipated_energy(one.before, one.after, one.end, field) for one in chosen])
+    chosen = [motion for motion in motions if motion.unstable == unstable]
+    return np.array(
+        [dissipated_energy(motion.before, motion.after, motion.end, field) for motion in chosen]
+    )
 
 
 def test_instabilities_dissipate_and_smooth_steps_ever_less_the_finer_they_are():

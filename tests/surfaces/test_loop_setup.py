@@ -42,19 +42,21 @@ def test_heights_and_their_works_of_adhesion_are_pulled_at_the_places_of_the_sur
     heights = heights.assign_coords(x=heights.x + moved, y=heights.y - moved)
     works = surface_adhesion(heights).work_of_adhesion / WORK_OF_ADHESION
     works = heights.copy(data=works).rename("work_of_adhesion").assign_attrs(units="w_int")
-    one, other = (
+    pulled_heights, pulled_works = (
         cf.run_loop(cf.straight_front(surface, 0.6), loads=[0, 1], step=0.5)
         for surface in (heights, works)
     )
-    np.testing.assert_allclose(one.y, heights.y, rtol=1e-12)
-    np.testing.assert_allclose(one.position, other.position, rtol=1e-9)
+    np.testing.assert_allclose(pulled_heights.y, heights.y, rtol=1e-12)
+    np.testing.assert_allclose(pulled_heights.position, pulled_works.position, rtol=1e-9)
 
 
 def test_a_sphere_is_pressed_on_the_centre_of_heights_wherever_their_coordinates_begin():
     heights = cf.random_surface(short_cutoff=0.4, elastic_energy=0.02, side=4, error=0.3, seed=1)
     moved = heights.assign_coords(x=heights.x + 2, y=heights.y - 1)
-    one, other = (cf.run_loop(surface, loads=[0, 1], error=0.3) for surface in (heights, moved))
-    np.testing.assert_allclose(one.radius, other.radius, rtol=1e-9)
+    loop, moved_loop = (
+        cf.run_loop(surface, loads=[0, 1], error=0.3) for surface in (heights, moved)
+    )
+    np.testing.assert_allclose(loop.radius, moved_loop.radius, rtol=1e-9)
 
 
 def test_an_error_is_refused_where_none_was_measured(patches):
@@ -95,8 +97,8 @@ def test_too_few_sites_say_that_the_hysteresis_is_too_large_and_how_many_are_eno
     sentence = r"the front has 6 sites, 1\.\d per .* too large; use (\d+) or"
     [needed] = re.findall(sentence, coarse.attrs["result"])
     enough = run(int(needed))
-    for one in (usual, enough):
-        assert "sites" not in one.attrs["result"]
+    for numerics in (usual, enough):
+        assert "sites" not in numerics.attrs["result"]
     assert enough.hysteresis == pytest.approx(float(usual.hysteresis), rel=0.1)
     assert coarse.hysteresis > 1.3 * usual.hysteresis
     pressed = cf.run_loop(surface, loads=[0, 1], sites=8)
@@ -134,7 +136,7 @@ def test_samples_that_miss_the_waves_of_a_surface_are_refused_and_as_many_as_it_
 
 
 @pytest.mark.parametrize(
-    ("given", "sentence"),
+    ("arguments", "sentence"),
     [
         ({"error": 0.1, "sites": 40}, r"error is 0.1, which decides sites and samples; leave the"),
         ({"error": 0.1, "samples": 4}, r"error is 0.1, .*; leave these out, or the error"),
@@ -142,9 +144,9 @@ def test_samples_that_miss_the_waves_of_a_surface_are_refused_and_as_many_as_it_
         ({"samples": 0}, r"samples is 0; it must be greater"),
     ],
 )
-def test_numerics_that_cannot_be_are_refused(patches, given, sentence):
+def test_numerics_that_cannot_be_are_refused(patches, arguments, sentence):
     with pytest.raises(ValueError, match=sentence):
-        cf.run_loop(patches, **given)
+        cf.run_loop(patches, **arguments)
     with pytest.raises(TypeError, match=r"sites is 40.5; it must be a whole number"):
         cf.run_loop(patches, sites=40.5)
 

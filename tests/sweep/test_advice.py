@@ -35,10 +35,10 @@ def test_a_load_that_is_too_shallow_is_found_and_at_the_named_depth_there_is_a_s
     steady = []
     for depth in (schedule.max_penetration, deeper):
         load = replace(schedule, max_penetration=depth)
-        one = simulation_of("roughness", flat, energy, load, NUMERICS, seed=1)
-        works = steady_adhesion(run_simulation(one).record, one.correlation_length)
+        case = simulation_of("roughness", flat, energy, load, NUMERICS, seed=1)
+        works = steady_adhesion(run_simulation(case).record, case.correlation_length)
         steady.append(not works.sentence)
-        assert (expectation(one).needed_penetration is None) == steady[-1]
+        assert (expectation(case).needed_penetration is None) == steady[-1]
     assert steady == [False, True]
 
 
@@ -72,9 +72,9 @@ def test_each_key_that_a_plan_advises_leaves_a_steady_part_with_its_value(key):
 
 def test_a_plan_does_not_advise_far_more_than_is_needed():
     flat, shallow = SelfAffineSpectrum(0.1, 0.1, hurst=1.0), SteadySchedule(1.0, 2.5, 1.5, 0.05)
-    one = simulation_of("roughness", flat, 0.15, shallow, NUMERICS, seed=1)
-    needed = expectation(one).needed_penetration
-    slightly_less = replace(one, schedule=replace(shallow, max_penetration=needed / 1.3))
+    case = simulation_of("roughness", flat, 0.15, shallow, NUMERICS, seed=1)
+    needed = expectation(case).needed_penetration
+    slightly_less = replace(case, schedule=replace(shallow, max_penetration=needed / 1.3))
     assert expectation(slightly_less).needed_penetration is not None
 
 
@@ -103,8 +103,8 @@ def test_a_steady_load_that_failed_names_keys_that_it_has():
     flat = SelfAffineSpectrum(0.1, 0.1, hurst=1.0)
     sentences = []
     for load in SHALLOW:
-        one = simulation_of("roughness", flat, 0.05, load, NUMERICS, seed=1)
-        sentences.append(run_simulation(one).steady_adhesion.sentence)
+        case = simulation_of("roughness", flat, 0.05, load, NUMERICS, seed=1)
+        sentences.append(run_simulation(case).steady_adhesion.sentence)
     cycle, steady = sentences
     assert "step" in cycle
     assert "step" not in steady

@@ -113,11 +113,15 @@ def test_lengths_in_metres_are_those_of_the_reduced_sweep(tmp_path):
         content["load"][name] *= scales.vertical
     reduced = load_sweep(written(tmp_path, GOOD))
     metres = load_sweep(written(tmp_path, to_yaml(content)))
-    for one, other in zip(reduced.spectra, metres.spectra, strict=True):
-        assert other.spectrum.short_cutoff == pytest.approx(one.spectrum.short_cutoff, rel=1e-14)
-        assert other.spectrum.roll_off == pytest.approx(one.spectrum.roll_off, rel=1e-14)
+    for in_reduced, in_metres in zip(reduced.spectra, metres.spectra, strict=True):
+        assert in_metres.spectrum.short_cutoff == pytest.approx(
+            in_reduced.spectrum.short_cutoff, rel=1e-14
+        )
+        assert in_metres.spectrum.roll_off == pytest.approx(in_reduced.spectrum.roll_off, rel=1e-14)
         # The same surface, although the lengths differ by round-off.
-        assert metres.simulation(other, 0.1, 0).seed == reduced.simulation(one, 0.1, 0).seed
+        assert (
+            metres.simulation(in_metres, 0.1, 0).seed == reduced.simulation(in_reduced, 0.1, 0).seed
+        )
     assert metres.schedule.max_penetration == pytest.approx(1.0, rel=1e-14)
     assert metres.scales == scales
 
@@ -152,8 +156,8 @@ def settings_of(sweep, item, energy):
 
 def test_an_error_chooses_the_numerics_of_every_spectrum_and_amplitude(tmp_path):
     sweep = load_sweep(written(tmp_path, asking(0.03)))
-    given = sweep.numerics
-    assert (given.error, given.tile_cutoffs, given.max_sweeps) == (0.03, 20, 100000)
+    numerics = sweep.numerics
+    assert (numerics.error, numerics.tile_cutoffs, numerics.max_sweeps) == (0.03, 20, 100000)
     flat = sweep.named("flat")
     weak, strong = (settings_of(sweep, flat, energy) for energy in sweep.elastic_energies)
     assert strong.angles_per_cutoff > weak.angles_per_cutoff
@@ -412,11 +416,11 @@ def film(tmp_path_factory):
 def test_a_spectrum_may_be_that_of_measurements(film):
     item = film.spectra[0]
     surface = measured_surface(read_measurements(sorted(SCANS.glob("*.al3d"))))
-    found = surface.joint.spectrum
+    spectrum = surface.joint.spectrum
     assert item.name == f"film-{surface.checksum}"
     lengths = np.array(item.spectrum.wavelengths) * film.scales.lateral
-    assert lengths == pytest.approx(np.array(found.wavelengths), rel=1e-4)
-    ratios = np.array(item.spectrum.densities) / np.array(found.densities)
+    assert lengths == pytest.approx(np.array(spectrum.wavelengths), rel=1e-4)
+    ratios = np.array(item.spectrum.densities) / np.array(spectrum.densities)
     assert ratios == pytest.approx(np.full(ratios.size, ratios[0]), rel=1e-4)
     first, *_ = film.simulations(item)
     assert first.seed != replace(first, spectrum=item.spectrum.in_units(2.0)).seed
@@ -463,9 +467,9 @@ def test_a_surface_is_read_in_the_words_of_the_commands(tmp_path):
     square = ((2e-6, 3e-6), (2e-6, 3e-6))
     crop = ((1e-6, 6e-6), (1e-6, 6e-6))
     options = ReadingOptions(channel="0", crop=crop, detrend=3, mask=(square,))
-    found = measured_surface(read_measurements([file], options), 0.3e-6).joint.spectrum
+    expected = measured_surface(read_measurements([file], options), 0.3e-6).joint.spectrum
     lengths = np.array(sweep.spectra[0].spectrum.wavelengths) * sweep.scales.lateral
-    assert lengths == pytest.approx(np.array(found.wavelengths), rel=1e-4)
+    assert lengths == pytest.approx(np.array(expected.wavelengths), rel=1e-4)
 
 
 @pytest.mark.parametrize(
@@ -553,11 +557,11 @@ def test_an_error_chooses_no_pixels_of_uncorrelated_sites(tmp_path):
 
 
 def test_a_flat_spectrum_needs_no_hurst_exponent_and_a_longer_roll_off_does(tmp_path):
-    given = "{name: flat, short_cutoff: 0.1, hurst: 1.0}"
+    entry = "{name: flat, short_cutoff: 0.1, hurst: 1.0}"
     flat = load_sweep(written(tmp_path, GOOD)).spectra
-    for text in ("{name: flat, short_cutoff: 0.1}", given.replace("hurst: 1.0", "roll_off: 0.1")):
-        assert load_sweep(written(tmp_path, changed(given, text))).spectra == flat
-    rough = changed(given, given.replace("hurst: 1.0", "roll_off: 1"))
+    for text in ("{name: flat, short_cutoff: 0.1}", entry.replace("hurst: 1.0", "roll_off: 0.1")):
+        assert load_sweep(written(tmp_path, changed(entry, text))).spectra == flat
+    rough = changed(entry, entry.replace("hurst: 1.0", "roll_off: 1"))
     assert "spectra[0]: key hurst is missing; add it" in refusal(tmp_path, rough)
 
 
@@ -651,9 +655,9 @@ def test_yaml_that_nobody_writes_is_refused_with_a_sentence(tmp_path, case):
 
 def test_numbers_and_words_are_those_of_yaml_1_2(tmp_path):
     path = written(tmp_path, "a: [1e-3, 0.5, 1E+2, 0o10, 0x10, 1:30, on, No, yes, 0, 0.10, true]\n")
-    found = yaml_mapping(path)["a"]
-    assert found == (0.001, 0.5, 100.0, 8, 16, "1:30", "on", "No", "yes", 0, 0.1, True)
-    assert [type(one) for one in found[:4]] == [float, float, float, int]
+    values = yaml_mapping(path)["a"]
+    assert values == (0.001, 0.5, 100.0, 8, 16, "1:30", "on", "No", "yes", 0, 0.1, True)
+    assert [type(number) for number in values[:4]] == [float, float, float, int]
 
 
 def test_many_realisations_are_no_reason_to_refuse_but_samples_that_no_memory_holds(

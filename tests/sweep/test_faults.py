@@ -149,19 +149,22 @@ def test_a_second_writer_of_a_shard_waits_and_computes_nothing_twice(
 ):
     told = command(configuration, tmp_path)
     pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
-    with running(configuration, tmp_path, until=2) as one, subprocess.Popen(told, **pipes) as other:
-        os.kill(one.pid, signal.SIGSTOP)  # until the other one has begun
-        waiting = other.stderr.readline()
+    with (
+        running(configuration, tmp_path, until=2) as first_writer,
+        subprocess.Popen(told, **pipes) as second_writer,
+    ):
+        os.kill(first_writer.pid, signal.SIGSTOP)  # until the other one has begun
+        waiting = second_writer.stderr.readline()
         assert waiting.startswith("Warning: another process simulates flat in ")
         assert "already; waiting for its results" in waiting
-        os.kill(one.pid, signal.SIGCONT if first == "ends" else signal.SIGKILL)
-        one.stdout.read()
-        one.wait()
+        os.kill(first_writer.pid, signal.SIGCONT if first == "ends" else signal.SIGKILL)
+        first_writer.stdout.read()
+        first_writer.wait()
         kept = stored(tmp_path)
-        output = other.communicate()[0]
-    assert other.returncode == 0
+        output = second_writer.communicate()[0]
+    assert second_writer.returncode == 0
     if first == "ends":
-        assert (one.returncode, len(kept)) == (0, N_SIMULATION)
+        assert (first_writer.returncode, len(kept)) == (0, N_SIMULATION)
     assert len(simulated(output)) == N_SIMULATION - len(kept)
     assert kept.items() <= stored(tmp_path).items()
     assert same(tmp_path)
@@ -198,7 +201,7 @@ def test_a_killed_process_goes_on_from_its_last_checkpoint(
         process.kill()
     assert done("status", tmp_path).stdout.endswith("stores any\n")
     *_, checkpoint = tmp_path.glob("curves/*/checkpoint-*.nc")
-    known = xr.load_dataset(checkpoint)["force"]
+    force = xr.load_dataset(checkpoint)["force"]
     kept = len(stored(tmp_path))
     resumed = {}
 
@@ -213,8 +216,8 @@ def test_a_killed_process_goes_on_from_its_last_checkpoint(
     [(simulation, result)] = resumed.items()
     assert checkpoint.name.startswith(f"checkpoint-{simulation.stem}-")
     ended = result.record.states.force
-    assert known.size < ended.size
-    assert ended[: known.size].tobytes() == known.values.tobytes()
+    assert force.size < ended.size
+    assert ended[: force.size].tobytes() == force.values.tobytes()
     assert same(tmp_path)
 
 

@@ -69,8 +69,8 @@ def verified(place):
 def test_a_finished_folder_and_its_archive_are_whole(finished, archive):
     n_file = len(PLAIN) + 2 * len(DERIVED) + 1
     for place in (finished, archive):
-        code, found = verified(place)
-        assert (code, found["verified"]) == (0, n_file)
+        code, lines = verified(place)
+        assert (code, lines["verified"]) == (0, n_file)
 
 
 def test_sha256sum_agrees_with_the_list_of_a_folder_and_of_its_archive(finished, archive, tmp_path):
@@ -86,8 +86,8 @@ def test_a_changed_file_is_found_and_not_archived_and_a_damaged_dataset_is_not_s
 ):
     path = curves_of(finished) if name == "curves" else finished / name
     path.write_bytes(path.read_bytes() + b"!")
-    code, found = verified(finished)
-    assert (code, found["damaged"]) == (1, [path.relative_to(finished).as_posix()])
+    code, lines = verified(finished)
+    assert (code, lines["damaged"]) == (1, [path.relative_to(finished).as_posix()])
     assert "1 damaged" in refused("archive", finished)
     assert not finished.with_name("default.zip").exists()
     if path.suffix == ".nc":
@@ -97,9 +97,9 @@ def test_a_changed_file_is_found_and_not_archived_and_a_damaged_dataset_is_not_s
 def test_a_removed_file_is_missing_and_a_new_one_is_not_in_the_list(finished):
     (finished / "fit.json").unlink()
     (finished / "fit-of-another.json").write_text("{}")
-    code, found = verified(finished)
+    code, lines = verified(finished)
     assert code == 1
-    assert (found["missing"], found["unlisted"]) == (["fit.json"], ["fit-of-another.json"])
+    assert (lines["missing"], lines["unlisted"]) == (["fit.json"], ["fit-of-another.json"])
 
 
 @pytest.mark.parametrize(
@@ -144,8 +144,8 @@ def test_strange_names_are_listed_and_archived(running, name):
 
 def test_an_archive_without_curves_is_whole(finished):
     assert run("archive", finished, "--no-curves").exit_code == 0
-    code, found = verified(finished.with_name("default.zip"))
-    assert (code, found["verified"]) == (0, len(PLAIN) + 2 * len(DERIVED))
+    code, lines = verified(finished.with_name("default.zip"))
+    assert (code, lines["verified"]) == (0, len(PLAIN) + 2 * len(DERIVED))
 
 
 def test_an_archive_is_a_zip_file_outside_of_the_results(finished):

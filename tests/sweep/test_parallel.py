@@ -51,15 +51,15 @@ def table(configuration, folder):
 
 def processes(folder):
     """Numbers of the processes whose command line names a folder, and their command lines."""
-    found = {}
+    commands = {}
     for path in Path("/proc").glob("[0-9]*"):
         try:
             words = (path / "cmdline").read_bytes().split(b"\0")
         except OSError:
             continue
         if os.fsencode(folder) in words and int(path.name) != os.getpid():
-            found[int(path.name)] = words[0].decode()
-    return found
+            commands[int(path.name)] = words[0].decode()
+    return commands
 
 
 @contextlib.contextmanager
@@ -76,9 +76,9 @@ def started(configuration, folder, n_rank=3):
 def left_running(folder, seconds=10):
     """Processes of a sweep that are still there after some time."""
     until = time.monotonic() + seconds
-    while (found := processes(folder)) and time.monotonic() < until:
+    while (left := processes(folder)) and time.monotonic() < until:
         time.sleep(0.1)
-    return found
+    return left
 
 
 @pytest.mark.slow

@@ -45,7 +45,7 @@ from tests.places import TEST
 
 LINE = Path(__file__).parents[1] / "line-test.yaml"
 SWEEP = load_sweep(TEST)
-ALL = {one.label for one in SWEEP.simulations()}
+ALL = {item.label for item in SWEEP.simulations()}
 FLAT, ROUGH = ({label for label in ALL if name in label} for name in ("flat", "rough"))
 
 
@@ -101,8 +101,8 @@ def raise_version(monkeypatch, name):
     for path, module in [*sys.modules.items()]:
         if path.startswith("crackfront") and hasattr(module, name):
             monkeypatch.setattr(module, name, versions[name])
-    _, _, *others = Provenance.__init__.__defaults__
-    monkeypatch.setattr(Provenance.__init__, "__defaults__", (*versions.values(), *others))
+    _, _, *defaults = Provenance.__init__.__defaults__
+    monkeypatch.setattr(Provenance.__init__, "__defaults__", (*versions.values(), *defaults))
     return versions[name]
 
 
@@ -183,8 +183,8 @@ def test_a_higher_limit_of_sweeps_runs_again_what_reached_the_lower_one(
     plan = json.loads(done("plan", configuration, "--output", folder, "--json").stdout)
     assert plan["missing"] == len(stopped)
     assert simulate(configuration, folder) == stopped
-    found, expected = aggregated(configuration, folder), table(made.hysteresis)
-    assert found.drop_vars("max_sweeps").identical(expected.drop_vars("max_sweeps"))
+    result, expected = aggregated(configuration, folder), table(made.hysteresis)
+    assert result.drop_vars("max_sweeps").identical(expected.drop_vars("max_sweeps"))
     change(configuration, "max_sweeps: 100000", "max_sweeps: 10")
     assert simulate(configuration, folder) == set()
 
@@ -194,14 +194,14 @@ def test_a_new_version_of_the_physics_runs_all_again_says_so_and_mixes_nothing(
 ):
     before, first = stored(folder), table(folder / "hysteresis.nc")
     version = raise_version(monkeypatch, "PHYSICS_VERSION")
-    said = f"8 stored simulations belong to an older version of the physics (now {version})"
-    assert said in done("plan", configuration, "--output", folder).stdout
-    assert said in done("status", folder).stdout
+    sentence = f"8 stored simulations belong to an older version of the physics (now {version})"
+    assert sentence in done("plan", configuration, "--output", folder).stdout
+    assert sentence in done("status", folder).stdout
     status = json.loads(done("status", folder, "--json").stdout)
-    assert status["reasons_to_run_again"] == [f"{said} and run again"]
+    assert status["reasons_to_run_again"] == [f"{sentence} and run again"]
     assert simulate(configuration, folder, "--spectrum", "flat") == FLAT
-    said = said.replace("8", "4")
-    assert said in done("plan", configuration, "--output", folder).stdout
+    sentence = sentence.replace("8", "4")
+    assert sentence in done("plan", configuration, "--output", folder).stdout
     assert "4 of 8 simulations are in no fin" in refused(
         "aggregate", configuration, "--output", folder
     )
@@ -508,7 +508,7 @@ def test_a_checkpoint_that_is_of_no_use_costs_time_and_is_no_refusal(made, tmp_p
     [(_, outcome)] = tasks.run_and_store(store, [(shard, [simulation])], provenance("text"))
     assert outcome.status == "lost_contact"
     assert outcome.sentence.startswith("begun anew without its checkpoint: ")
-    force, expected = (one.result(SWEEP, simulation).record.states.force for one in (store, made))
+    force, expected = (item.result(SWEEP, simulation).record.states.force for item in (store, made))
     assert force.tobytes() == expected.tobytes()
     assert not [*folder.glob("checkpoint-*.nc")]
     assert len([*folder.glob("checkpoint-*.nc.damaged")]) == 1
@@ -631,14 +631,14 @@ def test_batches_that_a_kill_left_beside_the_merged_file_are_removed(configurati
     assert len([*folder.glob("curves/*/*.nc")]) == 2
 
 
-def same(record, other):
+def same(record, expected):
     """Whether two records, or parts of them, agree in every bit."""
     if is_dataclass(record):
         names = [field.name for field in fields(record)]
-        return all(same(getattr(record, name), getattr(other, name)) for name in names)
+        return all(same(getattr(record, name), getattr(expected, name)) for name in names)
     if isinstance(record, np.ndarray):
-        return record.dtype == other.dtype and record.tobytes() == other.tobytes()
-    return record == other
+        return record.dtype == expected.dtype and record.tobytes() == expected.tobytes()
+    return record == expected
 
 
 def test_the_longest_simulations_start_first(tmp_path, monkeypatch):

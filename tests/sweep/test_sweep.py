@@ -44,8 +44,8 @@ def test_shards_hold_every_simulation_once(block):
     assert len(shards) == 2 * {None: 1, 1: 10, 3: 4, 10: 1, 11: 1}[block]
     assert len({shard.name for shard in shards}) == len(shards)
     parts = [sweep.simulations(shard.item, shard.realisations) for shard in shards]
-    found = [one.key for part in parts for one in part]
-    assert sorted(found) == sorted(one.key for one in sweep.simulations())
+    keys = [item.key for part in parts for item in part]
+    assert sorted(keys) == sorted(item.key for item in sweep.simulations())
 
 
 def test_a_hundred_thousand_simulations_are_no_more_than_a_thousand_jobs():

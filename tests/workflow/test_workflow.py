@@ -417,10 +417,10 @@ def test_short_shards_take_one_core_each_and_long_ones_all_cores(tmp_path, reali
 
 def test_two_configurations_of_one_name_are_refused(tmp_path, sweep):
     (tmp_path / "other").mkdir()
-    other = tmp_path / "other/test.yaml"
-    other.write_text(sweep.read_text().replace("seed: 1", "seed: 2"))
+    second_path = tmp_path / "other/test.yaml"
+    second_path.write_text(sweep.read_text().replace("seed: 1", "seed: 2"))
     before = contents(tmp_path / "results")
-    ended = snakemake(tmp_path, sweep=other, ranks=1)
+    ended = snakemake(tmp_path, sweep=second_path, ranks=1)
     assert ended.returncode != 0
     assert re.search(r"results/test has the results of .*test.yaml, another conf", ended.stderr)
     assert "Traceback" not in ended.stderr
@@ -468,9 +468,9 @@ def test_make_takes_a_configuration_in_a_folder_of_any_name():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("given", ["{a: b.yaml}", "[a]", "1"])
-def test_a_configuration_that_snakemake_reads_as_no_text_is_refused(tmp_path, given):
-    done = snakemake(tmp_path, "--dry-run", sweep=given)
+@pytest.mark.parametrize("name", ["{a: b.yaml}", "[a]", "1"])
+def test_a_configuration_that_snakemake_reads_as_no_text_is_refused(tmp_path, name):
+    done = snakemake(tmp_path, "--dry-run", sweep=name)
     assert done.returncode != 0
     assert re.search(r"sweep is .*; give the name of a file", done.stdout + done.stderr)
     assert "Traceback" not in done.stderr
@@ -542,9 +542,9 @@ def test_the_job_that_a_killed_snakemake_leaves_goes_on_and_the_next_waits_for_i
         process.kill()
     printed = finished(tmp_path, "--", table, sweep=sweep, ranks=1)
     assert simulated(printed) == set()
-    found = xr.load_dataset(tmp_path / table).drop_vars(COSTS)
+    dataset = xr.load_dataset(tmp_path / table).drop_vars(COSTS)
     undisturbed = cf.run_sweep(sweep, tmp_path / "undisturbed", progress=False).drop_vars(COSTS)
-    assert found.equals(undisturbed)
+    assert dataset.equals(undisturbed)
 
 
 VALIDATION = """

@@ -163,13 +163,13 @@ def steady_part(loop: CalibratedLoop, contact: Contact, touching: Branches) -> S
         advice = f"choose another one; the radii are {low} to {high}"
     counts = [rows.size for rows, touched in zip(averaged, touching, strict=True) if touched.size]
     if min(counts) < _FEWEST_ROWS:
-        numbers = " and ".join(map(str, counts))
-        verb = "have" if len(present) == 2 else "has"
+        numbers = " and ".join(map(str, counts)) if any(counts) else "no"
+        verb, each = ("have", " each") if len(present) == 2 else ("has", "")
         if max(counts) >= _FEWEST_ROWS:
             advice += ", or evaluate the other branch alone by --segment"
         raise ValueError(
             f"{' and '.join(present)} {verb} {numbers} rows at contact radii {where}; "
-            f"{_FEWEST_ROWS} each are needed, so {advice}"
+            f"{_FEWEST_ROWS}{each} are needed, so {advice}"
         )
     return SteadyPart((approach, retraction), averaged, window)
 

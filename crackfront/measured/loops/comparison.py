@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from crackfront.analysis.estimate import UNKNOWN, Estimate
-from crackfront.measured.loops.loop_page import loop_json
+from crackfront.measured.loops.loop_page import loop_json, pure_number
 from crackfront.measured.loops.loop_result import MeasuredLoop
 from crackfront.measured.prediction.prediction import Prediction
 from crackfront.measured.prediction.remarks import remark_text
@@ -99,14 +99,17 @@ def _ratio_lines(ratio: Estimate[float]) -> Iterator[str]:
     """The ratio of measured to predicted hysteresis, and what its interval says."""
     if not math.isfinite(ratio.value):
         return
-    interval = f"{ratio.low:.2g} to {ratio.high:.2g}"
-    yield f"  {'ratio':16}{ratio.value:.3g} ({interval})"
+    yield f"  {'ratio':16}{pure_number(ratio.value, ratio.low, ratio.high)}"
     if ratio.low <= 1 <= ratio.high:
         yield "Measured and predicted hysteresis agree within their intervals."
     else:
         comparison = "larger" if ratio.low > 1 else "smaller"
+        low, high = pure_number(ratio.low), pure_number(ratio.high)
+        times = low if low == high else f"{low} to {high}"
+        if math.isinf(ratio.high):
+            times = f"at least {low}"
         yield (
-            f"The measured hysteresis is {comparison} than the predicted one, {interval} times as "
+            f"The measured hysteresis is {comparison} than the predicted one, {times} times as "
             "large; the page Explain a difference (docs/questions.md) says which measurements "
             "distinguish the causes."
         )

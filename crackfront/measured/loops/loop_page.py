@@ -48,11 +48,17 @@ def loop_numbers(loop: MeasuredLoop) -> Iterator[tuple[str, str]]:
         if math.isfinite(fitted.value):
             yield name, _text(loop, unit, fitted.value, fitted.low, fitted.high)
     low, high = (_text(loop, "m", end) for end in loop.window)
-    approach, retraction = (
-        int(np.sum(loop.in_window & (loop.direction == direction))) for direction in (1, -1)
-    )
-    counts = f"{approach} rows of approach, {retraction} of retraction"
-    yield "averaged over", f"contact radii of {low} to {high}: {counts}"
+    yield "averaged over", f"contact radii of {low} to {high}: {_averaged_rows(loop)}"
+
+
+def _averaged_rows(loop: MeasuredLoop) -> str:
+    """Counts of the averaged rows of each branch that has some."""
+    counts: list[str] = []
+    for direction, name in ((1, "approach"), (-1, "retraction")):
+        n_row = int(np.sum(loop.in_window & (loop.direction == direction)))
+        if n_row:
+            counts.append(f"{n_row} {'' if counts else 'rows '}of {name}")
+    return ", ".join(counts)
 
 
 def _pull_text(loop: MeasuredLoop) -> str:
@@ -67,9 +73,24 @@ def _text(loop: MeasuredLoop, unit: str, *values: float) -> str:
     """A number, or a number and the ends of its interval, in the units of the loop."""
     if not loop.reduced:
         return prefixed(unit, *values)
-    value, *ends = (f"{number:.4g}" for number in values)
-    interval = f" ({ends[0]} to {ends[1]})" if ends else ""
-    return f"{value}{_REDUCED_UNITS[unit]}{interval}"
+    return pure_number(*values, unit=_REDUCED_UNITS[unit], digits=4)
+
+
+def pure_number(*values: float, unit: str = "", digits: int = 3) -> str:
+    """A number, or a number and the ends of its interval, without a prefix of its unit.
+
+    An interval that these digits do not show is left out, as in
+    :func:`crackfront.surfaces.written_units.prefixed`.
+
+    Examples
+    --------
+    >>> pure_number(1.5, 0.9, 2.5), pure_number(105.01, 104.99, 105.02)
+    ('1.5 (0.9 to 2.5)', '105')
+    """
+    value, *ends = (f"{number:.{digits}g}" for number in values)
+    is_shown = bool(ends) and math.isfinite(values[1]) and {*ends} != {value}
+    interval = f" ({ends[0]} to {ends[1]})" if is_shown else ""
+    return f"{value}{unit}{interval}"
 
 
 def loop_json(loop: MeasuredLoop) -> dict[str, Any]:

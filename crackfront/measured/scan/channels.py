@@ -101,6 +101,9 @@ def chosen_channel(path: Path, reader: Any, requested: str | None) -> tuple[Any,
     several = f", {chosen.number} of {len(channels)}" if len(channels) > 1 else ""
     [channel] = [each for each in reader.channels if each.index == chosen.number]
     n_object = _stated_by_sur(channel, "nb_objects")
+    n_heights = sum(each.quantity == "height" for each in channels)
+    if n_heights > 1 and reader.format() not in _BARE_ARRAYS:
+        several += f" ({n_heights} of heights; --channel chooses)"
     if n_object > 1:
         several += f", the first of {n_object} objects in the file"
     return channel, f"{chosen.name!r}{several}"

@@ -17,7 +17,12 @@ from crackfront.measured.tables.headings import (
     heading_cells,
     headings_with_units,
 )
-from crackfront.measured.tables.number_cells import is_number, is_without_value
+from crackfront.measured.tables.number_cells import (
+    cells_between,
+    is_number,
+    is_without_value,
+    without_quoted,
+)
 from crackfront.measured.tables.parsed_table import Table
 
 _SEPARATORS = ("\t", ";", ",", None)
@@ -62,7 +67,7 @@ def table_of_numbers(path: Path) -> Table:
     filled = [number for number, line in enumerate(lines) if line.strip()]
     separator, place = _layout(path, [lines[number] for number in filled])
     first = filled[place]
-    n_column = len(_cells(lines[first], separator))
+    n_column = len(cells_between(lines[first], separator))
     names = _names(lines[filled[place - 1]], separator, n_column) if place else []
     headings = tuple(map(heading, names))
     if place > 1 and names and are_units(names):
@@ -105,7 +110,7 @@ def table_of_texts(path: Path) -> Table:
     first = len(above)
     if first == len(lines):
         return _table(path, iter(()), ",", ())
-    separator = stated[1] if stated else max("\t;,", key=lines[first].count)
+    separator = stated[1] if stated else max("\t;,", key=without_quoted(lines[first]).count)
     rows = _rows(path, lines, first, separator)
     _, names = next(rows)
     return replace(_table(path, rows, separator, tuple(map(heading, names))), above=above)
@@ -150,9 +155,11 @@ def _rows(
 ) -> Iterator[tuple[int, list[str]]]:
     """Number of the last line of every row, from 1, and its cells; cells in quotes may have two."""
     if separator is None:
-        yield from enumerate((_cells(line, None) for line in lines[first:]), first + 1)
+        yield from enumerate((cells_between(line, None) for line in lines[first:]), first + 1)
         return
-    reader = csv.reader((f"{line}\n" for line in lines[first:]), delimiter=separator)
+    reader = csv.reader(
+        (f"{line}\n" for line in lines[first:]), delimiter=separator, skipinitialspace=True
+    )
     try:
         for cells in reader:
             yield first + reader.line_num, [cell.strip() for cell in cells]
@@ -163,16 +170,11 @@ def _rows(
         ) from error
 
 
-def _cells(line: str, separator: str | None) -> list[str]:
-    """Cells of a line, without blanks and quotes around them."""
-    return [cell.strip().strip('"') for cell in line.split(separator)]
-
-
 def _layout(path: Path, lines: Sequence[str]) -> tuple[str | None, int]:
     """Separator of a table, None for blanks, and the place of its first row of numbers."""
     for separator in _SEPARATORS:
         for place, line in enumerate(lines[:_MOST_LINES_ABOVE]):
-            cells = _cells(line, separator)
+            cells = cells_between(line, separator)
             names = _names(lines[place - 1], separator, len(cells)) if place else []
             if not _is_row(cells, names):
                 continue
@@ -192,7 +194,7 @@ def _names(line: str, separator: str | None, n_column: int) -> list[str]:
     line = line.strip().lstrip("#% ")
     if separator is None and (names := heading_cells(line, n_column, _BLANKS)):
         return list(names)
-    return _cells(line, separator)
+    return cells_between(line, separator)
 
 
 def _is_row(cells: Sequence[str], names: Sequence[str]) -> bool:

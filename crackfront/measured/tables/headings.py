@@ -7,6 +7,7 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from crackfront.measured.tables.number_cells import cells_between
 from crackfront.surfaces.written_units import is_unit
 
 _BRACKETS = re.compile(r"[\[(]([^\[\]()]*+(?:\([^()]*+\)[^\[\]()]*+)?+)[\])]")
@@ -28,7 +29,7 @@ _LINE_OF_NAMES = re.compile(r"^columns?\s*:\s*", re.IGNORECASE)
 _MARKUP = re.compile(r"</?su[bp]>")
 _COMMENT_SIGNS = "#%! "
 _IN_BRACKETS = re.compile(r"[\[(][^\[\]()]++[\])]")
-_SEPARATORS = (r";", r"\t", r",", r"\s{2,}", r"\s+")
+_SEPARATORS = (";", "\t", ",", r"\s{2,}", r"\s+")
 
 
 @dataclass(frozen=True, slots=True)
@@ -117,11 +118,15 @@ def heading_cells(
 ) -> tuple[str, ...]:
     """Cells of a line of headings, one for each column; none where it has another number of them.
 
-    The separators are regular expressions, of which the first that fits counts.
+    The separators are characters, or regular expressions of blanks, of which the first that fits
+    counts.
     """
     line = _LINE_OF_NAMES.sub("", line)
     for separator in separators:
-        split = re.split(separator, line.strip().strip(";"))
+        names = line.strip().strip(";")
+        split = (
+            cells_between(names, separator) if len(separator) == 1 else re.split(separator, names)
+        )
         cells = tuple(cell.strip().strip('"') for cell in split)
         if len(cells) == n_column and all(cells):
             return cells

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import csv
 import itertools
 import re
@@ -39,6 +40,36 @@ def is_number(cell: str) -> bool:
 def is_without_value(cell: str) -> bool:
     """Whether a cell is empty, or says that the value is missing, as nan or -."""
     return _WITHOUT_VALUE.fullmatch(cell) is not None
+
+
+def cells_between(line: str, separator: str | None) -> list[str]:
+    """Cells of a line, without blanks and quotes around them.
+
+    Parameters
+    ----------
+    line : str
+        Cells in quotes may contain the separator.
+    separator : str or None
+        A single character; None for blanks.
+
+    Examples
+    --------
+    >>> cells_between('"Load, uN", Radius', ",")
+    ['Load, uN', 'Radius']
+    """
+    cells = line.split(separator)
+    if separator is not None and '"' in line:
+        cells = [line]
+        if separator in without_quoted(line):
+            # A cell that is too long for csv is not a number or a heading.
+            with contextlib.suppress(csv.Error):
+                cells = next(csv.reader([line], delimiter=separator, skipinitialspace=True))
+    return [cell.strip().strip('"') for cell in cells]
+
+
+def without_quoted(line: str) -> str:
+    """A line without its cells in quotes, whose separators do not count."""
+    return _QUOTED.sub("", line)
 
 
 def decimal_sign(path: Path, numbers: Iterable[tuple[int, Iterable[str]]]) -> str | None:
@@ -89,7 +120,7 @@ def splitter(lines: Iterable[str]) -> Splitter:
         return 2 * sum(map(bool, map(has, rows))) > len(rows)
 
     if most(lambda row: '"' in row):
-        between = "".join(_QUOTED.sub("", row) for row in rows).strip()
+        between = "".join(map(without_quoted, rows)).strip()
         separator = between[0] if between else " "
         return lambda line: [cell.strip() for cell in next(csv.reader([line], delimiter=separator))]
     if most(lambda row: ";" in row):

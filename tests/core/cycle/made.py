@@ -41,9 +41,9 @@ def patches(seed, sites, samples, interpolation):
 @functools.cache
 def cycles_of_few_sites(interpolation):
     """Field and record of each of some cycles over patches that are as wide as a contact."""
-    found = []
+    cycles = []
     for seed in range(40):
         field, _ = patches(seed, (4, 24), (16, 40), interpolation)
         recorder = Recorder(fronts=True, energy=True)
-        found.append((field, run_cycle(field, LoadSchedule(0.6, 0.05), recorder=recorder)))
-    return found
+        cycles.append((field, run_cycle(field, LoadSchedule(0.6, 0.05), recorder=recorder)))
+    return cycles

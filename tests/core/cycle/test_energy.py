@@ -35,9 +35,9 @@ def test_dissipated_energy_is_the_fall_of_the_total_energy(rng):
     field = noisy_field(8)
     origin = np.full(24, first_place(field))
     before, after = rng.uniform(0.8, 1.3, 24), rng.uniform(1.3, 2.2, 24)
-    for one, other in ((before, after), (after, before)):
-        fall = energy(one, 0.4, field, origin) - energy(other, 0.4, field, origin)
-        assert dissipated_energy(one, other, 0.4, field) == pytest.approx(fall, rel=1e-12)
+    for start, end in ((before, after), (after, before)):
+        fall = energy(start, 0.4, field, origin) - energy(end, 0.4, field, origin)
+        assert dissipated_energy(start, end, 0.4, field) == pytest.approx(fall, rel=1e-12)
 
 
 def test_the_force_on_a_site_is_the_derivative_of_the_dissipated_energy(rng):
@@ -84,7 +84,7 @@ def test_a_smooth_cycle_dissipates_the_area_between_jump_in_and_pull_off(solver)
     lowest = jkr.pull_off_penetration()
     # Between the jumps only the stable branch exists, so the loop is the way out alone.
     exact = -quad(lambda b: float(jkr.equilibrium_force(jkr.equilibrium_radius(b))), lowest, 0)[0]
-    found = []
+    balances = []
     for step in (0.04, 0.02, 0.01):
         record = run_cycle(
             field,
@@ -95,9 +95,9 @@ def test_a_smooth_cycle_dissipates_the_area_between_jump_in_and_pull_off(solver)
         # The last jump, out of contact: all that is stored goes.
         last, origin = record.fronts[-1], np.full(16, 0.01)
         pull_off = energy(last, record.end_load, field, origin)
-        found.append(record.dissipated_energy.sum() + pull_off)
+        balances.append(record.dissipated_energy.sum() + pull_off)
     # Of first order: the last load may lie anywhere within a step below pull-off.
-    error = np.abs(np.array(found) - exact)
+    error = np.abs(np.array(balances) - exact)
     assert np.all(error < 3 * np.array([0.04, 0.02, 0.01]))
 
 

@@ -74,8 +74,8 @@ def ring_hysteresis(period, n_per_period, solver, n_angle=1):
 def test_rings_have_the_tabulated_hysteresis(
     solver, period, n_per_period, hysteresis, digits, n_angle
 ):
-    found = ring_hysteresis(period, n_per_period, solver, n_angle)
-    assert found == pytest.approx(hysteresis, abs=digits)
+    ring_works = ring_hysteresis(period, n_per_period, solver, n_angle)
+    assert ring_works == pytest.approx(hysteresis, abs=digits)
 
 
 @every_solver
@@ -140,15 +140,15 @@ def test_apparent_adhesion_is_the_mean_adhesion_along_the_front(solver, seed, n_
 @every_solver
 def test_a_cycle_goes_on_from_any_state_to_the_same_bits(solver):
     field, schedule = noisy_field(7), LoadSchedule(0.6, 0.15)
-    found = []
+    checkpoints = []
 
     def run(**options):
         recorder = Recorder(fronts=True, energy=True, **options)
         return run_cycle(field, schedule, SOLVERS[solver](), recorder)
 
-    undisturbed = run(observers=[lambda one: found.append(one.checkpoint())])
-    assert len(found) == undisturbed.states.penetration.size
-    for checkpoint in found:
+    undisturbed = run(observers=[lambda recording: checkpoints.append(recording.checkpoint())])
+    assert len(checkpoints) == undisturbed.states.penetration.size
+    for checkpoint in checkpoints:
         resumed = run(resume=checkpoint)
         assert resumed.end_load == undisturbed.end_load
         assert resumed.pull_off_energy == undisturbed.pull_off_energy
@@ -248,12 +248,14 @@ def test_the_apparent_work_is_less_in_retraction_only_where_the_mean_radius_has_
 @pytest.mark.timeout(3600)
 @pytest.mark.parametrize("interpolation", ["linear", "cubic"])
 def test_means_over_the_branches_are_not_reversed_by_more_than_their_errors(interpolation):
-    found = []
+    deviations = []
     for seed in range(400):
         field, spacing = patches([8, seed], (8, 64), (100, 251), interpolation)
         steady = steady_adhesion(run_cycle(field, LoadSchedule(1.5, 0.05)), 1.5 * spacing)
         if not steady.sentence:
-            found.append(steady)
-    assert len(found) > 60
-    for one in found:
-        assert one.w_retr - one.w_appr > -np.hypot(one.w_appr_error, one.w_retr_error)
+            deviations.append(steady)
+    assert len(deviations) > 60
+    for deviation in deviations:
+        assert deviation.w_retr - deviation.w_appr > -np.hypot(
+            deviation.w_appr_error, deviation.w_retr_error
+        )

@@ -83,8 +83,8 @@ def test_a_tile_is_met_at_its_own_points_along_both_axes(rng):
     for sample in range(12):
         ahead, behind = (5 + sample + 1) % 10, (5 - sample - 1) % 10
         met = [values[ahead, 5], values[5, ahead], values[behind, 5], values[5, behind]]
-        found = [evaluate(field, ray, sample)[0] for ray in range(4)]
-        assert np.allclose(found, 0.1 * (sample + 1) * np.array(met), rtol=1e-12)
+        evaluated = [evaluate(field, ray, sample)[0] for ray in range(4)]
+        assert np.allclose(evaluated, 0.1 * (sample + 1) * np.array(met), rtol=1e-12)
 
 
 def test_the_apex_is_half_a_side_from_the_first_point_on_even_and_odd_tiles():
@@ -109,8 +109,8 @@ def test_interpolation_of_a_tile_converges_with_fourth_order():
         for sample in range(0, 90, 3):
             radius = sample_place(field, sample)
             exact = wavy(radius * np.cos(angle), radius * np.sin(angle), 1.0)
-            found = [evaluate(field, ray, sample)[0] / radius for ray in range(32)]
-            error = max(error, np.abs(found - exact).max())
+            values = [evaluate(field, ray, sample)[0] / radius for ray in range(32)]
+            error = max(error, np.abs(values - exact).max())
         errors.append(error)
     orders = np.log2(np.array(errors[:-1]) / errors[1:])
     assert np.all(orders > 3.7), (errors, orders)
@@ -202,8 +202,8 @@ def test_a_sample_spacing_that_cannot_resolve_the_ray_is_refused(spacing):
 
 
 @given(fronts_in_pairs(), fronts_in_pairs())
-def test_swept_adhesion_does_not_depend_on_the_way(pair, other):
-    (before, after), (between, _) = pair, other
+def test_swept_adhesion_does_not_depend_on_the_way(pair, threads):
+    (before, after), (between, _) = pair, threads
     field = polar_field(*noisy_polar())
     direct = swept_adhesion(before, after, field)
     detour = swept_adhesion(before, between, field) + swept_adhesion(between, after, field)

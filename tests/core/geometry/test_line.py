@@ -68,16 +68,16 @@ def first_stops(wave, spring, loads, start):
     n_period = 80
     nodes = np.arange(-wave.size * n_period // 2, wave.size * n_period // 2)
     height = balance[nodes % wave.size] + (nodes - nodes % wave.size)
-    places, here = [], start
+    places, place = [], start
     for load in loads:
-        ahead = np.flatnonzero((nodes >= np.ceil(here)) & (height >= load.value))
+        ahead = np.flatnonzero((nodes >= np.ceil(place)) & (height >= load.value))
         k = ahead[0]
         if load.direction < 0:
-            behind = np.flatnonzero((nodes <= np.floor(here)) & (height <= load.value))
+            behind = np.flatnonzero((nodes <= np.floor(place)) & (height <= load.value))
             k = behind[-1] + 1
         part = (load.value - height[k - 1]) / (height[k] - height[k - 1])
-        here = nodes[k - 1] + part
-        places.append(here)
+        place = nodes[k - 1] + part
+        places.append(place)
     return np.array(places)
 
 
@@ -166,20 +166,20 @@ def test_places_are_those_of_the_tile_wherever_it_lies():
     moved, plain = (AdhesionMap(values, 0.5, 0.0, 0.0, corner) for corner in corners)
     way = [*protocol([30.0, 40.0, 30.0], 2.5)]
     shifted = [Load(load.value - 3.25, load.direction) for load in way]
-    found, field = run(moved, 4.0, shifted, Newton(1e-11))
+    stops, field = run(moved, 4.0, shifted, Newton(1e-11))
     expected, _ = run(plain, 4.0, way, Newton(1e-11))
-    assert np.allclose(found.fronts, expected.fronts - 3.25, rtol=0, atol=1e-8)
+    assert np.allclose(stops.fronts, expected.fronts - 3.25, rtol=0, atol=1e-8)
     assert np.allclose(field.geometry.sites, 7.0 + 0.5 * np.arange(32))
 
 
 def test_no_passing_holds_for_a_straight_front():
     field = line_field(noisy(8), 20.0, (50.0, 90.0))
     behind, ahead = np.full(32, 40.0), np.full(32, 41.0) + np.sin(np.arange(32))
-    one, other = (
+    front_ahead, front_behind = (
         next(follow(field, front, [Load(load, 1)], Newton(1e-11))).front
         for front, load in ((behind, 70.0), (ahead, 71.0))
     )
-    assert np.all(one <= other + 1e-9)
+    assert np.all(front_ahead <= front_behind + 1e-9)
 
 
 @pytest.fixture
@@ -199,7 +199,9 @@ def command(tmp_path):
             "--record": "fronts",
             "--output": tmp_path / "out.nc",
         } | {f"--{name.replace('_', '-')}": value for name, value in changes.items()}
-        words = [str(word) for one in options.items() if one[1] is not None for word in one]
+        words = [
+            str(word) for option in options.items() if option[1] is not None for word in option
+        ]
         return CliRunner().invoke(main, ["cycle", *words])
 
     invoked.output = tmp_path / "out.nc"
@@ -228,9 +230,9 @@ def test_the_command_writes_a_cycle_of_the_line(command):
     assert np.array_equal(dataset.position, expected.fronts)
     most, least = float(dataset.pinning_force.max()), float(dataset.pinning_force.min())
     told = f"pinning force up to {most:.4g} forward and {least:.4g} back (w_int)"
-    said = result.stdout.splitlines()[-1]
-    assert "hysteresis 0.051 ± 0.025 (w_int); the front is 1 L_kappa long, below" in said
-    assert said.endswith(told)
+    last_line = result.stdout.splitlines()[-1]
+    assert "hysteresis 0.051 ± 0.025 (w_int); the front is 1 L_kappa long, below" in last_line
+    assert last_line.endswith(told)
     loop, fronts = (draw(dataset, axes=Figure().add_subplot()) for draw in (plot_loop, plot_fronts))
     np.testing.assert_array_equal(loop.get_lines()[0].get_xdata(), loads[:7])
     np.testing.assert_array_equal(fronts.get_lines()[0].get_xdata(), dataset.position[6])

@@ -45,9 +45,9 @@ def test_a_bend_changes_the_energy_release_rate_as_the_kernel_of_gao_and_rice_sa
     # No angle of the integral is at a site, where the kernel diverges.
     between = angles(n_angle) + np.pi / n_angle
     for site in (0, 3, 100):
-        here = angles(n_angle)[site]
-        bend = np.cos(order * between) - np.cos(order * here)
-        distance = 2 * radius * np.sin((between - here) / 2)
+        angle = angles(n_angle)[site]
+        bend = np.cos(order * between) - np.cos(order * angle)
+        distance = 2 * radius * np.sin((between - angle) / 2)
         integral = np.mean(radius * bend / distance**2)
         intensity_change = -equilibrium * integral
         change = np.pi / 8 * CONTACT_MODULUS * equilibrium * intensity_change

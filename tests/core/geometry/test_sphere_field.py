@@ -34,8 +34,10 @@ def test_a_tile_that_is_not_finite_is_refused_with_its_place_before_its_contact_
     values = np.full((8, 8), WORK_OF_ADHESION)
     values.flat[-count:] = value
     row, column = np.unravel_index(64 - count, (8, 8))
-    others = r" \(64 values are not finite\)" if count > 1 else ""
-    with pytest.raises(ValueError, match=rf"{value} at x index {row}, y index {column}{others}; "):
+    more_values = r" \(64 values are not finite\)" if count > 1 else ""
+    with pytest.raises(
+        ValueError, match=rf"{value} at x index {row}, y index {column}{more_values}; "
+    ):
         contact_field(AdhesionMap(values, 0.1, 0.0, 0.0), 0.5)
 
 

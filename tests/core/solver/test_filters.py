@@ -14,16 +14,16 @@ def test_a_filter_is_what_it_does_to_every_mode(count, kind):
     geometry, like = sphere(count), np.empty(0, kind)
     digit = float(np.finfo(kind).eps)
     front = np.random.default_rng(count).standard_normal(count).astype(like.real.dtype)
-    found, filtering = np.empty_like(front), make_filter(count, like)
+    filtered, filtering = np.empty_like(front), make_filter(count, like)
     set_stiffness(filtering, geometry)
-    product = apply_filter(filtering, front, found)
+    product = apply_filter(filtering, front, filtered)
     expected = line_force(geometry, front.astype(float))
     scale = np.max(np.abs(expected))
-    assert np.allclose(found, expected, rtol=0, atol=400 * digit * scale)
+    assert np.allclose(filtered, expected, rtol=0, atol=400 * digit * scale)
     assert product == pytest.approx(front @ expected, rel=4000 * digit)
     set_inverse(filtering, geometry, 1.0)
-    apply_filter(filtering, (expected + front).astype(front.dtype), found)
-    assert np.allclose(found, front, rtol=0, atol=4000 * digit)
+    apply_filter(filtering, (expected + front).astype(front.dtype), filtered)
+    assert np.allclose(filtered, front, rtol=0, atol=4000 * digit)
 
 
 @pytest.mark.slow

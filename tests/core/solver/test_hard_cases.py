@@ -297,8 +297,8 @@ def test_any_factorisation_of_the_number_of_sites_gives_the_same_front_of_a_smoo
         modes.append(np.fft.rfft(front)[:20] / n_angle)
     # Powers of two and of five, a prime, and 2 * 3 * 3 * 7.
     assert abs(modes[0][2]) > 1e-3
-    for other in modes[:-1]:
-        assert np.max(np.abs(other - modes[-1])) < 1e-9
+    for mode in modes[:-1]:
+        assert np.max(np.abs(mode - modes[-1])) < 1e-9
 
 
 # --- single sites and the centre
@@ -312,8 +312,8 @@ def test_one_site_may_lag_behind_all_others_by_most_of_the_radius(solver, n_angl
     adhesion[radii > 0.4, 3] *= -1000.0
     field = polar_field(radii, adhesion)
     front = tight(np.full(n_angle, 0.02), -0.2, 1, field, solver)
-    others = np.delete(front, 3)
-    assert front[3] < 0.45 < 0.7 < others.min()
+    other_sites = np.delete(front, 3)
+    assert front[3] < 0.45 < 0.7 < other_sites.min()
     force = front_force(front, -0.2, field) / (front * WORK_OF_ADHESION)
     assert np.max(np.abs(force)) < 1e-11
     # A front that lags so far is still the first: the solvers meet in it.
@@ -392,8 +392,12 @@ def test_a_scene_from_nanometres_to_metres_gives_the_reduced_result(tmp_path, ra
         (tmp_path / "sweep.yaml").write_text(to_yaml(content))
         sweep = load_sweep(tmp_path / "sweep.yaml")
         records.append(run_simulation(sweep.simulation(sweep.named("rough"), 0.1, 0)).record)
-    one, other = records
-    assert other.status is one.status is Status.LOST_CONTACT
-    assert np.allclose(other.states.penetration, one.states.penetration, rtol=1e-13, atol=1e-15)
-    assert np.allclose(other.states.mean_radius, one.states.mean_radius, rtol=0, atol=1e-12)
-    assert np.allclose(other.states.force, one.states.force, rtol=0, atol=1e-12)
+    nanometres, in_metres = records
+    assert in_metres.status is nanometres.status is Status.LOST_CONTACT
+    assert np.allclose(
+        in_metres.states.penetration, nanometres.states.penetration, rtol=1e-13, atol=1e-15
+    )
+    assert np.allclose(
+        in_metres.states.mean_radius, nanometres.states.mean_radius, rtol=0, atol=1e-12
+    )
+    assert np.allclose(in_metres.states.force, nanometres.states.force, rtol=0, atol=1e-12)

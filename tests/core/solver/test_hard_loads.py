@@ -275,10 +275,10 @@ def test_the_order_of_the_sums_leaves_ten_digits_of_a_cycle(solver, n_ray):
 
     plain = cycle(adhesion)
     for change in (lambda x: np.roll(x, 37, axis=1), lambda x: x[:, ::-1]):
-        other = cycle(change(adhesion))
-        assert np.array_equal(other.states.penetration, plain.states.penetration)
-        assert np.allclose(other.fronts, change(plain.fronts), rtol=0, atol=1e-10)
-        assert np.allclose(other.states.force, plain.states.force, rtol=0, atol=1e-10)
+        reordered = cycle(change(adhesion))
+        assert np.array_equal(reordered.states.penetration, plain.states.penetration)
+        assert np.allclose(reordered.fronts, change(plain.fronts), rtol=0, atol=1e-10)
+        assert np.allclose(reordered.states.force, plain.states.force, rtol=0, atol=1e-10)
 
 
 PLAIN = """
@@ -293,7 +293,7 @@ json.dump(plain_cycles(), sys.stdout)
 
 def plain_cycles():
     """Fronts and energies of small cycles in both solvers, on all kinds of fields."""
-    found = []
+    cycles = []
     for tile, interpolation, n_ray, amplitude in [
         (False, "linear", 8, 0.4),
         (False, "linear", 33, 0.8),
@@ -308,8 +308,8 @@ def plain_cycles():
                 field, LoadSchedule(0.8, 0.4), SOLVERS[solver](1e-7), Recorder(energy=True)
             )
             means, lost = record.states.mean_radius.tolist(), record.dissipated_energy.tolist()
-            found.append([record.status.name, means, lost])
-    return found
+            cycles.append([record.status.name, means, lost])
+    return cycles
 
 
 @pytest.mark.slow

@@ -86,13 +86,13 @@ def test_no_chord_of_the_drive_is_steeper_than_the_hardening(
     segment = segment_below(field, radius, direction)
     product = front_products(np.full(4, radius), field)[0]
     task = make_task(radius, penetration, direction, field, make_memory(field), 1e-8)
-    found = stiffness_ahead(task, radius, segment, product, reach)
+    stiffness = stiffness_ahead(task, radius, segment, product, reach)
     distances = reach * np.linspace(0.01, 1, 100)
     chords = (drive(0.0) - drive(distances)) / distances
-    assert found >= chords.max() - 1e-9 / reach
+    assert stiffness >= chords.max() - 1e-9 / reach
     # A short reach is judged by the slope under the site, which the bound must come down to.
     if reach < 1e-4:
-        assert found <= chords.max() + 0.1
+        assert stiffness <= chords.max() + 0.1
 
 
 @given(
@@ -116,11 +116,11 @@ def test_the_fast_solver_stops_where_the_reference_stops(
     if ragged:
         # Sites that start with a force against the motion must wait for the others.
         start = rng.uniform(0.25, 2.0, n_angle)
-    expected, found = outcomes(start, penetration, direction, field)
-    assert found.status is expected.status
+    expected, outcome = outcomes(start, penetration, direction, field)
+    assert outcome.status is expected.status
     if expected.status is Status.CONVERGED:
-        assert np.max(np.abs(found.front - expected.front)) < 1e-8
-        assert found.residual <= 1e-11
+        assert np.max(np.abs(outcome.front - expected.front)) < 1e-8
+        assert outcome.residual <= 1e-11
 
 
 @pytest.mark.parametrize(("interpolation", "samples"), [("linear", 16), ("cubic", 4)])
@@ -189,7 +189,7 @@ def test_the_number_of_threads_has_no_say():
         "front = relax(np.full(10400, 1.6), 1.0, 1, field, Newton(1e-6)).front\n"
         "print(hashlib.sha256(front.tobytes()).hexdigest())\n"
     )
-    found = {
+    fronts = {
         subprocess.run(
             [sys.executable, "-c", program],
             env=os.environ | {"OMP_NUM_THREADS": threads, "OPENBLAS_NUM_THREADS": threads},
@@ -200,7 +200,7 @@ def test_the_number_of_threads_has_no_say():
         ).stdout
         for threads in ("1", "2")
     }
-    assert len(found) == 1
+    assert len(fronts) == 1
 
 
 # --- small fronts on straight pieces: never more transforms than the reference needs sweeps
@@ -232,11 +232,11 @@ def small_scene(seed):
 def compared(field, front, loads):
     """Outcomes of both solvers, each from the front of the reference before, until contact ends."""
     for load, direction in loads:
-        expected, found = (
+        expected, outcome = (
             relax(front, load, direction, field, SOLVERS[solver](1e-8, 30000))
             for solver in ("reference", "newton")
         )
-        yield expected, found
+        yield expected, outcome
         if expected.status is not Status.CONVERGED:
             return
         front = expected.front
@@ -245,11 +245,11 @@ def compared(field, front, loads):
 def assert_no_small_cycle_needs_more_transforms(seeds):
     for seed in seeds:
         field, inner, loads = small_scene(seed)
-        for expected, found in compared(field, np.full(field.geometry.n_site, inner), loads):
-            assert found.status is expected.status, seed
-            assert found.sweeps <= expected.sweeps, seed
-            if found.status is Status.CONVERGED:
-                assert np.max(np.abs(found.front - expected.front)) < 1e-5, seed
+        for expected, outcome in compared(field, np.full(field.geometry.n_site, inner), loads):
+            assert outcome.status is expected.status, seed
+            assert outcome.sweeps <= expected.sweeps, seed
+            if outcome.status is Status.CONVERGED:
+                assert np.max(np.abs(outcome.front - expected.front)) < 1e-5, seed
 
 
 def test_no_small_cycle_on_straight_pieces_needs_more_transforms_than_the_reference_sweeps():
@@ -285,13 +285,13 @@ def test_needles_that_repel_take_no_more_transforms_than_the_reference_sweeps(
 def assert_no_more_transforms_than_sweeps(field, top):
     """On a cycle to a largest penetration and back, of equal fronts."""
     loads = [(0.0, 1), (top / 6, 1), (top, 1), (top / 2, -1), (-0.3, -1)]
-    for expected, found in compared(
+    for expected, outcome in compared(
         field, np.full(field.geometry.n_site, first_place(field)), loads
     ):
-        assert found.status is expected.status
-        assert found.sweeps <= expected.sweeps
-        if found.status is Status.CONVERGED:
-            assert np.max(np.abs(found.front - expected.front)) < 1e-5
+        assert outcome.status is expected.status
+        assert outcome.sweeps <= expected.sweeps
+        if outcome.status is Status.CONVERGED:
+            assert np.max(np.abs(outcome.front - expected.front)) < 1e-5
 
 
 # Without sweeps among needles, most of these take more transforms than the reference sweeps.

@@ -87,14 +87,14 @@ def extent(outcome):
 
 def along(front, loads, direction, field, solver):
     """Fronts at a sequence of loads until contact is lost."""
-    found = []
+    fronts = []
     for load in loads:
         outcome = tight(front, load, direction, field, solver)
-        found.append(extent(outcome))
+        fronts.append(extent(outcome))
         if outcome.status is not Status.CONVERGED:
             break
         front = outcome.front
-    return found
+    return fronts
 
 
 def noisy_tile(seed, n_point=24, pixel=0.12, amplitude=0.3):
@@ -253,10 +253,10 @@ def test_relabelling_and_mirroring_the_rays_relabel_and_mirror_the_front(solver,
     front = tight(case.circle(), 0.6, 1, case.field, solver).front
     rolled = polar_field(case.radii, np.roll(case.adhesion, shift, axis=1))
     mirrored = polar_field(case.radii, case.adhesion[:, ::-1])
-    found = tight(case.circle(), 0.6, 1, rolled, solver).front
-    assert np.allclose(found, np.roll(front, shift), rtol=0, atol=SAME)
-    found = tight(case.circle(), 0.6, 1, mirrored, solver).front
-    assert np.allclose(found, front[::-1], rtol=0, atol=SAME)
+    relabelled = tight(case.circle(), 0.6, 1, rolled, solver).front
+    assert np.allclose(relabelled, np.roll(front, shift), rtol=0, atol=SAME)
+    relabelled = tight(case.circle(), 0.6, 1, mirrored, solver).front
+    assert np.allclose(relabelled, front[::-1], rtol=0, atol=SAME)
 
 
 @every_solver
@@ -267,8 +267,10 @@ def test_turning_or_mirroring_the_tile_turns_or_mirrors_the_front(solver, n_angl
     # About the apex, a grid point: the array is moved on by one row.
     tiles = values, np.roll(np.rot90(values), 1, axis=0), np.roll(values[:, ::-1], 1, axis=1)
     plain, turned, mirrored = (
-        tight(np.full(n_angle, 0.05), 0.5, 1, tile_field(one, sphere(n_angle), 0.03, 2.6), solver)
-        for one in (AdhesionMap(array, tile.pixel, 0.0, 0.0) for array in tiles)
+        tight(
+            np.full(n_angle, 0.05), 0.5, 1, tile_field(tile_map, sphere(n_angle), 0.03, 2.6), solver
+        )
+        for tile_map in (AdhesionMap(array, tile.pixel, 0.0, 0.0) for array in tiles)
     )
     assert np.ptp(plain.front) > 0.05
     assert np.allclose(turned.front, np.roll(plain.front, n_angle // 4), rtol=0, atol=SAME)
@@ -409,7 +411,7 @@ def test_a_tolerance_that_round_off_cannot_reach_is_refused(solver, tolerance):
 def test_a_field_that_is_too_steep_for_the_tolerance_stops_the_front_with_a_sentence(
     solver, direction
 ):
-    found = []
+    fronts = []
     for width, share in itertools.product([1e-7, 1e-8, 1e-9], [0.2, 0.5, 0.7]):
         # Over one digit of the radius the force changes by more than the tolerance.
         radii = np.array([0.05, 1.5, 1.5 + width, 2.8])
@@ -424,6 +426,6 @@ def test_a_field_that_is_too_steep_for_the_tolerance_stops_the_front_with_a_sent
         assert outcome.residual < 1e-15 / width
         # A radius may happen to have just the digits that balance the force.
         assert outcome.status in (Status.ROUND_OFF, Status.CONVERGED)
-        found.append(outcome.status)
-    assert found.count(Status.ROUND_OFF) >= 3
+        fronts.append(outcome.status)
+    assert fronts.count(Status.ROUND_OFF) >= 3
     assert "raise the tolerance" in Status.ROUND_OFF.value

@@ -54,8 +54,8 @@ def patches(rng):
 def whole_map(rng):
     """A map that is cut from a larger surface, as a measurement without gaps."""
     heights = gaussian_field(SPECTRUM, 2 * N_POINT, 2 * SIDE, rng)[:N_POINT, :N_POINT]
-    given = periodic_measurement(heights, SIDE, 4 * SIDE / N_POINT)
-    return replace(given, periodic=False, longest=SIDE / 2)
+    measurement = periodic_measurement(heights, SIDE, 4 * SIDE / N_POINT)
+    return replace(measurement, periodic=False, longest=SIDE / 2)
 
 
 def read_map(folder, heights, gaps):
@@ -64,9 +64,9 @@ def read_map(folder, heights, gaps):
     return read_measurements([write_al3d(folder / "holes.al3d", holed, SIDE)])[0]
 
 
-def energy(waves, given):
+def energy(waves, measurement):
     """What e_el is proportional to, over the wavelengths that may be trusted."""
-    density = waves.density().within(given.shortest, given.longest)
+    density = waves.density().within(measurement.shortest, measurement.longest)
     return float(np.sum(density.value * density.wavevector**3))
 
 
@@ -75,12 +75,12 @@ def test_the_density_of_a_map_with_gaps_is_that_of_the_whole_map(gaps_of, rng, t
     given_back, filled = [], []
     for _ in range(4):
         whole, gaps = whole_map(rng), gaps_of(rng)
-        known = energy(periodogram(whole), whole)
+        expected = energy(periodogram(whole), whole)
         measurement = read_map(tmp_path, whole.heights, gaps)
         np.testing.assert_array_equal(measurement.gaps, gaps)
-        filled.append(np.log(energy(periodogram(measurement), whole) / known))
+        filled.append(np.log(energy(periodogram(measurement), whole) / expected))
         restored = restored_periodogram(measurement, surrogate_pairs(measurement))
-        given_back.append(np.log(energy(restored, whole) / known))
+        given_back.append(np.log(energy(restored, whole) / expected))
     error = np.std(given_back, ddof=1) / np.sqrt(len(given_back))
     # By as much as intervals allow for.
     allowed = RESTORATION_ERROR * weight_of_gaps(measurement)
@@ -90,23 +90,23 @@ def test_the_density_of_a_map_with_gaps_is_that_of_the_whole_map(gaps_of, rng, t
 
 
 def test_a_line_with_gaps_has_the_density_of_the_whole_line(rng):
-    apart = []
+    deviations = []
     for _ in range(8):
         heights = whole_map(rng).heights[:, 0]
         whole = replace(whole_map(rng), heights=heights, size=(SIDE,))
         gaps = np.zeros(N_POINT, bool)
         gaps[44:52] = True
         line = np.interp(np.arange(N_POINT), np.flatnonzero(~gaps), heights[~gaps])
-        found = replace(whole, heights=line, gaps=gaps)
-        pairs = surrogate_pairs(found)
-        restored = restored_periodogram(found, pairs)
-        dependence = periodogram(found).dependence * (1 + 1 / len(pairs))
+        with_gaps = replace(whole, heights=line, gaps=gaps)
+        pairs = surrogate_pairs(with_gaps)
+        restored = restored_periodogram(with_gaps, pairs)
+        dependence = periodogram(with_gaps).dependence * (1 + 1 / len(pairs))
         assert restored.dependence == pytest.approx(dependence)
-        apart.append(
-            [np.log(energy(one, whole)) for one in (restored, periodogram(found))]
+        deviations.append(
+            [np.log(energy(density, whole)) for density in (restored, periodogram(with_gaps))]
             - np.log(energy(periodogram(whole), whole))
         )
-    given_back, filled = np.mean(apart, axis=0)
-    error = np.std(apart, axis=0, ddof=1)[0] / np.sqrt(len(apart))
+    given_back, filled = np.mean(deviations, axis=0)
+    error = np.std(deviations, axis=0, ddof=1)[0] / np.sqrt(len(deviations))
     assert abs(given_back) < 4 * error
     assert filled < given_back

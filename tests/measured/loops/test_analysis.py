@@ -36,11 +36,11 @@ def test_intervals_hold_the_truth_of_loops_with_noise_drift_and_partial_retracti
 
 
 def test_the_modulus_and_the_stiffness_of_the_machine_are_found():
-    found = [analyse_loop(loop(seed, stiffness=500.0), Rig(RADIUS)) for seed in range(20)]
+    results = [analyse_loop(loop(seed, stiffness=500.0), Rig(RADIUS)) for seed in range(20)]
     for name, truth in (("fitted_modulus", MODULUS), ("stiffness", 500.0)):
-        estimates = [getattr(one, name) for one in found]
-        assert np.mean([one.low <= truth <= one.high for one in estimates]) >= 0.8
-        assert np.median([one.value for one in estimates]) == pytest.approx(truth, rel=0.02)
+        estimates = [getattr(result, name) for result in results]
+        assert np.mean([result.low <= truth <= result.high for result in estimates]) >= 0.8
+        assert np.median([result.value for result in estimates]) == pytest.approx(truth, rel=0.02)
 
 
 @pytest.mark.parametrize(("without", "stiffness"), [("radius", 1e3), ("force", 1e9)])
@@ -64,7 +64,7 @@ def test_a_soft_machine_that_is_taken_as_stiff_is_told_or_refused():
 
 
 @pytest.mark.parametrize(
-    ("made", "given"),
+    ("made", "preload"),
     [
         ({"without": "radius", "preload": 2.0, "drift": 0.3}, 1e3),
         ({"without": "radius", "preload": 3.0, "force_noise": 2e-4, "stiffness": 300.0}, 300.0),
@@ -76,10 +76,10 @@ def test_a_soft_machine_that_is_taken_as_stiff_is_told_or_refused():
         ({"without": "force", "stiffness": 300.0, "preload": 3.0}, 300.0),
     ],
 )
-def test_two_columns_hold_the_truth_at_any_preload_and_drift(made, given):
+def test_two_columns_hold_the_truth_at_any_preload_and_drift(made, preload):
     held, pulled = [], []
     for seed in range(3):
-        result = analyse_loop(loop(seed, **made), Rig(RADIUS, MODULUS, stiffness=given))
+        result = analyse_loop(loop(seed, **made), Rig(RADIUS, MODULUS, stiffness=preload))
         for name, truth in TRUTH.items():
             estimate = getattr(result, name)
             held.append(estimate.low <= truth <= estimate.high)
@@ -110,7 +110,7 @@ def test_the_pull_off_force_is_not_that_of_the_lowest_noise(n_row):
 )
 def test_what_contradicts_itself_is_said(made, rig, remark):
     sphere = {"radius": RADIUS, "contact_modulus": MODULUS} | rig
-    assert any(remark in one for one in analyse_loop(loop(0, **made), Rig(**sphere)).remarks)
+    assert any(remark in text for text in analyse_loop(loop(0, **made), Rig(**sphere)).remarks)
 
 
 @pytest.mark.parametrize(
@@ -121,7 +121,7 @@ def test_what_contradicts_itself_is_said(made, rig, remark):
         (
             {},
             {"window": (3e-4, 4e-4)},
-            "have 0 and 0 rows at contact radii within the window; .*um",
+            "have no rows at contact radii within the window; .*um",
         ),
         (
             {"preload": 5.0, "force_noise": 0.01, "without": "radius"},
@@ -149,10 +149,10 @@ def test_the_energy_lost_is_the_hysteresis_times_the_area_that_was_swept():
 def test_a_loop_that_begins_in_contact_has_no_lost_energy_and_says_so():
     whole = loop(0)
     first = int(np.flatnonzero(whole.radius > 0)[5])
-    cut = Recording(*(one[first:] for one in (whole.force, whole.radius, whole.displacement)))
+    cut = Recording(*(item[first:] for item in (whole.force, whole.radius, whole.displacement)))
     result = analyse_loop(cut, Rig(RADIUS, MODULUS))
     assert np.isnan(result.lost_energy)
-    assert any("the approach does not begin out of contact" in one for one in result.remarks)
+    assert any("the approach does not begin out of contact" in item for item in result.remarks)
 
 
 def test_an_unclosed_loop_has_no_lost_energy_and_says_so():

@@ -24,6 +24,38 @@ def test_a_bent_drift_widens_the_intervals():
     assert result.pull_off_force.low < pull < result.pull_off_force.high
 
 
+def drift_is_named(recording):
+    remarks = analyse_loop(recording, Rig(RADIUS, MODULUS)).remarks
+    return any("drift along one line" in text and "Cut out a rest" in text for text in remarks)
+
+
+def taken(recording, rows):
+    columns = (recording.force, recording.radius, recording.displacement)
+    return Recording(*(column[rows] for column in columns))
+
+
+def test_a_drift_over_rows_of_unequal_times_is_named():
+    whole = loop(0, drift=0.3)
+    every, fifth = np.arange(170), np.arange(170, whole.force.size, 5)
+    assert drift_is_named(taken(whole, np.concatenate([every, fifth])))
+    whole = loop(0, drift=0.1)
+    rest = np.repeat(np.arange(whole.force.size), 1 + 300 * (np.arange(320) == 160))
+    assert drift_is_named(taken(whole, rest))
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_a_steady_drift_over_equal_times_is_not_named(seed):
+    assert not drift_is_named(loop(seed, drift=0.3))
+
+
+@pytest.mark.parametrize(("shift", "remedy"), [(8, "up by 8 rows"), (-8, "down by 8 rows")])
+def test_a_shifted_radius_says_by_how_many_rows_to_move_it(shift, remedy):
+    whole = loop(0)
+    shifted = replace(whole, radius=np.roll(whole.radius, shift))
+    remarks = analyse_loop(shifted, Rig(RADIUS, MODULUS)).remarks
+    assert any(remedy in text for text in remarks)
+
+
 def test_a_spike_out_of_contact_is_no_contact():
     whole = loop(0, without="radius")
     for row in (5, -8):

@@ -21,8 +21,8 @@ def test_numbers_without_an_error_count_as_exact():
         (Rig(RADIUS, MODULUS, radius_error=0.01), "No error of the modulus is given"),
     ):
         assert any(text in remark and "exact" in remark for remark in remarks(rig))
-    known = Rig(RADIUS, MODULUS, modulus_error=0.02, radius_error=0.01)
-    assert not any("exact" in remark for remark in remarks(known))
+    stated_rig = Rig(RADIUS, MODULUS, modulus_error=0.02, radius_error=0.01)
+    assert not any("exact" in remark for remark in remarks(stated_rig))
 
 
 @pytest.mark.parametrize("stiffness", [0.5, 10.0])

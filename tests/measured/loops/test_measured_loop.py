@@ -56,8 +56,8 @@ def test_masked_rows_are_left_out_and_texts_have_units():
         {"force": ("t", 1e3 * columns["force"], {"units": "mN"}), "radius": ("t", rig["radius"])}
     )
     timed = labelled.assign(time=("t", np.arange(labelled.sizes["t"])))
-    for one in (labelled, timed, dict(labelled)):
-        assert measured_loop(one, radius=RADIUS).w_retr.value == pytest.approx(W_RETR, rel=1e-9)
+    for dataset in (labelled, timed, dict(labelled)):
+        assert measured_loop(dataset, radius=RADIUS).w_retr.value == pytest.approx(W_RETR, rel=1e-9)
 
 
 def test_youngs_modulus_and_poissons_ratio_are_the_contact_modulus():
@@ -70,7 +70,7 @@ def test_youngs_modulus_and_poissons_ratio_are_the_contact_modulus():
 
 
 @pytest.mark.parametrize(
-    ("given", "sentence"),
+    ("arguments", "sentence"),
     [
         ({"modulus": 0.7e6}, "modulus is 700000.0 and poisson is None; give both"),
         ({"poisson": 0.5}, "modulus is None and poisson is 0.5; give both"),
@@ -83,7 +83,7 @@ def test_youngs_modulus_and_poissons_ratio_are_the_contact_modulus():
         ({"stiffness": "3kg"}, "not a unit of stiffness"),
     ],
 )
-def test_an_argument_that_cannot_be_used_is_refused(given, sentence):
+def test_an_argument_that_cannot_be_used_is_refused(arguments, sentence):
     columns = in_contact()
     with pytest.raises((TypeError, ValueError), match=sentence):
-        measured_loop(columns, radius=RADIUS, **given)
+        measured_loop(columns, radius=RADIUS, **arguments)

@@ -27,18 +27,21 @@ def joined(*recordings):
 
 @pytest.mark.parametrize("modulus", [None, MODULUS])
 @pytest.mark.parametrize(
-    ("rows", "name", "other", "truth"),
+    ("rows", "name", "missing", "truth"),
     [(slice(0, TURN), "w_appr", "w_retr", W_APPR), (slice(TURN, None), "w_retr", "w_appr", W_RETR)],
 )
-def test_a_branch_alone_has_its_work_of_adhesion(rows, name, other, truth, modulus):
+def test_a_branch_alone_has_its_work_of_adhesion(rows, name, missing, truth, modulus):
     result = analyse_loop(WHOLE.rows(rows), Rig(RADIUS, modulus))
     estimate = getattr(result, name)
     assert estimate.value == pytest.approx(truth, rel=0.05)
     assert estimate.low <= truth <= estimate.high
-    assert np.isnan(getattr(result, other).value)
+    assert np.isnan(getattr(result, missing).value)
     assert np.isnan(result.hysteresis.value)
-    assert f"{other:18}unknown" in repr(result)
-    assert any(f"{other} and the hysteresis are unknown" in remark for remark in result.remarks)
+    assert f"{missing:18}unknown" in repr(result)
+    branch = {"w_appr": "approach", "w_retr": "retraction"}[name]
+    [averaged] = [line for line in repr(result).splitlines() if line.startswith("averaged over")]
+    assert averaged.endswith(f": {np.sum(result.in_window)} rows of {branch}")
+    assert any(f"{missing} and the hysteresis are unknown" in remark for remark in result.remarks)
 
 
 def test_a_retraction_without_a_radius_is_evaluated():
@@ -52,6 +55,11 @@ def test_a_segment_of_a_whole_loop_uses_its_rows_out_of_contact(segment, name):
     result = analyse_loop(WHOLE, Rig(RADIUS, MODULUS, segment=segment))
     assert getattr(result, name).low <= TRUTH[name] <= getattr(result, name).high
     assert any("60 rows out of contact give a drift" in remark for remark in result.remarks)
+
+
+def test_too_few_rows_of_a_branch_alone_are_an_error_on_this_branch():
+    with pytest.raises(ValueError, match=r"retraction has no rows .*; \d+ are needed"):
+        analyse_loop(WHOLE.rows(slice(TURN, None)), Rig(RADIUS, MODULUS, window=(1e-6, 2e-6)))
 
 
 def test_a_segment_that_was_not_recorded_is_an_error_with_the_remedy():
@@ -93,14 +101,14 @@ def test_a_column_of_the_other_sign_is_inverted_or_named(column):
     names = ["force", "radius"] if column == "force" else ["force", "displacement"]
     columns = {name: getattr(WHOLE, name) for name in names}
     wrong = columns | {column: -columns[column]}
-    known = {"radius": RADIUS, "contact_modulus": MODULUS}
+    sphere = {"radius": RADIUS, "contact_modulus": MODULUS}
     if column == "displacement":
-        known["stiffness"] = 1e3
+        sphere["stiffness"] = 1e3
     with pytest.raises(ValueError, match=f"--invert {column}"):
-        measured_loop(wrong, **known)
+        measured_loop(wrong, **sphere)
     inverted, expected = (
-        measured_loop(wrong, **known, invert=column),
-        measured_loop(columns, **known),
+        measured_loop(wrong, **sphere, invert=column),
+        measured_loop(columns, **sphere),
     )
     assert inverted.w_retr == expected.w_retr
 

@@ -2,6 +2,7 @@
 
 import functools
 import json
+import re
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ import crackfront as cf
 from crackfront import measured_loop
 from crackfront.analysis.steady_adhesion import steady_adhesion
 from crackfront.cli import main
+from crackfront.measured.loops.loop_page import loop_numbers
 from crackfront.simulate.cycle_files import cycle_record
 
 SPHERE = cf.Scales("1.25mm", "63mJ/m2", "0.93MPa")
@@ -81,21 +83,27 @@ def test_the_energy_lost_is_that_of_all_instabilities():
 
 
 def test_the_command_prints_reduced_units_and_those_of_a_sphere_that_is_named(path):
-    known = float(cf.load_result(path).w_retr)
+    w_retr = float(cf.load_result(path).w_retr)
     done = loop(path, "--json")
     assert done.exit_code == 0, done.output
     content = json.loads(done.stdout)
     assert content["units"] == "reduced"
-    assert content["w_retr"]["value"] == pytest.approx(known, rel=1e-12)
-    assert loop(path).stdout.splitlines()[2].split()[:3] == ["w_retr", f"{known:.4g}", "w_int"]
+    assert content["w_retr"]["value"] == pytest.approx(w_retr, rel=1e-12)
+    assert loop(path).stdout.splitlines()[2].split()[:3] == ["w_retr", f"{w_retr:.4g}", "w_int"]
     sphere = ("--radius", "1.25mm", "--modulus", "0.7MPa", "--poisson", "0.5")
     sphere += ("--work-of-adhesion", "63mJ/m2")
     done = loop(path, *sphere, "--figure", path.with_name("loop.png"), "--json")
     assert done.exit_code == 0, done.output
     content = json.loads(done.stdout)
     assert content["units"] == "SI"
-    assert content["w_retr"]["value"] == pytest.approx(63e-3 * known, rel=1e-12)
+    assert content["w_retr"]["value"] == pytest.approx(63e-3 * w_retr, rel=1e-12)
     assert path.with_name("loop.png").stat().st_size > 1e4
+
+
+def test_reduced_units_have_an_interval_where_it_has_a_width():
+    texts = dict(loop_numbers(measured_loop(whole_cycle("flat"))))
+    assert " to " in texts["w_retr"]
+    assert re.fullmatch(r"\S+ pi w_int R", texts["pull-off force"])
 
 
 def test_cycles_without_works_of_adhesion_are_refused_with_what_to_do(cycle):

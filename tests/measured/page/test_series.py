@@ -11,11 +11,11 @@ from crackfront.measured.page.series import SeriesPoint, series_figure
 
 def points():
     """Predicted and measured, a least value, measured alone, and neither."""
-    known, other = Estimate(20e-3, math.nan, 15e-3, 30e-3), Estimate(22e-3, 1e-3, 20e-3, 24e-3)
+    first, second = Estimate(20e-3, math.nan, 15e-3, 30e-3), Estimate(22e-3, 1e-3, 20e-3, 24e-3)
     bare = Estimate(9e-3, math.nan, math.nan, math.nan)
     return [
-        SeriesPoint("A", "film", known, other, is_lower_bound=False),
-        SeriesPoint("B", "film", known, UNKNOWN, is_lower_bound=True),
+        SeriesPoint("A", "film", first, second, is_lower_bound=False),
+        SeriesPoint("B", "film", first, UNKNOWN, is_lower_bound=True),
         SeriesPoint("C", "glass", UNKNOWN, bare, is_lower_bound=False),
         SeriesPoint("D", "glass", UNKNOWN, UNKNOWN, is_lower_bound=False),
     ]

@@ -99,9 +99,9 @@ def test_long_waves_that_cannot_matter_are_no_reservation(surface):
     assert not fit.has_roll_off
     for high, is_told in ((0.02, False), (0.4, True)):
         longer = Estimate(0.002, np.nan, 0.0, high)
-        other = with_shares(surface, continued_long=longer)
-        other = replace(other, joint=replace(other.joint, fit=fit))
-        sentences = [remark.sentence for remark in spectrum_remarks(other)]
+        extended = with_shares(surface, continued_long=longer)
+        extended = replace(extended, joint=replace(extended.joint, fit=fit))
+        sentences = [remark.sentence for remark in spectrum_remarks(extended)]
         assert any("no plateau" in sentence for sentence in sentences) == is_told
 
 
@@ -111,17 +111,17 @@ def test_the_edge_of_the_hurst_exponents_counts_only_short_waves(surface):
     fit = replace(surface.joint.fit, surface=parameters)
     for longer, is_told in ((0.0, True), (0.28, False)):
         part = Estimate(longer, np.nan, longer, longer)
-        other = with_shares(surface, continued=0.3, measured=0.7, continued_long=part)
-        other = replace(other, joint=replace(other.joint, fit=fit))
-        sentences = [remark.sentence for remark in spectrum_remarks(other)]
+        extended = with_shares(surface, continued=0.3, measured=0.7, continued_long=part)
+        extended = replace(extended, joint=replace(extended.joint, fit=fit))
+        sentences = [remark.sentence for remark in spectrum_remarks(extended)]
         assert any("Hurst" in sentence for sentence in sentences) == is_told
 
 
 def test_a_surface_that_is_mostly_modelled_is_to_be_measured(surface):
     longer = Estimate(0.5, np.nan, 0.4, 0.6)
     for part, word in ((longer, "a side of"), (longer.each(lambda share: share / 10), "pixels of")):
-        other = with_shares(surface, measured=0.4, continued=0.6, continued_long=part)
-        sentence = measure_next(other).sentence
+        extended = with_shares(surface, measured=0.4, continued=0.6, continued_long=part)
+        sentence = measure_next(extended).sentence
         assert f"a scan with {word}" in sentence.lower()
         assert "hardly narrow it, but would measure" in sentence
 
@@ -140,12 +140,12 @@ def test_a_recommended_scan_has_pixels_tips_and_points_that_exist(
         for name in ("spectrum", "recorded", "extended")
     }
     measurement = replace(profile.scans[0].measurement, tip_radius=5e-9)
-    other = replace(
+    coarser = replace(
         profile,
         joint=replace(profile.joint, density=lateral, **spectra),
         scans=(replace(profile.scans[0], measurement=measurement),),
     )
-    sentence = measure_next(other).sentence
+    sentence = measure_next(coarser).sentence
     pixels = [lengths(text)[0] for text in re.findall(r"pixels of at most [\d.]+ \w+", sentence)]
     sides = [lengths(text)[0] for text in re.findall(r"side of at least [\d.]+ \w+", sentence)]
     assert len(pixels) == len(sides) == scans
@@ -187,16 +187,22 @@ def test_an_e_el_beyond_the_law_says_which_one_the_numbers_are_for(surface):
     prediction = predicted(surface, scales)
     by_spectrum = surface.conformity_energy(modulus).value
     assert prediction.e_el.value < by_spectrum
-    [remark] = [one for one in prediction.verdict.remarks if "numbers are for" in one.sentence]
+    [remark] = [
+        remark_text
+        for remark_text in prediction.verdict.remarks
+        if "numbers are for" in remark_text.sentence
+    ]
     assert f"{1e3 * by_spectrum:.3g} mJ/m2" in remark.sentence
 
 
 @pytest.mark.parametrize(("slope", "just"), [(0.3004, True), (0.4, False)])
 def test_a_value_that_is_printed_as_its_limit_is_just_beyond_it(surface, slope, just):
-    *others, slopes = surface.measures
-    other = replace(surface, measures=(*others, replace(slopes, rms=Estimate(slope, 0, 0.2, 0.5))))
+    *measures, slopes = surface.measures
+    steeper = replace(
+        surface, measures=(*measures, replace(slopes, rms=Estimate(slope, 0, 0.2, 0.5)))
+    )
     [remark] = [
-        remark for remark in theory_verdict(other, SCENE).remarks if "slope" in remark.concerns
+        remark for remark in theory_verdict(steeper, SCENE).remarks if "slope" in remark.concerns
     ]
     assert ("just above 0.3" in remark.sentence) == just
 

@@ -35,7 +35,11 @@ def test_conditions_say_by_how_much_they_hold(surface, prediction):
     }
     for name, margin in margins.items():
         assert remarks[name].comparison.margin == pytest.approx(margin)
-    severities = {name: one.severity for name, one in remarks.items() if one.severity != "holds"}
+    severities = {
+        name: remark_text.severity
+        for name, remark_text in remarks.items()
+        if remark_text.severity != "holds"
+    }
     assert severities == {"small slopes": "reservation"}
     assert "rms slope of 0.59, in doubt above 0.3; linear" in remarks["small slopes"].sentence
 
@@ -69,7 +73,11 @@ def test_the_range_of_attraction_is_held_against_sphere_and_roughness(surface):
 def test_what_would_meet_a_failing_condition_meets_it(surface, scales, reach, failing):
     verdict = theory_verdict(surface, scales, reach)
     assert verdict.outcome == "does not apply"
-    [remark] = [one for one in verdict.with_severity("fails") if one.concerns == failing]
+    [remark] = [
+        remark_text
+        for remark_text in verdict.with_severity("fails")
+        if remark_text.concerns == failing
+    ]
     changes = {"modulus": "contact_modulus", "a radius": "radius", "w_int": "work_of_adhesion"}
     units = {"modulus": "Pa", "a radius": "m", "w_int": "J/m^2"}
     tried = 0
@@ -79,8 +87,8 @@ def test_what_would_meet_a_failing_condition_meets_it(surface, scales, reach, fa
                 number = part.split("above " if "above" in part else "below ")[1].split(", not")[0]
                 value = si_value(number, units[word], name=word)
                 wanted = value * (1.02 if "above" in part else 0.98)
-                other = conditions(surface, replace(scales, **{name: wanted}), reach)[failing]
-                assert other.severity != "fails", part
+                changed = conditions(surface, replace(scales, **{name: wanted}), reach)[failing]
+                assert changed.severity != "fails", part
                 tried += 1
     assert tried
 

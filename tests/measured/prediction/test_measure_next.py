@@ -12,8 +12,8 @@ from tests.measured.made import (
 
 def lengths(sentence):
     """Lengths that a sentence names, in um."""
-    found = re.findall(r"([\d.]+) (nm|um)", sentence)
-    return [float(number) * {"nm": 1e-3, "um": 1.0}[unit] for number, unit in found]
+    lengths_and_units = re.findall(r"([\d.]+) (nm|um)", sentence)
+    return [float(number) * {"nm": 1e-3, "um": 1.0}[unit] for number, unit in lengths_and_units]
 
 
 def test_a_detail_needs_a_larger_scan_and_an_overview_a_finer_one():
@@ -30,7 +30,7 @@ def test_a_detail_needs_a_larger_scan_and_an_overview_a_finer_one():
 
 
 def test_the_scan_that_is_asked_for_narrows_the_interval_as_much_as_was_said(surface):
-    detail, both = shipped_surface(DETAIL).joint.draws, surface.joint.draws
+    detail, joined = shipped_surface(DETAIL).joint.draws, surface.joint.draws
     longer, shorter = detail.factors_with
-    assert both.factor < 1.5 * longer < shorter < detail.factor
+    assert joined.factor < 1.5 * longer < shorter < detail.factor
     assert "would hardly narrow it" in measure_next(surface).sentence

@@ -24,9 +24,9 @@ from crackfront.measured.prediction.works import (
 from tests.measured.made import DETAIL, OVERVIEW, SCENE, shipped_surface
 
 
-def sentences(found, *severities):
+def sentences(prediction, *severities):
     """Sentences of the remarks on a prediction."""
-    return [remark.sentence for remark in found.verdict.with_severity(*severities)]
+    return [remark.sentence for remark in prediction.verdict.with_severity(*severities)]
 
 
 def test_the_law_holds_between_the_predicted_numbers(prediction):
@@ -46,14 +46,14 @@ def test_the_law_holds_between_the_predicted_numbers(prediction):
 
 def test_intervals_hold_those_of_k_and_of_e_el(prediction):
     for name in ("k_appr", "k_retr", "w_appr", "w_retr", "hysteresis", "pull_off_force"):
-        found = getattr(prediction, name)
-        assert found.low < found.value < found.high
+        estimate = getattr(prediction, name)
+        assert estimate.low < estimate.value < estimate.high
     k, excess, e_el = prediction.k_appr, prediction.front_excess, prediction.e_el.value
     more = np.hypot(np.log(k.high / k.value), np.log(excess.value / excess.low))
     by_factor = e_el * k.value / excess.value * np.expm1(more)
     [by_energy] = (
-        prediction.w_appr.value - adhesion_by_law(other, SCENE).w_appr.value
-        for other in (amplified(prediction.surface, prediction.e_el.high / e_el),)
+        prediction.w_appr.value - adhesion_by_law(at_end, SCENE).w_appr.value
+        for at_end in (amplified(prediction.surface, prediction.e_el.high / e_el),)
     )
     below = prediction.w_appr.value - prediction.w_appr.low
     assert below == pytest.approx(np.hypot(by_factor, by_energy))
@@ -74,10 +74,12 @@ def test_intervals_hold_the_works_at_every_e_el_within_its_own(scans):
     """The factor k falls with e_el, so that w_retr is largest within the interval of one scan."""
     prediction = predicted(shipped_surface(*scans), SCENE)
     for e_el in np.geomspace(prediction.e_el.low, prediction.e_el.high, 7):
-        other = adhesion_by_law(amplified(prediction.surface, e_el / prediction.e_el.value), SCENE)
+        adhesion = adhesion_by_law(
+            amplified(prediction.surface, e_el / prediction.e_el.value), SCENE
+        )
         for name in ("w_appr", "w_retr", "hysteresis", "front_hysteresis"):
             wide = getattr(prediction, name)
-            assert wide.low <= getattr(other, name).value <= wide.high
+            assert wide.low <= getattr(adhesion, name).value <= wide.high
 
 
 def test_nanodiamond_is_predicted_as_it_was_simulated(prediction):
@@ -119,15 +121,17 @@ def test_the_lengths_of_a_prediction_are_those_of_the_smooth_contact_and_of_the_
 def test_every_radius_from_a_micrometre_to_a_metre_is_predicted(surface):
     _, largest = shipped_law().size
     for radius in np.geomspace(1e-6, 1.0, 7):
-        found = predicted(surface, replace(SCENE, radius=radius))
-        text = report_text(surface, verdict=found.verdict, prediction=found)
-        notes = "\n".join(sentences(found, "note"))
-        assert f"{found.size:.3g}\n" in text
-        assert 0 <= found.k_appr.low < found.k_appr.value < found.k_appr.high
-        doubts = sentences(found, "reservation")
-        assert any("not measured there" in text for text in doubts) == (found.factors.warning != "")
-        assert ("above the largest that was measured" in notes) == (found.size > largest)
-    assert found.k_appr.value > 1
+        prediction = predicted(surface, replace(SCENE, radius=radius))
+        text = report_text(surface, verdict=prediction.verdict, prediction=prediction)
+        notes = "\n".join(sentences(prediction, "note"))
+        assert f"{prediction.size:.3g}\n" in text
+        assert 0 <= prediction.k_appr.low < prediction.k_appr.value < prediction.k_appr.high
+        doubts = sentences(prediction, "reservation")
+        assert any("not measured there" in text for text in doubts) == (
+            prediction.factors.warning != ""
+        )
+        assert ("above the largest that was measured" in notes) == (prediction.size > largest)
+    assert prediction.k_appr.value > 1
 
 
 def test_where_boundary_elements_were_compared_the_hysteresis_is_divided(surface):
@@ -142,10 +146,10 @@ def test_where_boundary_elements_were_compared_the_hysteresis_is_divided(surface
 def test_a_pull_off_force_gives_the_work_of_adhesion_that_it_implies(surface, prediction):
     assert math.isnan(prediction.implied_work_of_adhesion.value)
     measured = prediction.pull_off_force.value
-    found = predicted(surface, SCENE, pull_off=measured).implied_work_of_adhesion
-    assert found.value == pytest.approx(SCENE.work_of_adhesion, rel=1e-3)
-    assert found.low < found.value < found.high
-    low = replace(SCENE, work_of_adhesion=found.low)
+    implied = predicted(surface, SCENE, pull_off=measured).implied_work_of_adhesion
+    assert implied.value == pytest.approx(SCENE.work_of_adhesion, rel=1e-3)
+    assert implied.low < implied.value < implied.high
+    low = replace(SCENE, work_of_adhesion=implied.low)
     assert predicted(surface, low).pull_off_force.high == pytest.approx(measured, rel=1e-3)
     none = predicted(surface, SCENE, pull_off=1e-9)
     assert math.isnan(none.implied_work_of_adhesion.value)

@@ -63,29 +63,29 @@ def test_all_measurements_of_a_surface_have_the_units_and_sizes_of_the_container
     tmp_path, rng, metadata
 ):
     heights = maps(rng)
-    files = {f"{name}.txt": texts(one, 1e9) for name, one in zip("ab", heights, strict=True)}
+    files = {f"{name}.txt": texts(item, 1e9) for name, item in zip("ab", heights, strict=True)}
     entries = [entry("a"), entry("b", size=[5.0, 5.0])]
     path = container(tmp_path / "film.zip", {"film": entries}, files, metadata)
     measurements = read_measurements([path], CENTER)
-    assert [str(one.path) for one in measurements] == [f"{path}/a", f"{path}/b"]
-    assert [one.size[0] for one in measurements] == pytest.approx([SIDE, SIDE / 2])
-    for one, expected in zip(measurements, heights, strict=True):
-        np.testing.assert_allclose(one.heights, expected - expected.mean(), atol=1e-17)
+    assert [str(item.path) for item in measurements] == [f"{path}/a", f"{path}/b"]
+    assert [item.size[0] for item in measurements] == pytest.approx([SIDE, SIDE / 2])
+    for item, expected in zip(measurements, heights, strict=True):
+        np.testing.assert_allclose(item.heights, expected - expected.mean(), atol=1e-17)
     assert "film: b" in str(cf.list_channels(path)[1])
 
 
 def test_a_container_of_the_library_is_read(tmp_path, rng):
     heights = maps(rng)
     scans = [
-        Topography(one, (SIDE, SIDE), unit="m", info={"name": name})
-        for name, one in zip("ab", heights, strict=True)
+        Topography(item, (SIDE, SIDE), unit="m", info={"name": name})
+        for name, item in zip("ab", heights, strict=True)
     ]
     path = tmp_path / "film.zip"
     write_containers([InMemorySurfaceContainer(scans)], str(path))
     measurements = read_measurements([path], CENTER)
-    for one, expected in zip(measurements, heights, strict=True):
-        assert one.size == pytest.approx((SIDE, SIDE))
-        np.testing.assert_allclose(one.heights, expected - expected.mean(), atol=1e-17)
+    for item, expected in zip(measurements, heights, strict=True):
+        assert item.size == pytest.approx((SIDE, SIDE))
+        np.testing.assert_allclose(item.heights, expected - expected.mean(), atol=1e-17)
 
 
 def instrument(**lengths):
@@ -102,9 +102,9 @@ def test_the_instrument_of_a_container_counts_as_if_the_file_stated_it(tmp_path,
     files = dict.fromkeys(("a.txt", "b.txt"), texts(heights, 1e9))
     files["b.txt"] = texts(heights[::-1], 1e9)
     path = container(tmp_path / "film.zip", {"film": entries}, files, metadata)
-    found, bare = read_measurements([path], CENTER)
-    assert (found.tip_radius, found.shortest) == pytest.approx((5e-6, 1e-6))
-    assert found.tip_wavelength > 1e-6
+    measured, bare = read_measurements([path], CENTER)
+    assert (measured.tip_radius, measured.shortest) == pytest.approx((5e-6, 1e-6))
+    assert measured.tip_wavelength > 1e-6
     assert (bare.tip_radius, bare.tip_wavelength) == (0, 0)
     assert bare.shortest == pytest.approx(4 * SIDE / 48)
     named, _ = read_measurements([path], ReadingOptions(tip_radius="1um"))
@@ -113,7 +113,7 @@ def test_the_instrument_of_a_container_counts_as_if_the_file_stated_it(tmp_path,
 
 def test_one_of_several_surfaces_is_chosen_by_name_or_number(tmp_path, rng):
     heights = maps(rng)
-    files = {f"{name}.txt": texts(one, 1e9) for name, one in zip("ab", heights, strict=True)}
+    files = {f"{name}.txt": texts(item, 1e9) for name, item in zip("ab", heights, strict=True)}
     surfaces = {"smooth": [entry("a")], "rough": [entry("b")]}
     path = container(tmp_path / "films.zip", surfaces, files)
     with pytest.raises(ValueError, match=r"2 surfaces; .*--surface: 0 'smooth' \(1.*; 1 'rough'"):
@@ -150,11 +150,11 @@ def test_a_measurement_that_cannot_be_used_is_left_out_with_a_sentence(tmp_path,
     np.savetxt(line, points, header="x z")
     files = {"good.txt": texts(good, 1e9), "uneven.txt": line.getvalue()}
     entries = [entry("uneven", size=[8.4], height_scale=1.0), entry("good")]
-    both = container(tmp_path / "both.zip", {"rough": entries}, files)
-    [measurement] = read_measurements([both], CENTER)
-    assert measurement.path == both / "good"
+    two_surfaces = container(tmp_path / "both.zip", {"rough": entries}, files)
+    [measurement] = read_measurements([two_surfaces], CENTER)
+    assert measurement.path == two_surfaces / "good"
     [sentence] = measurement.unusable
-    assert sentence.startswith(f"{both / 'uneven'}: ")
+    assert sentence.startswith(f"{two_surfaces / 'uneven'}: ")
     assert "not equally spaced" in sentence
     alone = container(tmp_path / "alone.zip", {"rough": entries[:1]}, files)
     with pytest.raises(ValueError, match="not equally spaced"):

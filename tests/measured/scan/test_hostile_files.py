@@ -14,6 +14,7 @@ from crackfront.core.resources import TooLargeError
 from crackfront.measured.options import ReadingOptions
 from crackfront.measured.samples.sample import read_samples
 from crackfront.measured.scan import containers
+from crackfront.measured.scan.channels import is_doubtful
 from crackfront.measured.scan.instruments import list_channels, raw_scan
 from tests.measured.made import refusal
 
@@ -89,7 +90,7 @@ def test_an_unevenly_spaced_line_states_its_spacings(tmp_path, rng):
     assert "equal steps" in message
 
 
-def write_sur(path, heights, kind=2, n_object=1, unit="µm"):
+def write_sur(path, heights, kind=2, n_object=1, unit="µm", quantity=b"Z"):
     n_x, n_y = heights.shape
     data = heights.astype("<i4")
     units = [text.encode("latin-1") for text in ["µm", "µm", unit, "µm", "µm", unit]]
@@ -103,7 +104,7 @@ def write_sur(path, heights, kind=2, n_object=1, unit="µm"):
         32,
         *(data.min(), data.max(), n_x, n_y, data.size),
         *(0.5, 0.5, 1e-3),
-        *(b"X", b"Y", b"Z"),
+        *(b"X", b"Y", quantity),
     )
     head += struct.pack("<16s16s16s16s16s16s3f", *units, 1, 1, 1)
     path.write_bytes(head.ljust(512, b"\0") + data.tobytes())
@@ -124,24 +125,49 @@ def test_sur_files_without_heights_say_what_they_contain(tmp_path, noise, option
     assert "export the" in message
 
 
+def test_the_type_of_a_sur_file_says_that_it_has_heights_and_not_the_name_of_its_axis(
+    tmp_path, noise
+):
+    path = write_sur(tmp_path / "scan.sur", 1e10 * noise, quantity=b"Intensity")
+    [channel] = list_channels(path)
+    assert channel.quantity == "height"
+    assert "another quantity" not in str(channel)
+    assert not is_doubtful(raw_scan(path, ReadingOptions()).channel)
+
+
 def test_the_first_of_several_objects_of_a_sur_file_is_read_and_says_so(tmp_path, noise):
     path = write_sur(tmp_path / "scan.sur", 1e10 * noise, n_object=2)
     assert "the first of 2 objects" in raw_scan(path, ReadingOptions()).channel
 
 
+def write_opd(path, blocks):
+    """A Wyko file of blocks: their names, types and bytes."""
+    entries = [(b"Directory", 1, bytes(24 * (1 + len(blocks)))), *blocks]
+    heads = (struct.pack("<16shlH", name, kind, len(data), 0) for name, kind, data in entries)
+    path.write_bytes(b"\1\0" + b"".join([*heads, *(data for _, _, data in blocks)]))
+    return path
+
+
+WAVELENGTH = (b"Wavelength", 7, struct.pack("<f", 630))
+
+
 def test_a_wyko_file_without_heights_says_so(tmp_path):
     image = struct.pack("<3H", 8, 8, 1) + bytes(64)
-    entries = struct.pack("<16shlH", b"Directory", 1, 48, 0)
-    entries += struct.pack("<16shlH", b"Intensity", 3, len(image), 0)
-    wavelength = struct.pack("<16shlH", b"Wavelength", 7, 4, 0)
-    path = tmp_path / "scan.opd"
-    path.write_bytes(
-        b"\1\0"
-        + entries.replace(b"\x30\0\0\0", b"\x48\0\0\0", 1)
-        + wavelength
-        + image
-        + struct.pack("<f", 630)
-    )
-    message = refusal(path)
+    message = refusal(write_opd(tmp_path / "scan.opd", [(b"Intensity", 3, image), WAVELENGTH]))
     assert "lacks an array of numbers" in message
     assert "export the heights" in message
+
+
+def test_a_wyko_file_with_two_blocks_of_heights_says_which_is_read_and_how_to_choose(tmp_path):
+    grid = struct.pack("<3H", 8, 8, 4)
+    heights = [
+        (name, 3, grid + np.full((8, 8), height, "<f4").tobytes())
+        for name, height in ((b"RAW_DATA", 1), (b"OPD", 2))
+    ]
+    pixel = (b"Pixel_size", 7, struct.pack("<f", 1e-3))
+    path = write_opd(tmp_path / "scan.opd", [WAVELENGTH, pixel, *heights])
+    default, second = (raw_scan(path, ReadingOptions(channel=channel)) for channel in (None, "OPD"))
+    assert default.channel.startswith("'RAW_DATA', 0 of 2")
+    assert second.channel.startswith("'OPD', 1 of 2")
+    assert all("--channel" in scan.channel for scan in (default, second))
+    np.testing.assert_allclose(second.topography.heights(), 2 * default.topography.heights())

@@ -15,9 +15,9 @@ def classic(
 ):
     """A classic netCDF file, sides of 20 um."""
     with netcdf_file(path, "w", version=2) as file:
-        for one in dims:
-            file.createDimension(one, COUNT)
-            coordinate = file.createVariable(one, "f8", (one,))
+        for dim in dims:
+            file.createDimension(dim, COUNT)
+            coordinate = file.createVariable(dim, "f8", (dim,))
             coordinate[:] = 20 / COUNT * np.arange(COUNT)
             setattr(coordinate, word, units[0])
             if length:
@@ -29,7 +29,7 @@ def classic(
 
 
 @pytest.mark.parametrize(
-    ("factor", "given"),
+    ("factor", "options"),
     [
         (1e6, {}),
         (1e9, {"units": ("um", "nm")}),
@@ -40,9 +40,9 @@ def classic(
         (1e6, {"dims": ("y", "x")}),
     ],
 )
-def test_sides_and_heights_have_each_their_unit(tmp_path, noise, factor, given):
-    stored = factor * (noise.T if given.get("dims") else noise)
-    measurement = read(classic(tmp_path / "scan.nc", stored, **given), detrend="center")
+def test_sides_and_heights_have_each_their_unit(tmp_path, noise, factor, options):
+    stored = factor * (noise.T if options.get("dims") else noise)
+    measurement = read(classic(tmp_path / "scan.nc", stored, **options), detrend="center")
     assert measurement.format == "nc"
     assert measurement.size == pytest.approx((20e-6, 20e-6))
     np.testing.assert_allclose(measurement.heights, noise - noise.mean(), atol=1e-18)
@@ -51,13 +51,13 @@ def test_sides_and_heights_have_each_their_unit(tmp_path, noise, factor, given):
 def modern(path, variables, unit="um"):
     """A netCDF-4 file."""
     with netCDF4.Dataset(path, "w") as file:
-        for one in "xy":
-            file.createDimension(one, COUNT)
-            file.createVariable(one, "f8", (one,))[:] = 20 / COUNT * np.arange(COUNT)[::-1]
-            file[one].units = unit
-        for name, (values, own) in variables.items():
+        for dim in "xy":
+            file.createDimension(dim, COUNT)
+            file.createVariable(dim, "f8", (dim,))[:] = 20 / COUNT * np.arange(COUNT)[::-1]
+            file[dim].units = unit
+        for name, (values, attributes) in variables.items():
             file.createVariable(name, "f8", ("x", "y"), fill_value=-9999.0)[:] = values
-            file[name].units = own
+            file[name].units = attributes
     return path
 
 
@@ -70,8 +70,8 @@ def test_fill_values_are_missing_and_descending_coordinates_turned(tmp_path, noi
 
 
 def test_a_quantity_that_is_no_length_is_no_height(tmp_path, noise):
-    both = {"a": (noise, "V"), "b": (1e6 * noise, "um")}
-    assert read(modern(tmp_path / "scan.nc", both)).channel == "'b', 1 of 2"
+    arrays = {"a": (noise, "V"), "b": (1e6 * noise, "um")}
+    assert read(modern(tmp_path / "scan.nc", arrays)).channel == "'b', 1 of 2"
     assert "channel 'a' contains voltage" in refusal(tmp_path / "scan.nc", channel="a")
     two = {"a": (noise, "um"), "b": (1e6 * noise, "um")}
     assert "do not say which one has the heights" in refusal(modern(tmp_path / "scan.nc", two))

@@ -24,7 +24,9 @@ def test_marks_for_missing_data_are_taken_as_missing_and_said(tmp_path, rng, hei
     assert measurement.missing == pytest.approx(20 / heights.size)
     assert np.std(measurement.heights - whole.heights) < 0.01 * np.std(whole.heights)
     [remark] = [
-        one for one in scan_remarks([analysed_scan(measurement)]) if one.severity == "reservation"
+        item
+        for item in scan_remarks([analysed_scan(measurement)])
+        if item.severity == "reservation"
     ]
     assert "20 points at " in remark.sentence
 
@@ -48,8 +50,8 @@ def test_too_many_marks_are_refused_by_their_number_and_value(tmp_path, rng, hei
 def test_spikes_beyond_what_neighbours_allow_are_taken_as_missing(rng, heights):
     places = chosen(rng, heights, 12)
     heights[places] += rng.choice([-1, 1], 12) * rng.uniform(2e-6, 5e-6, 12)
-    found, [sentence] = outliers(np.ma.array(heights))
-    assert set(zip(*np.nonzero(found), strict=True)) == set(zip(*places, strict=True))
+    mask, [sentence] = outliers(np.ma.array(heights))
+    assert set(zip(*np.nonzero(mask), strict=True)) == set(zip(*places, strict=True))
     assert sentence.startswith("12 points, the farthest at ")
 
 
@@ -57,8 +59,8 @@ def test_marks_and_spikes_of_a_line_are_found(rng):
     line = np.cumsum(1e-8 * rng.standard_normal(1000))
     line[::97] = -9999e-9
     line[[50, 98, 193]] += 3e-6  # two of them beside a mark
-    found, sentences = outliers(np.ma.array(line))
-    assert np.count_nonzero(found) == 14
+    mask, sentences = outliers(np.ma.array(line))
+    assert np.count_nonzero(mask) == 14
     assert len(sentences) == 2
 
 
@@ -101,8 +103,8 @@ def particles(rng, heights):
     ],
 )
 def test_pits_plateaus_steps_and_saturated_heights_are_a_surface(rng, surface):
-    found, sentences = outliers(np.ma.array(surface(rng, map_heights(rng))))
-    assert not found.any()
+    mask, sentences = outliers(np.ma.array(surface(rng, map_heights(rng))))
+    assert not mask.any()
     assert not sentences
 
 

@@ -41,8 +41,8 @@ def test_no_verdict_on_spacings_depends_on_the_unit(tmp_path, line, unit):
 def test_a_line_is_the_same_in_any_order_of_its_points(tmp_path, line, order):
     places = 0.2e-6 * np.arange(COUNT)
     measurement = read(write(tmp_path / "one.xyz", places, line), unit="um")
-    other = read(write(tmp_path / "other.xyz", places[order], line[order]), unit="um")
-    np.testing.assert_array_equal(measurement.heights, other.heights)
+    reordered = read(write(tmp_path / "other.xyz", places[order], line[order]), unit="um")
+    np.testing.assert_array_equal(measurement.heights, reordered.heights)
     mirrored = read(write(tmp_path / "mirrored.xyz", -places, line), unit="um")
     np.testing.assert_allclose(mirrored.heights, measurement.heights[::-1], atol=1e-18)
 
@@ -134,8 +134,8 @@ def test_heads_that_do_not_state_a_length_for_each_column_are_refused(tmp_path, 
     first = "{0}," if head.count(",") > 1 else ""
     rows = (f"{first.format(0.1 * i)}{0.1 * i:.4f},{1e9 * z:.6f}" for i, z in enumerate(line))
     path.write_text("\n".join([head, *rows]))
-    for given in ({}, {"unit": "um"}):
-        message = refusal(path, **given)
+    for options in ({}, {"unit": "um"}):
+        message = refusal(path, **options)
         assert "its columns are" in message
         assert "--unit" not in message
 

@@ -36,9 +36,9 @@ def test_a_crop_is_the_map_of_a_part(tmp_path, noise):
     path.write_bytes(scans.al3d(noise, SIDE / N_POINT, "whole"))
     part = tmp_path / "part.al3d"
     part.write_bytes(scans.al3d(noise[12:48, 6:42], SIDE / N_POINT, "part"))
-    found, expected = read(path, crop="5um:20um,2.5um:17.5um"), read(part)
-    assert found.size == pytest.approx(expected.size)
-    np.testing.assert_allclose(found.heights, expected.heights, atol=1e-20)
+    cropped, expected = read(path, crop="5um:20um,2.5um:17.5um"), read(part)
+    assert cropped.size == pytest.approx(expected.size)
+    np.testing.assert_allclose(cropped.heights, expected.heights, atol=1e-20)
     assert "ends at 20 um and the crop at 30 um" in refusal(path, crop="0:30um,0:1um")
     assert "leaves fewer than 8 points" in refusal(path, crop="0:1um,0:1um")
     assert "1; name both ends" in refusal(path, crop="0:10um")
@@ -81,15 +81,17 @@ def test_a_measurement_counts_once_under_any_name_in_any_unit(tmp_path, noise):
     copy.write_bytes(path.read_bytes())
     np.savetxt(nanometres, 1e9 * noise.T, fmt="%.1f")
     nanometres.write_text(HEAD.replace("units: um", "units: nm") + nanometres.read_text())
-    for other in (copy, nanometres):
-        assert f"{other} has the heights of {path}; a measurement counts" in refusal(path, other)
+    for path_of_same in (copy, nanometres):
+        assert f"{path_of_same} has the heights of {path}; a measurement counts" in refusal(
+            path, path_of_same
+        )
     with pytest.raises(ValueError, match=r"copy.txt has the heights of .*scan.txt"):
         read_measurements([path, copy], [ReadingOptions(), ReadingOptions(detrend="center")])
     assert len(read_measurements([path, write_text(mirrored, noise[::-1])])) == 2
 
 
 @pytest.mark.parametrize(
-    ("known", "low", "high"),
+    ("reliability", "low", "high"),
     [
         ({"resolution": {"value": 0.9, "unit": "um"}}, 0.9e-6, 0.9e-6),
         ({"tip_radius": {"value": 0.5, "unit": "um"}}, 0.7e-6, 2.5e-6),
@@ -97,22 +99,22 @@ def test_a_measurement_counts_once_under_any_name_in_any_unit(tmp_path, noise):
     ],
 )
 def test_the_reliability_that_a_file_states_bounds_the_wavelengths(
-    tmp_path, monkeypatch, heights, known, low, high
+    tmp_path, monkeypatch, heights, reliability, low, high
 ):
-    info = {"instrument": {"name": "test", "parameters": known}}
+    info = {"instrument": {"name": "test", "parameters": reliability}}
     library = surface_library().Topography(heights, (SIDE, SIDE), unit="m", info=info)
     library.to_netcdf(str(tmp_path / "scan.nc"))
     [measurement] = read_measurements([tmp_path / "scan.nc"])
     assert measurement.format == "nc"
     shortest = max(measurement.shortest, measurement.tip_wavelength)
     assert low * (1 - 1e-6) <= shortest <= high * (1 + 1e-6)
-    assert measurement.tip_radius == pytest.approx(0.5e-6 if "tip_radius" in known else 0)
+    assert measurement.tip_radius == pytest.approx(0.5e-6 if "tip_radius" in reliability else 0)
     assert not measurement.tip_is_assumed
     [named] = read_measurements([tmp_path / "scan.nc"], ReadingOptions(tip_radius=2e-6))
     assert named.tip_wavelength > measurement.tip_wavelength
     monkeypatch.setattr("crackfront.measured.scan.reading._SCANNING_PROBES", {"nc"})
     [assumed] = read_measurements([tmp_path / "scan.nc"])
-    assert assumed.tip_is_assumed == ("tip_radius" not in known)
+    assert assumed.tip_is_assumed == ("tip_radius" not in reliability)
     assert assumed.tip_radius == pytest.approx(measurement.tip_radius or 10e-9)
 
 

@@ -15,10 +15,10 @@ def plain(tmp_path, noise):
     return read(path), path.read_text()
 
 
-def agrees(path, text, expected, encoding="utf-8", **given):
+def agrees(path, text, expected, encoding="utf-8", **options):
     """Whether a text is read as the scan that is expected."""
     path.write_bytes(text if isinstance(text, bytes) else text.encode(encoding))
-    measurement = read(path, **given)
+    measurement = read(path, **options)
     assert measurement.size == pytest.approx(expected.size)
     np.testing.assert_array_equal(measurement.heights, expected.heights)
 

@@ -21,13 +21,13 @@ MOST = 0.03
 
 def ends(surface):
     """Logarithms of the ends of the interval of e_el, and of its median."""
-    found = surface.half_derivative
-    return np.log([found.low, found.value, found.high])
+    energy = surface.half_derivative
+    return np.log([energy.low, energy.value, energy.high])
 
 
-def moved(one, other):
+def moved(first, second):
     """The furthest that an end or the median moves, as a part of the width."""
-    return np.max(np.abs(one - other)) / (one[2] - one[0])
+    return np.max(np.abs(first - second)) / (first[2] - first[0])
 
 
 BY_NIGHT = (
@@ -59,7 +59,7 @@ def measurements(surface):
 
 
 @pytest.fixture(scope="module")
-def known(surface):
+def expected_moves(surface):
     """Ends of the interval of e_el as it is computed."""
     return ends(surface)
 
@@ -72,20 +72,22 @@ def other_seeds(monkeypatch):
 
 
 @pytest.mark.usefixtures("other_seeds")
-def test_intervals_do_not_depend_on_the_seeds_and_the_digits_of_heights(measurements, known):
-    steps = [1e-4 * one.heights.std() for one in measurements]
+def test_intervals_do_not_depend_on_the_seeds_and_the_digits_of_heights(
+    measurements, expected_moves
+):
+    steps = [1e-4 * measurement.heights.std() for measurement in measurements]
     rounded = [
-        replace(one, heights=step * np.round(one.heights / step))
-        for one, step in zip(measurements, steps, strict=True)
+        replace(measurement, heights=step * np.round(measurement.heights / step))
+        for measurement, step in zip(measurements, steps, strict=True)
     ]
-    assert 0 < moved(known, ends(measured_surface(rounded))) < MOST
+    assert 0 < moved(expected_moves, ends(measured_surface(rounded))) < MOST
 
 
 def test_mean_squares_of_draws_are_those_of_tables(rng):
     grid = np.geomspace(1e4, 1e7, 40)
     table = np.log(1e-26) - 3.2 * np.log(grid / 1e4) + 0.3 * rng.standard_normal((5, 40))
     end = np.exp(rng.uniform(np.log(1e6), np.log(1e7), 5))
-    [found] = mean_squares(grid, table, end)
+    [square] = mean_squares(grid, table, end)
     for number in range(5):
         inside = grid < end[number]
         last = np.interp(np.log(end[number]), np.log(grid), table[number])
@@ -93,7 +95,7 @@ def test_mean_squares_of_draws_are_those_of_tables(rng):
         values = np.exp(np.append(table[number, inside], last))
         spectrum = TabulatedSpectrum(tuple(waves.tolist()), tuple(values.tolist()))
         expected = [spectrum.mean_square(order) for order in ORDERS]
-        assert found[:, number] == pytest.approx(expected, rel=1e-9)
+        assert square[:, number] == pytest.approx(expected, rel=1e-9)
 
 
 @pytest.mark.slow
@@ -101,21 +103,21 @@ def test_mean_squares_of_draws_are_those_of_tables(rng):
 def test_what_is_a_little_stiffer_has_no_other_kind_of_answer(files):
     """From a sphere that conforms to one that does not, as by heights that grow by two per cent."""
     surface = shipped_surface(*files)
-    known, outcomes = None, []
+    earlier, outcomes = None, []
     for modulus in SCENE.contact_modulus * 1.04 ** np.arange(60):
-        verdict, found = check_and_predict(
+        verdict, predicted = check_and_predict(
             surface, replace(SCENE, contact_modulus=modulus), PredictionOptions()
         )
         outcomes.append(verdict.outcome)
-        if found is None:
+        if predicted is None:
             break
-        estimates = [getattr(found, name) for name in ("e_el", "hysteresis", "w_retr")]
+        estimates = [getattr(predicted, name) for name in ("e_el", "hysteresis", "w_retr")]
         numbers = np.array(
             [(estimate.low, estimate.value, estimate.high) for estimate in estimates]
         )
-        if known is not None:
-            assert numbers == pytest.approx(known, rel=0.08)
-        known = numbers
+        if earlier is not None:
+            assert numbers == pytest.approx(earlier, rel=0.08)
+        earlier = numbers
         undecided = verdict.with_severity("undecided")
         assert bool(undecided) == (verdict.outcome == "cannot be decided")
     order = list(dict.fromkeys(outcomes))

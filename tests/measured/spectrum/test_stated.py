@@ -105,8 +105,8 @@ def test_what_needs_heights_is_said_and_not_checked():
     rough = cf.self_affine_surface(rms="20nm", roll_off="2um", hurst=0.8, short_cutoff="20nm")
     prediction = cf.predict(rough, SCENE)
     reservations = [remark.sentence for remark in prediction.verdict.with_severity("reservation")]
-    [said] = [sentence for sentence in reservations if "heights" in sentence]
-    assert "isotropic" in said
+    [sentence_of_heights] = [sentence for sentence in reservations if "heights" in sentence]
+    assert "isotropic" in sentence_of_heights
     assert not [
         remark for remark in prediction.verdict.remarks if remark.concerns == "random roughness"
     ]

@@ -56,9 +56,9 @@ def refusal(*measurements):
 def test_a_line_with_nothing_below_its_trusted_waves_has_a_spectrum(rng):
     """As of a blurred profile, whose noise begins where its trusted waves end."""
     heights = profile(rng, 128)
-    found = analysed_scan(measurement(heights), 6 * PIXEL, 32 * PIXEL)
-    found = replace(found, band=replace(found.band, noise_limit=found.band.shortest.wavelength))
-    joint = joint_spectrum([found])
+    scan = analysed_scan(measurement(heights), 6 * PIXEL, 32 * PIXEL)
+    scan = replace(scan, band=replace(scan.band, noise_limit=scan.band.shortest.wavelength))
+    joint = joint_spectrum([scan])
     energy = joint.draws.mean_square(0.5)
     assert 0 < energy.low <= energy.value <= energy.high < np.inf
     assert joint.recorded.mean_square(0.5) > 0
@@ -82,8 +82,8 @@ def test_intervals_of_maps_whose_waves_end_hold_them_whatever_the_rounding(heigh
     heights = heights(rng)
     rounding = 1e-16 * np.std(heights) * rng.standard_normal(heights.shape)
     energy, rounded = (
-        measured_surface([measurement(given)]).half_derivative
-        for given in (heights, heights + rounding)
+        measured_surface([measurement(values)]).half_derivative
+        for values in (heights, heights + rounding)
     )
     # Of one map of few waves, whose own e_el is not that of its surface.
     assert energy.low / 2 < shown(heights) < energy.high
@@ -117,9 +117,9 @@ def test_small_scans_have_intervals(heights, rng):
 
 @pytest.mark.parametrize(("shortest", "longest"), [(1e-5, 4e-5), (2.9e-6, 5.9e-6)])
 def test_named_ends_between_which_there_is_no_wave_are_refused(rng, shortest, longest):
-    given = measurement(profile(rng))
+    named = measurement(profile(rng))
     with pytest.raises(ValueError, match=r"scan: its density has [01] values between") as caught:
-        analysed_scan(given, shortest, longest)
+        analysed_scan(named, shortest, longest)
     assert "--shortest and --longest" in str(caught.value)
 
 
@@ -127,9 +127,11 @@ def test_named_ends_between_which_there_is_no_wave_are_refused(rng, shortest, lo
 def test_grooves_among_other_roughness_are_a_reservation_if_they_hold_most_of_e_el(rng, deep):
     """Rows that an instrument has shifted by a little are none."""
     grooves = np.repeat(profile(rng, 256)[:, None], 256, axis=1)
-    other = waves_up_to(60, rng, (256, 256))
-    other *= (0.1 if deep else 1.0) * 1e-8 / other.std()
-    surface = measured_surface([measurement(other + grooves)])
+    isotropic = waves_up_to(60, rng, (256, 256))
+    isotropic *= (0.1 if deep else 1.0) * 1e-8 / isotropic.std()
+    surface = measured_surface([measurement(isotropic + grooves)])
     assert surface.scans[0].band.stripes == (0,)
-    told = [one for one in spectrum_remarks(surface) if "waves along x alone" in one.sentence]
-    assert [one.severity for one in told] == ["reservation"] * deep
+    told = [
+        remark for remark in spectrum_remarks(surface) if "waves along x alone" in remark.sentence
+    ]
+    assert [remark.severity for remark in told] == ["reservation"] * deep

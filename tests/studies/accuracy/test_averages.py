@@ -29,19 +29,19 @@ def test_the_stated_errors_cover_nine_in_ten_over_shapes_and_amplitudes():
                 standard_error_of,
             )
         )
-        known = np.isfinite(error) & np.isfinite(interval)
-        assert np.mean(error[known] <= interval[known]) >= 0.9, name
-        assert np.median(stated[known] / error[known]) <= 3, name
+        is_finite = np.isfinite(error) & np.isfinite(interval)
+        assert np.mean(error[is_finite] <= interval[is_finite]) >= 0.9, name
+        assert np.median(stated[is_finite] / error[is_finite]) <= 3, name
 
 
 @pytest.mark.slow
 def test_schedules_change_the_mean_within_its_error():
     samples = sampling_errors(SCENES["flat-0.04"], range(3))
     schedules = [item for item in samples if item.setting != "tile"]
-    known = [item for item in schedules if np.all(np.isfinite(item.hysteresis))]
-    assert len(known) >= len(schedules) - 1
-    for item in known:
+    complete = [item for item in schedules if np.all(np.isfinite(item.hysteresis))]
+    assert len(complete) >= len(schedules) - 1
+    for item in complete:
         difference = np.mean(item.hysteresis - samples[0].hysteresis)
         assert abs(difference) < 2 * np.mean(item.standard_error)
-    seconds = [item.seconds.mean() for item in known if item.setting == "step"]
+    seconds = [item.seconds.mean() for item in complete if item.setting == "step"]
     assert seconds[0] > 2 * seconds[-1]

@@ -38,6 +38,7 @@ def test_an_empty_folder_has_nothing_to_report(tmp_path):
     [
         ("requested", {"Time to an error of the hysteresis", "Errors that were requested"}),
         ("unseen", {"Errors on unseen surfaces"}),
+        ("expected", {"Errors on many surfaces"}),
         ("coverage", {"Stated and true errors"}),
     ],
 )

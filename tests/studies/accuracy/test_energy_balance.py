@@ -8,8 +8,8 @@ from studies.accuracy.energy_balance import cycle, energies
 
 
 def test_the_dissipated_energy_is_the_work_of_the_steps_and_a_first_order_above_the_loop():
-    found = [energies(cycle(0.4, 0, step)) for step in (0.1, 0.05, 0.025)]
-    lost, work, trapezoid = np.transpose(found)
+    balances = [energies(cycle(0.4, 0, step)) for step in (0.1, 0.05, 0.025)]
+    lost, work, trapezoid = np.transpose(balances)
     assert np.allclose(lost, work, rtol=1e-13)
     assert np.all(np.diff(lost) < 0)
     gap = lost - trapezoid

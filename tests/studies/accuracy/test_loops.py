@@ -59,9 +59,12 @@ def test_intervals_hold_what_an_unknown_zero_of_the_displacement_leaves(rng):
         cycle = cf.run_loop(surface, max_penetration=1.5, step=0.03, fronts=False)
         cycle = cf.in_si_units(cycle, measured_loops.SPHERE)
         instrument = replace(PERFECT, stiffness=1e3, sees_contact=False)
-        found, truth = analyse_loop(recording(cycle, instrument, rng), rig), simulated_loop(cycle)
+        analysed, truth = (
+            analyse_loop(recording(cycle, instrument, rng), rig),
+            simulated_loop(cycle),
+        )
         for name in measured_loops.WORKS:
-            estimate = getattr(found, name)
+            estimate = getattr(analysed, name)
             held.append(estimate.low <= getattr(truth, name).value <= estimate.high)
     assert np.mean(held) >= 0.9
 
@@ -72,9 +75,9 @@ def test_offsets_and_intervals_are_told_in_parts_of_the_true_hysteresis(cycle):
     assert coverages.keys() == measured_loops.INSTRUMENTS.keys()
     truth = simulated_loop(cycle)
     assert coverages["usual"].too_short == 0
-    for one in coverages.values():
-        assert np.array_equal(one.inside, np.abs(one.offset) <= one.reach)
-        appr, retr, hysteresis = one.offset[0] * truth.hysteresis.value
+    for item in coverages.values():
+        assert np.array_equal(item.inside, np.abs(item.offset) <= item.reach)
+        appr, retr, hysteresis = item.offset[0] * truth.hysteresis.value
         assert hysteresis == pytest.approx(retr - appr)
 
 
@@ -83,7 +86,7 @@ def test_intervals_hold_the_truth_of_simulated_spheres():
     """95% are claimed; in 90% of 12 loops, three works and all instruments."""
     for press, instruments in measured_loops.RECORDED:
         coverages = coverage(measured_loops.cycles(12, press), instruments)
-        assert np.mean(np.concatenate([one.inside for one in coverages.values()])) >= 0.9
+        assert np.mean(np.concatenate([item.inside for item in coverages.values()])) >= 0.9
 
 
 @pytest.mark.slow

@@ -14,20 +14,20 @@ def comparisons():
     return tuple(predictions.comparisons())
 
 
-def is_met(predicted, found):
+def is_met(predicted, simulated):
     """Whether two intervals are no further apart than both allow."""
-    reach = np.hypot(*((item.high - item.low) / 2 for item in (predicted, found)))
-    return abs(predicted.value - found.value) < reach
+    reach = np.hypot(*((item.high - item.low) / 2 for item in (predicted, simulated)))
+    return abs(predicted.value - simulated.value) < reach
 
 
 @pytest.mark.slow
 def test_predictions_hold_for_surfaces_that_the_law_was_not_fitted_to(comparisons):
     for item in comparisons:
-        found, law = item.simulations, item.prediction
+        simulated, law = item.simulations, item.prediction
         k = law.factors.both
-        assert is_met(k, found.k)
-        assert abs(found.k.value - k.value) < 0.3
-        assert is_met(law.front_hysteresis, found.hysteresis)
+        assert is_met(k, simulated.k)
+        assert abs(simulated.k.value - k.value) < 0.3
+        assert is_met(law.front_hysteresis, simulated.hysteresis)
 
 
 @pytest.mark.slow

@@ -13,7 +13,7 @@ SHIPPED = tuple(sorted((Path(__file__).parents[3] / "examples/scans").glob("*.al
 def test_the_shipped_scans_are_those_that_their_command_writes(tmp_path):
     scans.write_scans(tmp_path)
     made = read_measurements(sorted(tmp_path.glob("*.al3d")))
-    for one, other in zip(made, read_measurements(SHIPPED), strict=True):
-        assert one.path.name == other.path.name
-        assert one.size == other.size
-        assert one.heights == pytest.approx(other.heights, abs=1e-12)
+    for scan, shipped in zip(made, read_measurements(SHIPPED), strict=True):
+        assert scan.path.name == shipped.path.name
+        assert scan.size == shipped.size
+        assert scan.heights == pytest.approx(shipped.heights, abs=1e-12)

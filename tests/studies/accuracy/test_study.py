@@ -54,8 +54,10 @@ def observed_order(converged, setting, coarse, fine):
     """Order at which the radius converges on the surfaces of the weak scene."""
     errors = []
     for value in (coarse, fine):
-        found = [measured_branches(WEAK, with_setting(FINEST, setting, value), n) for n in range(3)]
-        pairs = zip(found, converged, strict=True)
+        branches = [
+            measured_branches(WEAK, with_setting(FINEST, setting, value), n) for n in range(3)
+        ]
+        pairs = zip(branches, converged, strict=True)
         errors.append(rms(np.array([front_difference(a.radius, b.radius) for a, b in pairs])))
     return -math.log(errors[1] / errors[0]) / math.log(fine / coarse)
 
@@ -124,9 +126,9 @@ def test_a_study_is_read_as_it_was_written(small_study, tmp_path):
     assert again.scene == SMALL
     assert np.array_equal(again.reference_adhesion, small_study.reference_adhesion)
     assert np.array_equal(again.reference_seconds, small_study.reference_seconds)
-    for one, other in zip(again.errors, small_study.errors, strict=True):
+    for row, read_row in zip(again.errors, small_study.errors, strict=True):
         for item in fields(Errors):
-            assert np.array_equal(getattr(one, item.name), getattr(other, item.name)), item.name
+            assert np.array_equal(getattr(row, item.name), getattr(read_row, item.name)), item.name
 
 
 def test_no_setting_of_the_pareto_front_is_beaten():

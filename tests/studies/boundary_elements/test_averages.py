@@ -22,14 +22,14 @@ def surface(**changes):
 def test_the_ratio_of_hystereses_is_that_of_the_means_with_the_error_of_the_jackknife():
     pairs = ((0.2, 0.1), (0.4, 0.3), (0.3, 0.2))
     rows = [
-        surface(seed=seed, front_retraction=one, boundary_retraction=other)
-        for seed, (one, other) in enumerate(pairs)
+        surface(seed=seed, front_retraction=front_value, boundary_retraction=element_value)
+        for seed, (front_value, element_value) in enumerate(pairs)
     ]
-    found = Setting(tuple(rows)).excess(0.05)
-    assert float(found.value) == pytest.approx(math.log(0.9 / 0.45))
+    ratio = Setting(tuple(rows)).excess(0.05)
+    assert float(ratio.value) == pytest.approx(math.log(0.9 / 0.45))
     left = np.log([0.7 / 0.4, 0.5 / 0.2, 0.6 / 0.3])
     expected = math.sqrt(2 / 3 * np.sum((left - left.mean()) ** 2))
-    assert float(found.standard_error) == pytest.approx(expected)
+    assert float(ratio.standard_error) == pytest.approx(expected)
     assert math.isnan(Setting(tuple(rows[:1])).excess(0.0).standard_error)
 
 
@@ -52,8 +52,8 @@ def test_a_limit_has_the_longer_range_of_all_surfaces_and_its_change_on_some(rng
     assert float(mean.standard_error) == pytest.approx(error)
     # The two with both ranges have one degree of freedom, the four others four.
     squares = (np.array(left) - np.mean(left)) ** 2
-    both, rest = squares[:2].sum(), squares[2:].sum()
-    freedom = (both + rest) ** 2 / (both**2 + rest**2 / 4)
+    shared, rest = squares[:2].sum(), squares[2:].sum()
+    freedom = (shared + rest) ** 2 / (shared**2 + rest**2 / 4)
     assert float(mean.high - mean.value) == pytest.approx(error * stdtrit(freedom, 0.975))
     assert float(limit.mean(FRONT).standard_error) == pytest.approx(0, abs=1e-12)
     assert float(limit.excess(0.0).value) == pytest.approx(-math.log(long.mean() + 0.12))

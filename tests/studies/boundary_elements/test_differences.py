@@ -14,13 +14,13 @@ from studies.boundary_elements.front import front_cycle
 def boundary(case, front):
     """A cycle that is that of the front, as boundary elements would record it."""
     states = front.states
-    one, nothing = np.ones(states.penetration.size), np.zeros((case.n_point, case.n_point))
+    ones, nothing = np.ones(states.penetration.size), np.zeros((case.n_point, case.n_point))
     return BoundaryCycle(
         status="lost contact",
         **{name: getattr(states, name) for name in ("penetration", "direction", "force")},
         radius=front.radius,
-        **dict.fromkeys(("energy", "released", "products", "seconds"), one),
-        **dict.fromkeys(("barriers", "saddles", "residual"), 0 * one),
+        **dict.fromkeys(("energy", "released", "products", "seconds"), ones),
+        **dict.fromkeys(("barriers", "saddles", "residual"), 0 * ones),
         shown_pressure=np.zeros((2, case.n_point, case.n_point)),
         pressure=nothing,
         trust_radius=1.0,
@@ -35,13 +35,13 @@ def circle():
 def test_an_arc_that_moves_far_is_a_jump_where_it_moved_furthest(circle):
     angle = 2 * np.pi * np.arange(360) / 360
     bump = 0.1 * np.exp(-((np.rad2deg(angle) - 20) ** 2) / 50)
-    other = 0.6 * np.roll(bump, 90)
-    radius = np.stack([circle, circle + bump + other, circle + bump + other])
-    found = jumps(np.array([0.0, 0.1, 0.2]), np.array([1, 1, 1]), radius, 0.05)
-    found.sort(key=lambda jump: jump.angle)
-    assert [jump.penetration for jump in found] == [0.1, 0.1]
-    assert np.rad2deg([jump.angle for jump in found]) == pytest.approx([20, 110])
-    assert [jump.distance for jump in found] == pytest.approx([0.1, 0.06])
+    second_bump = 0.6 * np.roll(bump, 90)
+    radius = np.stack([circle, circle + bump + second_bump, circle + bump + second_bump])
+    jumps_seen = jumps(np.array([0.0, 0.1, 0.2]), np.array([1, 1, 1]), radius, 0.05)
+    jumps_seen.sort(key=lambda jump: jump.angle)
+    assert [jump.penetration for jump in jumps_seen] == [0.1, 0.1]
+    assert np.rad2deg([jump.angle for jump in jumps_seen]) == pytest.approx([20, 110])
+    assert [jump.distance for jump in jumps_seen] == pytest.approx([0.1, 0.06])
 
 
 def test_a_receding_arc_is_a_jump_in_retraction_only_and_turning_round_is_none(circle):

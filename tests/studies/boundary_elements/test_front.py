@@ -25,6 +25,6 @@ def test_states_are_shared_by_penetration_and_direction(front):
         direction=states.direction[1:],
         force=states.force[1:],
     )
-    one, other = shared_states(states, fewer)
-    np.testing.assert_array_equal(one, np.arange(1, states.penetration.size))
-    np.testing.assert_array_equal(other, one - 1)
+    shared, shared_fewer = shared_states(states, fewer)
+    np.testing.assert_array_equal(shared, np.arange(1, states.penetration.size))
+    np.testing.assert_array_equal(shared_fewer, shared - 1)

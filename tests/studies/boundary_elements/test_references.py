@@ -34,14 +34,14 @@ KNOWN = 0.177, 0.05, 768
 @pytest.fixture(scope="module")
 def surfaces():
     """Rows of the kept surfaces, by the name of their configuration."""
-    found = {}
+    surfaces_by_case = {}
     for name in ("strong", "fine"):
         path = REFERENCES / f"hysteresis-{name}.nc"
         told = read_attributes(path)
         assert f"config/validation-{name}.yaml" in told["command"]
         assert "dirty" not in told["git_commit"]
-        found[name] = read_records(path, Hysteresis, "case")
-    return found
+        surfaces_by_case[name] = read_records(path, Hysteresis, "case")
+    return surfaces_by_case
 
 
 @pytest.fixture(scope="module")
@@ -64,8 +64,10 @@ def test_the_shipped_table_is_that_of_the_kept_surfaces(surfaces):
         assert float(mean.standard_error) < 0.3 * float(mean.value)
     coefficient, error = excess_coefficient(told)
     assert coefficient > 4 * error
-    apart = [(math.log(row.ratio) - coefficient * row.elastic_energy) / row.error for row in told]
-    assert np.max(np.abs(apart)) < 2
+    deviations = [
+        (math.log(row.ratio) - coefficient * row.elastic_energy) / row.error for row in told
+    ]
+    assert np.max(np.abs(deviations)) < 2
 
 
 def test_finer_surfaces_that_the_law_has_not_seen_lie_inside_its_interval(surfaces):
@@ -80,8 +82,10 @@ def test_finer_surfaces_that_the_law_has_not_seen_lie_inside_its_interval(surfac
         (pair,) = rows_by_zone([*smooth, *left], 0.05).values()
         law = front_excess(rest.elastic_energy, rest.size, told).ratio
         (seen,) = rows_by_zone([*smooth, *(r for r in scene if r not in left)], 0.05).values()
-        apart = math.log(pair.ratio * rest.ratio / seen.ratio / law.value)
-        inside.append(abs(apart) < math.hypot(math.log(law.high / law.value), 1.96 * rest.error))
+        deviation = math.log(pair.ratio * rest.ratio / seen.ratio / law.value)
+        inside.append(
+            abs(deviation) < math.hypot(math.log(law.high / law.value), 1.96 * rest.error)
+        )
     assert len(inside) == 10
     assert np.mean(inside) >= 0.9
 
@@ -108,10 +112,10 @@ def test_the_kept_comparison_has_the_cases_of_its_configuration_and_no_energy_ro
         for case in cases
         if case.elastic_energy
     }
-    known = {
+    kept_cases = {
         (row.seed, row.n_point, row.interaction_range, row.step, row.roll_off)
         for row in kept
         if row.asked_energy
     }
-    assert known == asked
+    assert kept_cases == asked
     assert all(row.least_released > 0 and row.barriers == 0 for row in kept)

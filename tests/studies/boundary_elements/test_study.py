@@ -51,10 +51,10 @@ def test_loops_are_compared_state_by_state_with_a_crack_that_turns_and_one_that_
     ]
     assert all(0 < row.force_rms < 0.1 for row in rows if row.rotated)
     assert 3 * rows[1].perimeter_all < rows[2].perimeter_all < 0.5
-    found = read_records(loop_results / "hysteresis.nc", Hysteresis, "case")
-    assert [row.n_point for row in found] == [48, 48]
+    hysteresis_record = read_records(loop_results / "hysteresis.nc", Hysteresis, "case")
+    assert [row.n_point for row in hysteresis_record] == [48, 48]
     text = (loop_results / "validation.md").read_text()
-    assert text.startswith(validation_report(found, rows))
+    assert text.startswith(validation_report(hysteresis_record, rows))
 
 
 @pytest.mark.slow
@@ -76,8 +76,8 @@ def test_tables_figures_and_sentence_are_those_of_the_rows(branch_results):
     rows = read_records(branch_results / "hysteresis.nc", Hysteresis, "case")
     text = (branch_results / "validation.md").read_text()
     assert text.startswith(validation_report(rows, []))
-    found = [row for (*_, zone), row in rows_by_zone(rows, 0.6).items() if not zone]
-    told = csv_rows(csv_text(found), ValidityRow)
+    rows_of_all = [row for (*_, zone), row in rows_by_zone(rows, 0.6).items() if not zone]
+    told = csv_rows(csv_text(rows_of_all), ValidityRow)
     limits = limit_settings(rows)
     assert [[row.n_point for row in limit.rows] for limit in limits] == [[64]]
     assert [row.ratio for row in told] == pytest.approx(

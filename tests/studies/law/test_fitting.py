@@ -55,14 +55,14 @@ def test_the_command_fits_the_law_of_the_package_to_the_kept_cells(tmp_path):
     done = CliRunner().invoke(main, ["law", "fit", "--output", str(tmp_path)])
     assert done.exit_code == 0, done.output
     assert (tmp_path / "cells.csv").read_text() == MEASURED.read_text()
-    known, again = shipped_law(), json.loads((tmp_path / "law.json").read_text())
-    np.testing.assert_allclose(again["coefficients"], known.coefficients, rtol=1e-6, atol=1e-6)
-    assert again["rms"] == pytest.approx(known.rms, rel=1e-6)
-    assert again["size"] == pytest.approx(known.size)
+    shipped, again = shipped_law(), json.loads((tmp_path / "law.json").read_text())
+    np.testing.assert_allclose(again["coefficients"], shipped.coefficients, rtol=1e-6, atol=1e-6)
+    assert again["rms"] == pytest.approx(shipped.rms, rel=1e-6)
+    assert again["size"] == pytest.approx(shipped.size)
     assert sum(row[-1] for row in again["departures"]) == sum(
-        cell.size >= known.size[0] for cell in measured_cells()
+        cell.size >= shipped.size[0] for cell in measured_cells()
     )
-    np.testing.assert_allclose(again["departures"], known.departures, rtol=1e-5, atol=1e-6)
+    np.testing.assert_allclose(again["departures"], shipped.departures, rtol=1e-5, atol=1e-6)
 
 
 @pytest.mark.parametrize(
@@ -87,7 +87,7 @@ def test_spacings_are_extrapolated_to_none_in_either_order_of_the_amplitudes(tmp
     sweep = front_sweeps(tmp_path)["line-weak"]
     cells = [replace(measured_cells()[0], both=value, error=0.1) for value in (3.0, 2.0)]
     energies = sweep.elastic_energies
-    [found] = _without_spacing(sweep, cells)
+    [extrapolated] = _without_spacing(sweep, cells)
     [again] = _without_spacing(replace(sweep, elastic_energies=energies[::-1]), cells[::-1])
-    assert found == again
-    assert found.both == pytest.approx(3.0 + energies[0] / (energies[1] - energies[0]))
+    assert extrapolated == again
+    assert extrapolated.both == pytest.approx(3.0 + energies[0] / (energies[1] - energies[0]))

@@ -12,8 +12,8 @@ from studies.numbers import stored
 def test_what_is_kept_for_the_pages_are_the_numbers_of_the_law(monkeypatch):
     monkeypatch.chdir(Path(__file__).parents[3])
     paths = [Path("docs/reference") / name for name in ("spheres.csv", "held-out.csv")]
-    spheres, known = read_spheres(paths), stored("law")
+    spheres, stored_numbers = read_spheres(paths), stored("law")
     # Otherwise: python -m studies law numbers --keep
-    assert {name: table.text for name, table in known.tables.items()} == law_parts(spheres)
+    assert {name: table.text for name, table in stored_numbers.tables.items()} == law_parts(spheres)
     for name, number in law_numbers(spheres).items():
-        assert known.numbers[name].value == pytest.approx(number.value, rel=1e-9)
+        assert stored_numbers.numbers[name].value == pytest.approx(number.value, rel=1e-9)

@@ -34,9 +34,9 @@ def test_the_reference_holds_the_sweeps_that_it_is_made_from(spheres):
                 if row.spectrum == item.name
                 and row.elastic_energy == pytest.approx(energy, rel=0.03)
             ]
-            found = SelfAffineSpectrum(row.short_cutoff, row.roll_off, row.hurst)
+            spectrum = SelfAffineSpectrum(row.short_cutoff, row.roll_off, row.hurst)
             expected = correlation_length(sweep.kind, shape)
-            assert correlation_length(sweep.kind, found) == pytest.approx(expected, rel=1e-4)
+            assert correlation_length(sweep.kind, spectrum) == pytest.approx(expected, rel=1e-4)
             assert row.kind == sweep.kind
             assert 0.8 * sweep.n_realisation < row.realisations <= sweep.n_realisation
 
@@ -56,9 +56,9 @@ def test_the_line_alone_predicts_spheres_with_intervals_that_cover_and_are_narro
     assert len(held) >= 25
     half = [(law.both.high - law.both.low) / 2 / law.both.value for _, law in held]
     assert np.median(half) < 0.06
-    apart = np.array([law.both.value / row.both - 1 for row, law in held])
-    assert np.sqrt(np.mean(apart**2)) < rms
-    assert np.max(np.abs(apart)) < worst
+    deviations = np.array([law.both.value / row.both - 1 for row, law in held])
+    assert np.sqrt(np.mean(deviations**2)) < rms
+    assert np.max(np.abs(deviations)) < worst
     outside = [
         f"{row.spectrum} {row.elastic_energy:.3g}: {row.both:.3f}, law {law.both.value:.3f}"
         for row, law in held
@@ -73,8 +73,10 @@ def test_shapes_without_a_part_in_the_fit_are_predicted(name):
     cells = [cell for cell in measured_cells() if cell.spectrum == name and cell.size > 1]
     assert len(cells) >= 6
     laws = [pinning_factor(cell.disorder, cell.size, breadth=cell.breadth).factor for cell in cells]
-    apart = np.array([law.value / cell.both - 1 for law, cell in zip(laws, cells, strict=True)])
-    assert np.sqrt(np.mean(apart**2)) < 0.025
-    assert np.max(np.abs(apart)) < 0.06
+    deviations = np.array(
+        [law.value / cell.both - 1 for law, cell in zip(laws, cells, strict=True)]
+    )
+    assert np.sqrt(np.mean(deviations**2)) < 0.025
+    assert np.max(np.abs(deviations)) < 0.06
     covered = [is_within(cell.both, cell.error, law) for law, cell in zip(laws, cells, strict=True)]
     assert np.mean(covered) > 0.85

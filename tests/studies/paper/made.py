@@ -24,14 +24,16 @@ def with_measured(folder, name, text):
     return path
 
 
-def computed(name, given):
+def computed(name, parameters_of):
     """Data of a figure."""
-    return figure(name).compute(given, lambda line: None)
+    return figure(name).compute(parameters_of, lambda line: None)
 
 
 def figure_of(record):
     """Figure that has such data."""
-    return next(one for one in map(figure, FIGURES) if one.record is type(record))
+    return next(
+        figure_class for figure_class in map(figure, FIGURES) if figure_class.record is type(record)
+    )
 
 
 def failed(record):

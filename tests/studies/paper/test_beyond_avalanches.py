@@ -112,7 +112,7 @@ def test_a_finer_precision_finds_the_same_whole_events():
         for precision in (0.08, 0.02)
     )
     assert coarse.event_area.size == pytest.approx(fine.event_area.size, rel=0.05)
-    largest = [np.sort(one.event_area)[-20:] for one in (coarse, fine)]
+    largest = [np.sort(events.event_area)[-20:] for events in (coarse, fine)]
     assert np.median(np.abs(largest[0] / largest[1] - 1)) < 0.05
 
 

@@ -11,9 +11,9 @@ from tests.studies.paper.made import computed, drawn_from_file, failed, is_label
 SCENE = figure("beyond-pull-off")
 
 
-def coarse(**others):
-    given = {"short_cutoffs": (0.2, 0.1), "error": 0.5, "tile_roll_offs": 10.0, "step": 0.05}
-    return parameters("beyond-pull-off", **given | others)
+def coarse(**changes):
+    defaults = {"short_cutoffs": (0.2, 0.1), "error": 0.5, "tile_roll_offs": 10.0, "step": 0.05}
+    return parameters("beyond-pull-off", **defaults | changes)
 
 
 @pytest.fixture(scope="module")

@@ -67,10 +67,10 @@ def test_the_fit_recovers_exponents_within_its_intervals(rng):
 
 def test_other_exponents_fail_the_checks(rng):
     assert len(failed(synthetic((0.5, 0.388), rng))) == 5
-    sphere, line, both = failed(synthetic((0.388, 0.388), rng))
+    sphere, line, both_exponents = failed(synthetic((0.388, 0.388), rng))
     assert "sphere, weak disorder" in sphere
     assert "straight front, below" in line
-    assert "the two exponents differ" in both
+    assert "the two exponents differ" in both_exponents
 
 
 def test_differences_follow_from_the_spectrum(record):

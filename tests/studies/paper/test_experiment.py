@@ -17,7 +17,7 @@ def shown():
 
 
 def test_the_measured_hysteresis_is_above_all_that_is_computed(shown):
-    measured, paper, front, elements = (one.value.value for one in shown)
+    measured, paper, front, elements = (row.value.value for row in shown)
     assert measured > paper > front > elements
     assert paper == pytest.approx(0.0668, abs=1e-4)
 
@@ -27,4 +27,4 @@ def test_the_table_and_the_figure_have_them_all(shown):
     assert table.count("\n") == 1 + len(shown)
     assert "| measured | 80 | 1.0 |" in table
     [axes] = hystereses_figure(shown).axes
-    assert [label.get_text() for label in axes.get_yticklabels()] == [one.name for one in shown]
+    assert [label.get_text() for label in axes.get_yticklabels()] == [row.name for row in shown]

@@ -18,11 +18,11 @@ REFERENCES = Path(__file__).parents[3] / "docs" / "reference"
 
 
 def test_the_sweep_of_a_figure_is_known_without_what_computes_the_figure(tmp_path):
-    given = CONFIGURATIONS / "si-5.yaml"
+    path = CONFIGURATIONS / "si-5.yaml"
     for scale in SCALES:
-        assert sweep_of_figure(given, scale) == Path(load_figure(given, scale).sweep)
+        assert sweep_of_figure(path, scale) == Path(load_figure(path, scale).sweep)
     wrong = tmp_path / "si-5.yaml"
-    wrong.write_text(given.read_text().replace("sweep:", "swept:"))
+    wrong.write_text(path.read_text().replace("sweep:", "swept:"))
     with pytest.raises(ConfigurationError, match="swept"):
         sweep_of_figure(wrong, "quick")
 

@@ -49,4 +49,4 @@ def test_its_drawing_has_patches_and_a_cycle(record):
     drawn = SCENE.draw(record)
     patches, cycle = drawn.axes[:2]
     assert len(patches.collections) == 2
-    assert "force" in cycle.get_ylabel()
+    assert "force" in cycle.get_xlabel()

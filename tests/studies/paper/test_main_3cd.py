@@ -11,8 +11,8 @@ from studies.paper.rough import patch_of
 from tests.studies.paper.made import computed, failed, parameters
 
 
-def coarse(**others):
-    given = {
+def coarse(**changes):
+    defaults = {
         "seed": 1,
         "error": 0.5,
         "short_cutoff": 0.02,
@@ -21,7 +21,7 @@ def coarse(**others):
         "patch_side": 0.4,
         "close_side": 0.2,
     }
-    return parameters("main-3cd", **given | others)
+    return parameters("main-3cd", **defaults | changes)
 
 
 @pytest.fixture(scope="module")

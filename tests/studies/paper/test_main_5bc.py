@@ -14,7 +14,7 @@ from tests.studies.paper.made import (
 )
 
 
-def film_parameters(**others):
+def film_parameters(**changes):
     coarse = {
         "seed": 1,
         "error": 0.5,
@@ -25,7 +25,7 @@ def film_parameters(**others):
         "n_surface": 2,
         "precision": 2e-9,
     }
-    return parameters("main-5bc", **coarse | others)
+    return parameters("main-5bc", **coarse | changes)
 
 
 @pytest.fixture(scope="module")

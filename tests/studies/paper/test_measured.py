@@ -59,6 +59,6 @@ def test_w_int_is_recovered_from_synthetic_points(rng):
     _, low, high = fitted_adhesion(synthetic(rng, 1e-5), RUBBER, 11.1e-3, 3.0)
     assert low < 63e-3 < high
     assert high - low < 1e-3
-    other = Scales(RUBBER.radius, 50e-3, RUBBER.contact_modulus)
-    again = fitted_adhesion(synthetic(rng, 0.0), other, 11.1e-3, 3.0)
+    softer = Scales(RUBBER.radius, 50e-3, RUBBER.contact_modulus)
+    again = fitted_adhesion(synthetic(rng, 0.0), softer, 11.1e-3, 3.0)
     assert again[0] == pytest.approx(63e-3, rel=1e-6)

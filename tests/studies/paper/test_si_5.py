@@ -45,8 +45,8 @@ def study(factor, onset=(0.001, 0.004), exponent=2.0):
     return SCENE.compute(parameters, lambda line: None, fit), fit
 
 
-def verdicts(found):
-    return [check.passed for check in SCENE.checks(found)]
+def verdicts(figure_data):
+    return [check.passed for check in SCENE.checks(figure_data)]
 
 
 def test_a_sweep_that_follows_the_law_passes_every_check():
@@ -87,9 +87,9 @@ def test_onsets_against_the_order_of_their_lengths_fail():
 
 
 def test_the_fit_from_the_data_of_the_figure_is_that_of_the_sweep(tmp_path):
-    found, fit = study(3.0)
+    study_of_figure, fit = study(3.0)
     path = tmp_path / "si-5.nc"
-    write_record(path, found, provenance(), title=SCENE.title)
+    write_record(path, study_of_figure, provenance(), title=SCENE.title)
     again = study_fit(read_record(path, ParametricStudy))
     assert again.pooled.factor == fit.pooled.factor
     assert np.array_equal(again.cells.factor.low, fit.cells.factor.low)
