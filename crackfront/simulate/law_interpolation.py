@@ -51,8 +51,9 @@ class LawInterpolation:
     weights: tuple[tuple[str, float], ...]
     """Measured shapes, and the weight of each in the error."""
     lowest: float
+    """Least e_el / w_int; the largest error of the amplitudes up to `highest` counts."""
     highest: float
-    """Ends of a range of e_el / w_int; the largest error among its amplitudes counts."""
+    """Largest e_el / w_int of these amplitudes."""
     independent: float
     """Share of independent cutoffs along a front, relative to the fronts of the laws."""
 
@@ -65,10 +66,10 @@ class LawInterpolation:
         shapes, weights = zip(*self.weights, strict=True)
         branches = []
         for direction in (1, -1):
-            laws_of_shapes = [error_laws()[shape, setting, direction] for shape in shapes]
+            shape_laws = [error_laws()[shape, setting, direction] for shape in shapes]
             errors = [
                 self._largest(laws, np.array([law.parts(values) for law in laws]))
-                for laws in laws_of_shapes
+                for laws in shape_laws
             ]
             branches.append(np.tensordot(weights, errors, axes=1))
         return np.stack(branches, axis=1)
