@@ -42,7 +42,6 @@ from crackfront.simulate.tiles import Fineness, RandomSurface, Resolution
 if TYPE_CHECKING:
     from crackfront.analysis.steady_adhesion import SteadyAdhesion
     from crackfront.simulate.numerics import Numerics
-    from crackfront.simulate.run_simulation import SimulationResult
     from crackfront.simulate.simulation import Simulation
 
 
@@ -125,9 +124,12 @@ class Averages(ABC):
     __slots__ = ()
 
     @abstractmethod
-    def steady_adhesion(self, result: SimulationResult) -> SteadyAdhesion:
+    def steady_adhesion(
+        self, record: CycleRecord, correlation_length: float, mean_adhesion: float
+    ) -> SteadyAdhesion:
         """Apparent works of adhesion of both branches, or a sentence that says why not.
 
+        The correlation length is of w_loc (Units: length), the mean of w_loc on the tile in w_int.
         A kind averages over its steady states or over a whole period of its tile;
         :mod:`crackfront.analysis.steady_adhesion` has functions for both.
         """

@@ -37,7 +37,8 @@ class SimulationResult:
     @property
     def steady_adhesion(self) -> SteadyAdhesion:
         """Apparent works of adhesion of both branches, as its kind of contact averages them."""
-        return self.simulation.schedule.steady_adhesion(self)
+        schedule, length = self.simulation.schedule, self.simulation.correlation_length
+        return schedule.steady_adhesion(self.record, length, self.mean_adhesion)
 
 
 @dataclass(frozen=True, slots=True)

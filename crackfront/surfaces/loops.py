@@ -7,7 +7,6 @@ from collections.abc import Callable, Iterable
 from dataclasses import replace
 from typing import Annotated, Any
 
-import numpy as np
 from pydantic import PlainValidator
 from xarray import DataArray, Dataset
 
@@ -20,7 +19,7 @@ from crackfront.core.cycle.record import CycleRecord, Recorder
 from crackfront.core.cycle.touch import first_touch
 from crackfront.core.outcome import Direction
 from crackfront.core.resources import check_memory
-from crackfront.core.solver.relax import SOLVERS, Newton, named_solver
+from crackfront.core.solver.relax import SOLVERS, Newton, force_round_off, named_solver
 from crackfront.core.variables import variables
 from crackfront.core.versions import PHYSICS_VERSION
 from crackfront.simulate.cycle_files import cycle_dataset
@@ -297,7 +296,7 @@ lengths: where a site is about to jump, it moves with that root."""
 
 def _round_off(contact: LoopSetup) -> float:
     """Penetration below which steps are round-off, in reduced units."""
-    return 10 * float(np.finfo(float).eps) * contact.front.size
+    return 10 * force_round_off(contact.front.size)
 
 
 _PULL_OFF = 1.5

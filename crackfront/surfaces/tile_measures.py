@@ -91,7 +91,7 @@ def tile_measures(adhesion: AdhesionMap) -> TileMeasures:
     """Measures of a tile.
 
     A user's map of works of adhesion may come from heights: a mean of w_int - e_el then tells that
-    the errors of the numerics are those of a rough surface.
+    the numerics have the errors of a rough surface.
     """
     values = adhesion.work_of_adhesion
     mean = float(np.mean(values)) / WORK_OF_ADHESION

@@ -46,8 +46,8 @@ class RowSimulation:
     def run(self) -> Dataset:
         """Run it again: its states over `step`, the values of its row, and `result` in words.
 
-        The values are equal bit for bit to those of the table on one kind of processor with one
-        set of packages. What `record` of the sweep asks for is there as well.
+        The table has the same values bit for bit, on one kind of processor with one set of
+        packages. What `record` of the sweep asks for is there as well.
         """
         result = run_simulation(self.parameters)
         curves = cycle_dataset(result.record, self.parameters.geometry)

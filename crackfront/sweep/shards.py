@@ -18,6 +18,7 @@ from crackfront.core.versions import PHYSICS_VERSION, ROWS_VERSION
 from crackfront.simulate.provenance import Provenance
 from crackfront.simulate.storage import write_derived
 from crackfront.sweep.curves import PARAMETERS, parameters_text
+from crackfront.sweep.inventory import Inventory
 from crackfront.sweep.requests import REQUEST, shard_request
 from crackfront.sweep.rows import AT_LIMIT, COMPLETE, STATUSES
 from crackfront.sweep.sweep import Shard, Sweep
@@ -69,6 +70,24 @@ class ShardSummary:
     def has_rows(self, series: Iterable[str], max_sweeps: int) -> bool:
         """Whether its rows of all these series are as of today as well."""
         return self.has_states(series, max_sweeps) and self.rows_version == ROWS_VERSION
+
+    def inventory(self, series: Iterable[str], taken: range, expected_seconds: float) -> Inventory:
+        """Inventory of some of its series and realisations, all of which it has.
+
+        Costs of the realisations that are taken are a share of all; the expected time is theirs.
+        """
+        rows = [self.series.index(digest) for digest in series]
+        n_simulation = len(rows) * len(taken)
+        failed = min(int(self.n_failed[rows].sum()), n_simulation)
+        share = len(taken) / len(self.realisations)
+        return Inventory(
+            n_simulation - failed,
+            failed,
+            remade=n_simulation if self.rows_version != ROWS_VERSION else 0,
+            arithmetic=self.arithmetic,
+            cpu_seconds=share * float(self.cpu_seconds[rows].sum()),
+            expected_seconds=expected_seconds,
+        )
 
 
 def write_shard(

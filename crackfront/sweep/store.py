@@ -16,7 +16,6 @@ from pathlib import Path
 from typing import Any
 
 from crackfront.analysis.table import SweepTable
-from crackfront.core.versions import ROWS_VERSION
 from crackfront.simulate.checksums import forget_sums
 from crackfront.simulate.costs import expected_cost
 from crackfront.simulate.provenance import Provenance
@@ -166,29 +165,23 @@ class Store:
 
     def progress(self, sweep: Sweep, item: NamedSpectrum) -> Inventory:
         """How far a spectrum is: by the attributes of its shards, the rest by files of curves."""
-        firsts, series = sweep.one_per_amplitude(item), sweep.series(item)
-        costs = sum(expected_cost(first).seconds for first in firsts)
-        limit, total, position = sweep.numerics.max_sweeps, Inventory(), 0
+        series, limit = sweep.series(item), sweep.numerics.max_sweeps
+        firsts = sweep.one_per_amplitude(item)
+        expected_seconds = sum(expected_cost(first).seconds for first in firsts)
         summaries = self.shard_summaries(item)
         current = [summary for summary in summaries if summary.has_states(series, limit)]
+        total, position = Inventory(), 0
         for summary, taken in covering(current, sweep.n_realisation):
-            if gap := range(position, taken.start):
-                total += self.inventory(sweep, item, gap)
-            rows = [summary.series.index(digest) for digest in series]
-            n_failed, size = int(summary.n_failed[rows].sum()), len(rows) * len(taken)
-            share = len(taken) / len(summary.realisations)
-            total += Inventory(
-                size - min(n_failed, size),
-                min(n_failed, size),
-                remade=size if summary.rows_version != ROWS_VERSION else 0,
-                arithmetic=summary.arithmetic,
-                cpu_seconds=share * float(summary.cpu_seconds[rows].sum()),
-                expected_seconds=costs * len(taken),
-            )
+            total += self._inventory_between(sweep, item, position, taken.start)
+            total += summary.inventory(series, taken, expected_seconds * len(taken))
             position = taken.stop
-        if gap := range(position, sweep.n_realisation):
-            total += self.inventory(sweep, item, gap)
-        return total
+        return total + self._inventory_between(sweep, item, position, sweep.n_realisation)
+
+    def _inventory_between(
+        self, sweep: Sweep, item: NamedSpectrum, start: int, stop: int
+    ) -> Inventory:
+        """What the files of curves have and lack between two realisations; empty if they agree."""
+        return self.inventory(sweep, item, range(start, stop)) if start < stop else Inventory()
 
     def locked(self, shards: Iterable[Shard]) -> contextlib.AbstractContextManager[None]:
         """Lock the folders of shards while a context is open."""

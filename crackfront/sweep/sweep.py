@@ -61,7 +61,7 @@ class FitRange:
     n_bootstrap: int
 
     def chosen(self, elastic_energies: Iterable[float]) -> list[float]:
-        """Those of some e_el / w_int that enter the fit."""
+        """The elastic energies that enter the fit, of some of them (Units: w_int)."""
         lowest = self.lowest_elastic_energy * (1 - _ROUND_OFF)
         highest = self.highest_elastic_energy * (1 + _ROUND_OFF)
         return [energy for energy in elastic_energies if lowest <= energy <= highest]

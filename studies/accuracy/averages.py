@@ -11,6 +11,7 @@ from crackfront.analysis.steady_adhesion import steady_adhesion
 from crackfront.core.adhesion import mean_adhesion
 from crackfront.core.arrays import Array
 from crackfront.core.variables import ADHESION, variable
+from crackfront.simulate.contact import Schedule
 from crackfront.simulate.costs import expected_cost
 from crackfront.simulate.numerical_errors import numerical_error, stated_error
 from crackfront.simulate.run_simulation import run_simulation
@@ -130,11 +131,12 @@ def _other(scene: Scene, setting: str, value: float, number: int) -> Simulation:
     settings = scene.chosen_settings(_NUMERICAL_ERROR)
     if setting == "tile":
         scene = replace(scene, tile_cutoffs=value)
-    schedule = (
-        FullCycle(_DEEPEST, value)
-        if setting == "step"
-        else SteadySchedule(_START, _DEEPEST, value if setting == "travel" else _TRAVEL, _NO_STOP)
-    )
+    schedule: Schedule
+    if setting == "step":
+        schedule = FullCycle(_DEEPEST, value)
+    else:
+        travel = value if setting == "travel" else _TRAVEL
+        schedule = SteadySchedule(_START, _DEEPEST, travel, _NO_STOP)
     return replace(scene.simulation(settings, number), schedule=schedule)
 
 
@@ -172,9 +174,8 @@ def held_out_coverage(
     other_truths = [np.delete(truth, row, axis=0) for row in range(n_realisation)]
     expected = np.array([rows.mean(axis=0) for rows in other_truths])
     scatter = np.array([rows.std(axis=0, ddof=1) for rows in other_truths])
-    # Cutoffs along the front, summed over its states.
     circumference = 2 * np.pi * float(exact[0].radius.mean())
-    size = scene.penetrations.size * circumference / scene.spectrum.short_cutoff
+    cutoffs_crossed = scene.penetrations.size * circumference / scene.spectrum.short_cutoff
     coverages = []
     for error in requested:
         settings = scene.chosen_settings(error)
@@ -188,7 +189,7 @@ def held_out_coverage(
                 numerical=np.array(
                     [branch.adhesion - reference.adhesion for branch, reference in pairs]
                 ),
-                numerical_stated=np.array(numerical_error(simulations[0], size)),
+                numerical_stated=np.array(numerical_error(simulations[0], cutoffs_crossed)),
                 total=runs[:, 0] - expected,
                 run_numerical=runs[:, 1],
                 run_statistical=runs[:, 2],

@@ -235,7 +235,7 @@ def _draw_contact(axes: Axes, picture: ValidationPicture) -> None:
 def hysteresis_figure(rows: Sequence[Hysteresis], short_cutoff: float) -> Figure:
     """Extrapolated hysteresis of both models against e_el, and the ratio of the two with its law.
 
-    Ratios at the ranges that were computed are small and open, those of one surface left out.
+    Ratios at the ranges that were computed are small and open; single surfaces are left out.
     """
     computed, limits = (
         rough_settings(averaged) for averaged in (settings(rows), limit_settings(rows))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -97,28 +96,29 @@ def avalanche_record(parameters: AvalancheParameters, progress: Progress) -> Ava
     """Whole events of straight fronts, then avalanches on surfaces of two amplitudes."""
     line, springs = parameters.line, parameters.springs
     whole = event_record(line, springs, parameters.n_tile, parameters.seed, progress)
-    surfaces: list[list[_Surface]] = []
-    energies = parameters.strong, parameters.weak
-    for name, energy in zip(("strong", "weak"), energies, strict=True):
-        surfaces.append([])
+    energies = {"strong": parameters.strong, "weak": parameters.weak}
+    surfaces: dict[str, list[_Surface]] = {name: [] for name in energies}
+    for name, energy in energies.items():
         for realisation in range(parameters.n_surface):
-            surfaces[-1].append(_surface(parameters, energy, realisation))
-            count = len(surfaces[-1][-1].avalanches)
+            surface = _surface(parameters, energy, realisation)
+            surfaces[name].append(surface)
+            count = len(surface.avalanches)
             progress(f"{name} disorder, surface {realisation}: {count} avalanches")
     spectrum = flat_spectrum(parameters.short_cutoff)
-    means = surface_means(surfaces, "rms", "larkin_length", "circle_length", "smooth_area")
+    kinds = [*surfaces.values()]
+    means = surface_means(kinds, "rms", "larkin_length", "circle_length", "smooth_area")
     unit = means["larkin_length"] * force_correlation_length("roughness", spectrum)
-    events = [[event for surface in kind for event in surface.avalanches] for kind in surfaces]
-    columns = (np.array(column) for column in zip(*itertools.chain(*events), strict=True))
+    strong, weak = ([event for surface in kind for event in surface.avalanches] for kind in kinds)
+    columns = (np.array(column) for column in zip(*strong, *weak, strict=True))
     avalanches: dict[str, Any] = dict(zip(_Avalanche._fields, columns, strict=True))
     return AvalancheRecord(
         **values_of(whole),
         **values_of(parameters, "short_cutoff", "precision", "seed"),
         correlation_length=spectrum.correlation_length,
-        elastic_energy=np.array(energies),
+        elastic_energy=np.array([*energies.values()]),
         **means,
         smallest_area=parameters.smallest_area * unit,
-        disorder_index=np.repeat([STRONG, WEAK], [len(kind) for kind in events]),
+        disorder_index=np.repeat([STRONG, WEAK], [len(strong), len(weak)]),
         **avalanches,
     )
 
@@ -149,12 +149,15 @@ def _surface(parameters: AvalancheParameters, energy: float, realisation: int) -
         precision=parameters.precision,
         solver=contact.solver,
     )
-    avalanches, areas, last = [], [0.0, 0.0], front
+    avalanches, last = [], front
+    smooth_area = unstable_area = 0.0
     for step in steps:
         area = float(np.pi * np.mean(step.before**2 - step.after**2))
-        areas[step.unstable] += area
         last = step.after
-        if step.unstable:
+        if not step.unstable:
+            smooth_area += area
+        else:
+            unstable_area += area
             patches = swept_clusters(step.before, step.after, travel, contact.field.geometry)
             lost = dissipated_energy(step.before, step.after, step.end, contact.field)
             avalanches.append(
@@ -163,7 +166,7 @@ def _surface(parameters: AvalancheParameters, energy: float, realisation: int) -
     middle = float(np.mean([front, last]))
     return _Surface(
         avalanches=avalanches,
-        smooth_area=areas[0] / sum(areas),
+        smooth_area=smooth_area / (smooth_area + unstable_area),
         circle_length=2 * np.pi * middle / float(circle_stiffness(middle, (start + stop) / 2)),
         rms=contact.w_rms,
         larkin_length=contact.larkin_length,

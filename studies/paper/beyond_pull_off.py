@@ -57,7 +57,7 @@ class PullOffParameters(RoughParameters):
         return self
 
     def spectra(self) -> NDArray[Any]:
-        """Spectra by Hurst exponent, cutoff and height; those of one height have one h_rms."""
+        """Spectra by Hurst exponent, cutoff and height; a height has one h_rms."""
         sizes = len(self.hurst), len(self.short_cutoffs), len(self.elastic_energies)
         spectra = np.empty(sizes, dtype=object)
         for hurst, cutoff, height in np.ndindex(sizes):

@@ -15,7 +15,7 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -193,22 +193,31 @@ def synthetic(folder: Path, n_simulation: int, *, curves: bool = True) -> Path:
     write_text(store.configuration, path.read_text(encoding="utf-8"))
     firsts = {item.name: _finished(sweep, item, origin) for item in sweep.spectra}
     for shard in sweep.shards(REALISATIONS_OF_A_SHARD):
+        shard_firsts = firsts[shard.item.name]
         if curves:
             writer = BatchWriter(store.curve_folder(shard), origin, seconds=60)
-            for first in firsts[shard.item.name]:
-                for number in shard.realisations:
-                    simulation = replace(first.simulation, realisation=number)
-                    w_appr = first.row.w_appr * rng.normal(1, 0.01)
-                    row = replace(first.row, w_appr=w_appr, seed=simulation.seed)
-                    writer.add(replace(first, simulation=simulation, row=row))
+            for finished in _repeated(shard_firsts, shard, rng):
+                writer.add(finished)
             writer.flush()
             finish_shard(store, sweep, shard, origin)
         else:
-            columns = _repeated_rows(firsts[shard.item.name], shard, rng)
+            columns = _repeated_rows(shard_firsts, shard, rng)
             write_request(folder, shard_request(sweep, shard))
-            path_of_shard = store.shard_path(shard)
-            write_shard(path_of_shard, sweep, shard, columns, [origin.arithmetic], origin)
+            shard_path = store.shard_path(shard)
+            write_shard(shard_path, sweep, shard, columns, [origin.arithmetic], origin)
     return path
+
+
+def _repeated(
+    firsts: Sequence[FinishedSimulation], shard: Shard, rng: np.random.Generator
+) -> Iterator[FinishedSimulation]:
+    """Simulations of a shard with the states of the first ones and scattered rows."""
+    for first in firsts:
+        for number in shard.realisations:
+            simulation = replace(first.simulation, realisation=number)
+            w_appr = first.row.w_appr * rng.normal(1, 0.01)
+            row = replace(first.row, w_appr=w_appr, seed=simulation.seed)
+            yield replace(first, simulation=simulation, row=row)
 
 
 def _finished(sweep: Sweep, item: NamedSpectrum, origin: Provenance) -> list[FinishedSimulation]:

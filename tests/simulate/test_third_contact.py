@@ -235,14 +235,14 @@ class CylinderCycle(Schedule):
     def smallest(cls):
         return cls(0.0, 0.5, 4.0)
 
-    def steady_adhesion(self, result):
-        states = result.record.states
+    def steady_adhesion(self, record, correlation_length, mean_adhesion):
+        states = record.states
         columns = (
             states.apparent_work_of_adhesion,
             states.mean_half_width,
             states.rms_half_width,
         )
-        return steady_means(states, columns, "half-widths", result.simulation.correlation_length)
+        return steady_means(states, columns, "half-widths", correlation_length)
 
     def averaged_cutoffs(self, steady, correlation_length, short_cutoff):
         sites = self.length / short_cutoff

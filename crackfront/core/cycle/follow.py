@@ -13,7 +13,7 @@ from crackfront.core.arrays import Array
 from crackfront.core.field.fields import Field, first_place, last_place
 from crackfront.core.field.samples import make_memory
 from crackfront.core.outcome import Direction, Relaxation, Status
-from crackfront.core.solver.relax import Newton, Solver, relax
+from crackfront.core.solver.relax import Newton, Solver, force_round_off, relax
 
 
 class Load(NamedTuple):
@@ -141,7 +141,7 @@ def _check_load(load: Load, field: Field) -> None:
 
 def _check_tolerance(tolerance: float, n_site: int) -> None:
     """Raise if the round-off of forces exceeds a tolerance."""
-    round_off = float(np.finfo(float).eps) * n_site
+    round_off = force_round_off(n_site)
     if not tolerance >= round_off:
         raise ValueError(
             f"tolerance {tolerance} is below the round-off of a front of {n_site} sites "

@@ -71,6 +71,11 @@ SOLVERS: dict[str, type[Solver]] = {kind.name: kind for kind in (Reference, Newt
 """Solvers by name."""
 
 
+def force_round_off(n_site: int) -> float:
+    """Round-off of the forces on a front, relative to w_int per front length."""
+    return float(np.finfo(float).eps) * n_site
+
+
 def named_solver(name: str, tolerance: float, max_sweeps: int = DEFAULT_MAX_SWEEPS) -> Solver:
     """Solver of a name in :data:`SOLVERS`.
 

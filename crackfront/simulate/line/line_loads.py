@@ -53,7 +53,6 @@ from crackfront.simulate.tiles import (
 )
 
 if TYPE_CHECKING:
-    from crackfront.simulate.run_simulation import SimulationResult
     from crackfront.simulate.simulation import Simulation
 
 _BEHIND = 1.3
@@ -190,10 +189,11 @@ class LineSchedule(Schedule, OnSprings):
         """Length of the springs, whatever the work of adhesion."""
         return self.spring
 
-    def steady_adhesion(self, result: SimulationResult) -> SteadyAdhesion:
+    def steady_adhesion(
+        self, record: CycleRecord, correlation_length: float, mean_adhesion: float
+    ) -> SteadyAdhesion:
         """Means over the last period of each branch."""
-        length = result.simulation.correlation_length
-        return period_adhesion(result.record, self.n_period, result.mean_adhesion, length)
+        return period_adhesion(record, self.n_period, mean_adhesion, correlation_length)
 
     def usual_cutoffs(self, spectrum: Spectrum) -> float:
         """Cutoffs crossed, for which settings are chosen, whatever the spectrum."""

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from crackfront.analysis.steady_adhesion import SteadyAdhesion, steady_adhesion
 from crackfront.core import jkr
@@ -20,9 +19,6 @@ from crackfront.core.spectrum import Spectrum
 from crackfront.simulate.contact import ExpectedMotion, Pressed, Problem, Schedule
 from crackfront.simulate.laws import sphere_cutoffs
 from crackfront.simulate.tiles import Fineness, RandomSurface, Resolution, correlated_adhesion
-
-if TYPE_CHECKING:
-    from crackfront.simulate.run_simulation import SimulationResult
 
 
 class SphereSchedule(Schedule, Pressed):
@@ -74,9 +70,11 @@ class SphereSchedule(Schedule, Pressed):
         """Length L_kappa of the springs that restore the edge of the largest smooth contact."""
         return jkr.spring(jkr.equilibrium_radius(self.max_penetration), work_of_adhesion)
 
-    def steady_adhesion(self, result: SimulationResult) -> SteadyAdhesion:
+    def steady_adhesion(
+        self, record: CycleRecord, correlation_length: float, mean_adhesion: float
+    ) -> SteadyAdhesion:
         """Means over the states of which every site has travelled a correlation length."""
-        return steady_adhesion(result.record, result.simulation.correlation_length)
+        return steady_adhesion(record, correlation_length)
 
     def usual_cutoffs(self, spectrum: Spectrum) -> float:
         """Cutoffs crossed by a sphere of mean radius 1.6 in eight states."""

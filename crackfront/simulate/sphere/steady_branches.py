@@ -10,7 +10,6 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -33,9 +32,6 @@ from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.simulate.contact import ExpectedMotion, Problem
 from crackfront.simulate.sphere.full_cycle import SphereSchedule
 from crackfront.simulate.tiles import RandomSurface
-
-if TYPE_CHECKING:
-    from crackfront.simulate.run_simulation import SimulationResult
 
 _FEWEST_TO_TURN = 8
 """Steady states before the approach may turn."""
@@ -147,11 +143,12 @@ class SteadySchedule(SphereSchedule):
             penetration -= step
             yield Load(penetration, -1)
 
-    def steady_adhesion(self, result: SimulationResult) -> SteadyAdhesion:
+    def steady_adhesion(
+        self, record: CycleRecord, correlation_length: float, mean_adhesion: float
+    ) -> SteadyAdhesion:
         """Means over the steady states, as of full cycles, with the keys that give more of them."""
-        length = result.simulation.correlation_length
         remedy = "lower start or travel, or raise max_penetration"
-        return steady_adhesion(result.record, length, remedy)
+        return steady_adhesion(record, correlation_length, remedy)
 
     def expected_motion(self, surface: RandomSurface) -> ExpectedMotion:
         """States of both branches until k has the requested standard error."""
