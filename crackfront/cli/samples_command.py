@@ -79,7 +79,7 @@ def samples(
     not give a value.
 
     If a row cannot be used, the command ends with an error that states its line, before anything is
-    computed. A sample whose files fail later has the outcome `refused` in its row. The exit code is
+    computed. A sample whose files fail later has the outcome `invalid` in its row. The exit code is
     the largest of all samples, each as in `crackfront predict`.
     """
     from crackfront.measured.samples.sample import read_samples
@@ -95,9 +95,9 @@ def samples(
     if further := list(dict.fromkeys(name for sample in series for name in sample.further)):
         click.echo(f"copied to the results without being used: {', '.join(further)}", err=True)
     results = write_samples(table, series, "sample", quantity)
-    refused = [result.sample.name for result in results if result.outcome == "refused"]
-    if refused:
-        click.echo(f"without a value: {', '.join(refused)}; the table states the reasons", err=True)
+    invalid = [result.sample.name for result in results if result.outcome == "invalid"]
+    if invalid:
+        click.echo(f"without a value: {', '.join(invalid)}; the table states the reasons", err=True)
     if not no_figure:
         from crackfront.measured.page.series import series_figure
         from crackfront.plots.style import save_figure
@@ -157,7 +157,7 @@ def _line(result: SampleResult, quantity: str) -> str:
 
     row = result.row
     reason = row.get("failed") or row.get("undecided") or ""
-    if result.outcome == "refused":
+    if result.outcome == "invalid":
         reason = row["remarks"]
     outcome = f"{result.outcome}: {reason}" if reason else result.outcome
     if result.prediction is None:
@@ -172,6 +172,6 @@ def _line(result: SampleResult, quantity: str) -> str:
 
 def exit_code(outcome: str, strict: bool) -> int:
     """Exit code of what came of a surface: 3 of reservations if strict, 4 without a prediction."""
-    if outcome in ("does not apply", "refused"):
+    if outcome in ("does not apply", "invalid"):
         return 4
     return 3 if strict and outcome != "applies" else 0

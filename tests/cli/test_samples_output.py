@@ -34,7 +34,7 @@ def test_a_file_that_cannot_be_read_says_why(table):
     (table.parent / "bad.txt").write_text("no scan\n")
     table.write_text("sample,scans,radius\nbad,bad.txt,1mm\n")
     result = run("samples", table, *SPHERE, "--no-figure")
-    assert result.stdout.startswith("bad: refused: ")
+    assert result.stdout.startswith("bad: invalid: ")
     assert "bad.txt" in result.stdout.splitlines()[0]
 
 

@@ -1,5 +1,6 @@
 """Renew the golden files: `python -m tests.golden`, after a version was raised."""
 
+import argparse
 import sys
 
 from tests.golden.files import renewed_files
@@ -8,6 +9,7 @@ from tests.golden.golden import NotRaisedError, write_golden
 
 def main() -> str | None:
     """Write both files, or say why not."""
+    argparse.ArgumentParser("python -m tests.golden", description=__doc__).parse_args()
     try:
         files = renewed_files()
     except NotRaisedError as error:

@@ -193,7 +193,7 @@ def test_a_sample_that_fails_later_keeps_the_rows_of_the_others(tmp_path):
         "rough,,20um,2um,0.8,20nm,,\n"
     )
     bad, good, rough = predicted_samples(read_samples(path, SPHERE))
-    assert (bad.outcome, bad.prediction) == ("refused", None)
+    assert (bad.outcome, bad.prediction) == ("invalid", None)
     assert "bad.txt" in bad.row["remarks"]
     assert good.row["hysteresis_low"] < good.row["hysteresis"] < good.row["hysteresis_high"]
     assert (good.row["at_least"], good.row["none_expected"], good.row["failed"]) == (

@@ -66,7 +66,7 @@ def predicted_samples(samples: Sequence[Sample]) -> Iterator[SampleResult]:
             if prediction is None:
                 prediction = not_predicted(surface, sample.scales, verdict)
         except (ValueError, OSError) as error:
-            row = {"outcome": "refused", "remarks": str(error)}
+            row = {"outcome": "invalid", "remarks": str(error)}
         row = {"sample": sample.name, "group": sample.group} | row | _measured_cells(sample)
         row |= {
             f"{name} (table)" if name in row or name in _RESULTS else name: cell

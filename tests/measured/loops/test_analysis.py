@@ -83,12 +83,13 @@ def test_two_columns_hold_the_truth_at_any_preload_and_drift(made, preload):
         for name, truth in TRUTH.items():
             estimate = getattr(result, name)
             held.append(estimate.low <= truth <= estimate.high)
-        pulled.append(result.pull_off_force.value)
+        pulled.append(result.pull_off_force)
     assert np.mean(held) >= 0.85
     # The table ends at 1.6 times the radius of pull-off, after the largest pull.
     pull = -jkr.pull_off_force(W_RETR) * Scales(RADIUS, 1.0, MODULUS).force
-    # A wave of 1% of the largest force is 8% of this pull.
-    assert np.mean(pulled) == pytest.approx(pull, rel=0.12 if "wave" in made else 0.05)
+    # A wave of 1% of the largest force is 8% of this pull, and no interval contains it.
+    assert np.mean([item.value for item in pulled]) == pytest.approx(pull, rel=0.12)
+    assert "wave" in made or np.mean([item.low <= pull <= item.high for item in pulled]) >= 2 / 3
 
 
 @pytest.mark.parametrize("n_row", [100, 3000])

@@ -24,6 +24,14 @@ def test_a_bent_drift_widens_the_intervals():
     assert result.pull_off_force.low < pull < result.pull_off_force.high
 
 
+@pytest.mark.parametrize("drift", [-0.3, 0.3])
+def test_a_jump_into_contact_that_noise_hides_is_found_under_a_drift_of_either_sign(drift):
+    with_radius = loop(0, drift=drift, preload=3.0, n_away=100)
+    is_contact = rows_in_contact(replace(with_radius, radius=None))
+    # The force of first contact is lost in the noise, but not the hundred rows out of contact.
+    assert np.sum(is_contact != (with_radius.radius > 0)) < 50
+
+
 def drift_is_named(recording):
     remarks = analyse_loop(recording, Rig(RADIUS, MODULUS)).remarks
     return any("drift along one line" in text and "Cut out a rest" in text for text in remarks)
