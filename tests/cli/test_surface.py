@@ -80,7 +80,7 @@ def predict():
 
 def test_a_batch_of_scans_is_a_table_with_a_row_for_each_sample(tmp_path, smooth):
     table, absent = tmp_path / "samples.csv", tmp_path / "absent.al3d"
-    scans = {OVERVIEW: "applies with reservations", smooth: "applies", absent: "refused"}
+    scans = {OVERVIEW: "applies with reservations", smooth: "applies", absent: "invalid"}
     command = ("predict", *sphere(), "--csv", table)
     assert run(*command, *scans).exit_code == 4
     with table.open(encoding="utf-8", newline="") as file:
