@@ -15,7 +15,7 @@ from crackfront.simulate.labels import labelled, labelled_fields
 from crackfront.simulate.settings import Settings
 from crackfront.simulate.storage import UnreadableFileError, read_dataset
 from studies.accuracy import averages
-from studies.accuracy.scenes import FINER, HELD_OUT, SCENES, Progress, Scene, Trial
+from studies.accuracy.scenes import FINEST, HELD_OUT, SCENES, Progress, Scene, Trial
 from studies.accuracy.study import Errors, SceneErrors, scene_errors, trial_seconds
 from studies.records import read_records, stacked
 
@@ -74,7 +74,7 @@ STUDIES = {
     "settings": _of_trials(lambda scene: scene.single_trials),
     "requested": _of_trials(lambda scene: scene.requested_trials()),
     "unseen": _of_trials(lambda scene: scene.requested_trials(_UNSEEN), HELD_OUT),
-    "expected": _of_trials(lambda scene: scene.requested_trials(_EXPECTED), HELD_OUT, FINER),
+    "expected": _of_trials(lambda scene: scene.requested_trials(_EXPECTED), HELD_OUT, FINEST),
     "averages": Study(_averages, averages.sampling_seconds),
     "coverage": Study(_coverage, lambda scene: averages.coverage_seconds(scene, _COVERED)),
 }
