@@ -1,4 +1,4 @@
-# From a configuration to the figures: simulate -> aggregate -> fit -> figures.
+# From a configuration to the figures: simulate -> aggregate -> fit with its figures.
 #
 #   snakemake --profile workflow/profiles/default --config sweep=config/test.yaml
 #
@@ -48,7 +48,6 @@ onerror:
 include: "workflow/rules/simulate.smk"
 include: "workflow/rules/aggregate.smk"
 include: "workflow/rules/fit.smk"
-include: "workflow/rules/figures.smk"
 include: "workflow/rules/accuracy.smk"
 include: "workflow/rules/paper.smk"
 include: "workflow/rules/validation.smk"

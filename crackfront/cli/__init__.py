@@ -18,9 +18,7 @@ from crackfront.cli.output import output_that_may_close
 from crackfront.cli.result_commands import (
     aggregate,
     archive,
-    figures,
     fit,
-    summary,
 )
 from crackfront.cli.samples_command import samples
 from crackfront.cli.surface_commands import predict, surface
@@ -108,7 +106,7 @@ SECTIONS: dict[str, tuple[click.Command, ...]] = {
     "Predictions": (predict, samples, surface, law),
     "One contact": (cycle, loop),
     "Sweeps, in this order": (
-        *(plan, simulate, status, aggregate, fit, figures, summary, archive),
+        *(plan, simulate, status, aggregate, fit, archive),
         surfaces,
     ),
     "Stored results": (verify, checksums),

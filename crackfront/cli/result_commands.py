@@ -1,4 +1,4 @@
-"""What a sweep that has run becomes: one file, its fit, figures, a page and an archive."""
+"""What a sweep that has run becomes: one file, its fit with figures and a page, and an archive."""
 
 from __future__ import annotations
 
@@ -17,6 +17,8 @@ from crackfront.sweep.watching import with_progress
 if TYPE_CHECKING:
     from crackfront.analysis.result import SweepFit
     from crackfront.analysis.table import SweepTable
+    from crackfront.simulate.provenance import Provenance
+    from crackfront.simulate.run_simulation import SimulationResult
     from crackfront.simulate.simulation import Simulation
     from crackfront.sweep.store import Store
     from crackfront.sweep.sweep import Sweep
@@ -52,7 +54,11 @@ def aggregate(configuration: Path, output: Path | None) -> None:
 @output_option
 @as_json
 def fit(configuration: Path, output: Path | None, as_json: bool) -> None:
-    """Fit k to hysteresis.nc; write fit.nc, fit.json and fit.md, and print the result."""
+    """Fit k to hysteresis.nc and show it: fit.nc, fit.json, fit.md, figures, summary.html.
+
+    The page has the result, the figures, the fit, how simulations ended, the configuration and the
+    origin. Without the stored simulations, curves/, one is run again for its figure.
+    """
     from crackfront.analysis.fit_text import fit_result
     from crackfront.simulate.checksums import forget_sums
     from crackfront.sweep.fit_files import write_fit
@@ -62,51 +68,53 @@ def fit(configuration: Path, output: Path | None, as_json: bool) -> None:
 
     sweep, store, origin = opened(configuration, output, warn)
     fitted = _fitted(sweep, store)
+    example = _stored_or_run(store, sweep, _loop_example(sweep, fitted.table))
     forget_sums(store.folder)
     request = fit_request(sweep)
     store.keep_configuration(origin.configuration)
     write_request(store.folder, request)
     paths = write_fit(store.folder, fitted, request.digest, origin)
+    figures = _write_figures(store.folder, fitted, example)
+    page = _write_page(store, sweep, fitted, configuration.stem, origin)
     if as_json:
         click.echo(paths[1].read_text(encoding="utf-8"))
         return
     click.echo(fit_result(fitted))
     click.echo(f"fit: {', '.join(map(str, paths))}")
+    for path in figures:
+        click.echo(f"figure: {path}")
+    click.echo(f"summary: {page}")
 
 
-@click.command(epilog=examples("crackfront figures config/default.yaml"))
-@configuration_argument
-@output_option
-def figures(configuration: Path, output: Path | None) -> None:
-    """Draw the figures of a sweep from hysteresis.nc as PDF and PNG."""
-    from crackfront.plots.loop_figures import simulation_figure
-    from crackfront.plots.style import save_figure
-    from crackfront.plots.sweep_figures import factor_figure, hysteresis_figure
-    from crackfront.simulate.checksums import forget_sums
+def _stored_or_run(store: Store, sweep: Sweep, simulation: Simulation) -> SimulationResult:
+    """Result of a simulation, which is run where it is not stored."""
     from crackfront.simulate.costs import expected_cost
     from crackfront.simulate.run_simulation import run_simulation
     from crackfront.simulate.storage import UnreadableFileError
-    from crackfront.sweep.requests import fit_request
-    from crackfront.sweep.run_sweep import opened
 
-    sweep, store, _ = opened(configuration, output, warn)
-    fitted = _fitted(sweep, store)
-    simulation = _loop_example(sweep, fitted.table)
     try:
-        result = store.result(sweep, simulation)
+        return store.result(sweep, simulation)
     except UnreadableFileError:  # as in an archive without curves
         announce_cost(simulation.label, expected_cost(simulation).seconds)
-        result = run_simulation(simulation)
-    forget_sums(store.folder)
-    request = fit_request(sweep).digest
+        return run_simulation(simulation)
+
+
+def _write_figures(folder: Path, fitted: SweepFit, example: SimulationResult) -> list[Path]:
+    """Draw the figures of a sweep, one of them of a single simulation, as PDF and PNG."""
+    from crackfront.plots.loop_figures import simulation_figure
+    from crackfront.plots.style import save_figure
+    from crackfront.plots.sweep_figures import factor_figure, hysteresis_figure
+
     drawn = {
         "hysteresis": hysteresis_figure(fitted),
-        "loop": simulation_figure(result),
+        "loop": simulation_figure(example),
         "factor": factor_figure(fitted),
     }
-    for name, figure in drawn.items():
-        for path in save_figure(figure, store.folder / "figures" / name, request):
-            click.echo(f"figure: {path}")
+    return [
+        path
+        for name, figure in drawn.items()
+        for path in save_figure(figure, folder / "figures" / name)
+    ]
 
 
 _CAPTIONS = {
@@ -119,53 +127,27 @@ _CAPTIONS = {
 }
 
 
-@click.command(epilog=examples("crackfront summary config/default.yaml"))
-@configuration_argument
-@output_option
-def summary(configuration: Path, output: Path | None) -> None:
-    """Write summary.html: result, figures, fit, how simulations ended, configuration, origin."""
+def _write_page(
+    store: Store, sweep: Sweep, fitted: SweepFit, name: str, origin: Provenance
+) -> Path:
+    """Write the page of a sweep of this name, whose figures are drawn, and return its path."""
     from crackfront.analysis.fit_text import fit_table
-    from crackfront.plots.style import picture_subject
-    from crackfront.simulate.checksums import forget_sums
     from crackfront.simulate.storage import write_text
-    from crackfront.sweep.fit_files import fitted_request
-    from crackfront.sweep.requests import fit_request
-    from crackfront.sweep.run_sweep import opened
     from crackfront.sweep.summary import summary_page
     from crackfront.sweep.table_file import read_statuses
 
-    sweep, store, origin = opened(configuration, output, warn)
-    about = {name: text for name, text in store.about(sweep).items() if name != "configuration"}
-    fit_file = store.folder / "fit.nc"
-    request = fit_request(sweep).digest
-    if fit_file.is_file() and fitted_request(fit_file) != request:
-        raise ValueError(
-            f"{fit_file} is the fit of another range or table than this configuration has, or of "
-            "an older version; run crackfront fit with this one, or the workflow"
-        )
-    pictures = {text: store.folder / "figures" / f"{name}.png" for name, text in _CAPTIONS.items()}
-    if absent := [path for path in pictures.values() if not path.is_file()]:
-        raise ValueError(
-            f"{absent[0]} is not there; run crackfront figures with this configuration, or the "
-            "workflow"
-        )
-    if outdated := [path for path in pictures.values() if picture_subject(path) != request]:
-        raise ValueError(
-            f"{outdated[0]} was drawn with another configuration than the one given, or by an "
-            "older version; run crackfront figures with this one, or the workflow"
-        )
+    about = {key: text for key, text in store.about(sweep).items() if key != "configuration"}
     page = summary_page(
-        f"Adhesion hysteresis: {configuration.stem}",
-        fit_table(_fitted(sweep, store)),
-        pictures,
+        f"Adhesion hysteresis: {name}",
+        fit_table(fitted),
+        {text: store.folder / "figures" / f"{figure}.png" for figure, text in _CAPTIONS.items()},
         read_statuses(store.hysteresis),
         origin.configuration,
         about | {"seed of the sweep": str(sweep.seed)},
     )
     path = store.folder / "summary.html"
-    forget_sums(store.folder)
     write_text(path, page)
-    click.echo(f"summary: {path}")
+    return path
 
 
 @click.command(

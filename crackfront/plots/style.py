@@ -139,15 +139,12 @@ def axes_to_draw_on(axes: Axes | None) -> AbstractContextManager[Axes]:
 _DATES = {".pdf": "CreationDate", ".png": "Software", ".svg": "Date"}
 """Metadata with the date or the program, left out so that equal figures have equal bytes."""
 
-_SUBJECTS = {".pdf": "Subject", ".png": "Description", ".svg": "Description"}
-"""Metadata with the subject of a figure."""
 
-
-def save_figure(figure: Figure, stem: Path, subject: str = "") -> tuple[Path, ...]:
+def save_figure(figure: Figure, stem: Path) -> tuple[Path, ...]:
     """Write a figure as PDF and PNG (300 dpi) and return their paths.
 
     If `stem` ends in .pdf, .png or .svg, only that file is written. Missing folders are made, and
-    equal figures give equal bytes. :func:`picture_subject` reads the subject.
+    equal figures give equal bytes.
     """
     paths = [stem.with_name(stem.name + suffix) for suffix in (".pdf", ".png")]
     if stem.suffix in _DATES:
@@ -157,24 +154,16 @@ def save_figure(figure: Figure, stem: Path, subject: str = "") -> tuple[Path, ..
     disabled, logger.disabled = logger.disabled, True
     try:
         for path in paths:
-            metadata = {_DATES[path.suffix]: None, _SUBJECTS[path.suffix]: subject or None}
-            look: dict[str, Any] = {"format": path.suffix[1:], "metadata": metadata}
+            look: dict[str, Any] = {
+                "format": path.suffix[1:],
+                "metadata": {_DATES[path.suffix]: None},
+            }
             with house_style():
                 replace_atomically(path, functools.partial(figure.savefig, **look))
+            figure.set_layout_engine("none")  # laid out once: both files have the same axes
     finally:
         logger.disabled = disabled
     return tuple(paths)
-
-
-def picture_subject(path: Path) -> str:
-    """Subject of a PNG; empty if it has none, or cannot be read."""
-    from PIL import Image
-
-    try:
-        with Image.open(path) as picture:
-            return str(picture.info.get(_SUBJECTS[".png"], ""))
-    except OSError:
-        return ""
 
 
 def figure_png(figure: Figure) -> bytes:

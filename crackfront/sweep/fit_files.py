@@ -16,13 +16,8 @@ from crackfront.analysis.sweep_fit import FIT_DEFINITION
 from crackfront.simulate.jsonable import to_jsonable
 from crackfront.simulate.labels import labelled
 from crackfront.simulate.provenance import Provenance, utc_now
-from crackfront.simulate.storage import read_derived, write_derived, write_text
+from crackfront.simulate.storage import write_derived, write_text
 from crackfront.sweep.requests import REQUEST
-
-
-def fitted_request(path: Path) -> str:
-    """Digest of what a `fit.nc` was asked for; errors are as in `read_derived`."""
-    return str(read_derived(path, ()).attrs.get(REQUEST, ""))
 
 
 def write_fit(

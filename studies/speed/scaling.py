@@ -52,7 +52,7 @@ JOBS = ((1000, 16), (250, 32), (160, 32))
 REALISATIONS_OF_A_SHARD = 2000
 """Of a synthetic sweep: its two amplitudes make shards of 4000 simulations, 250 of a million."""
 
-LATE_COMMANDS = ("plan", "status", "aggregate", "fit", "figures", "summary")
+LATE_COMMANDS = ("plan", "status", "aggregate", "fit")
 """Commands on a stored sweep, in the order of their use."""
 
 _SCATTER = 0.25

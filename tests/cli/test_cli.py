@@ -97,13 +97,13 @@ fit: {lowest_elastic_energy: 0.08, highest_elastic_energy: 0.2, bootstrap: 200}
 
 
 def test_a_sweep_of_straight_fronts_is_fitted_and_drawn(tmp_path, monkeypatch):
-    def save_png(figure, stem, subject):
-        return save_figure(figure, stem.with_name(f"{stem.name}.png"), subject)
+    def save_png(figure, stem):
+        return save_figure(figure, stem.with_name(f"{stem.name}.png"))
 
     monkeypatch.setattr("crackfront.plots.style.save_figure", save_png)
     configuration, output = tmp_path / "lines.yaml", ("--output", tmp_path / "out")
     configuration.write_text(LINES)
-    for command in ("simulate", "aggregate", "fit", "figures"):
+    for command in ("simulate", "aggregate", "fit"):
         result = run(command, configuration, *output)
         assert result.exit_code == 0, result.output
     dataset = xr.load_dataset(tmp_path / "out/fit.nc")
@@ -194,9 +194,7 @@ def test_simulations_without_a_value_are_counted_and_too_many_fail(tmp_path):
 def test_missing_input_of_the_later_steps_is_refused(tmp_path):
     output = ("--output", tmp_path)
     assert "8 of 8 simulations are in no finished shard" in refused("aggregate", TEST, *output)
-    for command in ("fit", "figures"):
-        sentence = refused(command, TEST, *output)
-        assert "lacks hysteresis.nc; run crackfront aggregate" in sentence
+    assert "lacks hysteresis.nc; run crackfront aggregate" in refused("fit", TEST, *output)
 
 
 def commands_of_help():

@@ -266,8 +266,7 @@ def test_a_sweep_compares_distributions_on_the_same_modes(tmp_path):
     assert np.all(np.abs(table.w_retr[0] / table.w_retr[1] - 1) > 1e-6)
     assert np.all(np.isfinite(table.w_appr_numerical_error[0]))
     assert np.all(np.isnan(table.w_appr_numerical_error[1]))
-    for command in ("fit", "figures"):
-        done(command, path, "--output", tmp_path / "results")
+    done("fit", path, "--output", tmp_path / "results")
     fit = xr.load_dataset(tmp_path / "results/fit.nc")
     assert np.all(np.isfinite(fit.cell_law_factor.sel(spectrum="plain", bound="value")))
     assert np.all(np.isnan(fit.cell_law_factor.sel(spectrum="s")))
@@ -392,8 +391,7 @@ def test_a_sweep_of_maps_runs_and_changes_with_their_contents(maps):
     path, results = in_metres(maps, TILES), maps / "results"
     table = cf.run_sweep(path, results, progress=False)
     assert np.all(np.isfinite(table.w_retr))
-    for command in ("fit", "figures"):
-        done(command, path, "--output", results)
+    done("fit", path, "--output", results)
     row = table.isel(spectrum=0, amplitude=1, realisation=1)
     assert float(cf.simulation(row).run().w_retr) == float(row.w_retr)
     assert json.loads(done("plan", path, "--output", results, "--json").stdout)["missing"] == 0

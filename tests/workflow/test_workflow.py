@@ -25,7 +25,7 @@ from tests.commands import done, simulated
 from tests.places import ROOT
 
 COSTS = {"seconds", "cpu_seconds", "peak_memory"}
-RULES = {"request", "simulate", "aggregate", "fit", "summary", "sweep_figures", "checksums"}
+RULES = {"request", "simulate", "aggregate", "fit", "checksums"}
 
 
 def command(folder, *settings, sweep=ROOT / "config/test.yaml", ranks=2):
@@ -348,7 +348,7 @@ def test_of_a_copy_without_dates_nothing_is_simulated(tmp_path, sweep):
 FAULTS = {
     "shards/flat.nc": {"shards/flat.nc", "shards/flat.nc.sha256"} | TABLE | FITTED,
     "hysteresis.nc": TABLE | FITTED,
-    "fit.nc": FITTED - {name for name in FITTED if name.startswith("figures")},
+    "fit.nc": FITTED,
 }
 """Files, and what is made again where they are damaged."""
 
