@@ -44,9 +44,9 @@ IN_ENV   = PATH="$(CURDIR)/.venv/bin:$$PATH" OMP_NUM_THREADS=1 $(if $(PORTABLE),
 DISPATCHED = from numpy._core._multiarray_umath import __cpu_dispatch__ as names; print(*names)
 NO_VECTORS = NPY_DISABLE_CPU_FEATURES="$$(.venv/bin/python -c '$(DISPATCHED)')" \
   OPENBLAS_CORETYPE=Nehalem OPENBLAS_NUM_THREADS=3 NUMBA_CPU_NAME=generic NUMBA_CPU_FEATURES=
-SNAKE    = $(IN_ENV) .venv/bin/python workflow/run.py --profile $(call quoted,$(PROFILE))
-# Sets damaged files of a sweep aside, for the workflow to make again, and says so.
-CHECK    = $(IN_ENV) .venv/bin/crackfront plan
+START    = $(IN_ENV) .venv/bin/python workflow/run.py
+PROFILED = --profile $(call quoted,$(PROFILE))
+SNAKE    = $(START) $(PROFILED)
 # uv installs, or pip where uv cannot be had or where PIP_NO_INDEX says that only pip knows the files.
 FLAGS    = --no-deps --no-build-isolation --quiet
 PIP      = PIP_USE_PEP517=1 .venv/bin/python -m pip install $(FLAGS) --no-compile
@@ -65,8 +65,7 @@ locked   = awk '/^[^ ]/ { kept = $(2)/^($(1))==/ } kept' requirements.lock
   reproduce-boundary figures report docs lint lock clean help
 
 all: env  ## Run the sweep SWEEP to its fit and figures
-	@plan=$$($(CHECK) $(call quoted,$(SWEEP))) && echo "$$plan" | sed -n 1p
-	@$(SNAKE) --quiet all --config sweep=$(call quoted,$(SWEEP))
+	@$(START) --plan $(call quoted,$(SWEEP)) $(PROFILED) --quiet all --config sweep=$(call quoted,$(SWEEP))
 	@echo "Dataset: $(RESULTS)hysteresis.nc"
 	@sed -n 's/^- //p; /^## /q' $(RESULTS)fit.md
 	@echo "Fit:     $(RESULTS)fit.md"

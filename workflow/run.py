@@ -1,9 +1,12 @@
 """Snakemake as `make` calls it.
 
-It needs no home, Ctrl-C is a sentence while it starts, too, and it does not announce its profile.
+`--plan SWEEP` before its options looks at the files of a sweep first, since Snakemake does not look
+inside files; in the same process, because both import the same libraries. Snakemake needs no home,
+Ctrl-C is a sentence while it starts, too, and it does not announce its profile.
 """
 
 import contextlib
+import io
 import os
 import sys
 import tempfile
@@ -41,6 +44,21 @@ def print_unless_profile(text: str, file: TextIO) -> None:
         print(text, file=file)
 
 
+def plan(sweep: str) -> None:
+    """Set damaged files of a sweep aside by `crackfront plan`, and print how much is to run."""
+    from crackfront.cli import main as crackfront
+
+    text = io.StringIO()
+    try:
+        with contextlib.redirect_stdout(text):
+            crackfront(["plan", sweep], prog_name="crackfront")
+    except SystemExit as ended:
+        if ended.code:
+            raise
+    sys.stdout.write(f"{text.getvalue().splitlines()[0]}\n")
+    sys.stdout.flush()
+
+
 def run() -> None:
     """Run Snakemake, and name its log if a job failed."""
     from snakemake import cli
@@ -55,6 +73,9 @@ def run() -> None:
 
 try:
     ensure_cache()
+    if sys.argv[1:2] == ["--plan"]:
+        plan(sys.argv[2])
+        del sys.argv[1:3]
     run()
 except KeyboardInterrupt:
     sys.exit("Interrupted before any job began; run the same command again")

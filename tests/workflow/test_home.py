@@ -10,27 +10,30 @@ from tests.places import ROOT
 
 
 def plan(folder, profile=ROOT / "workflow/profiles/default", **environment):
-    """Result of Snakemake's plan as `make` asks for it, without the caches of this user."""
+    """Result of the plans as `make` asks for them, without the caches of this user."""
+    sweep = str(ROOT / "config/test.yaml")
     names = ("HOME", "XDG_CACHE_HOME", "NUMBA_CACHE_DIR")
     kept = {name: value for name, value in os.environ.items() if name not in names}
     return subprocess.run(
         [
-            *(sys.executable, str(ROOT / "workflow/run.py")),
+            *(sys.executable, str(ROOT / "workflow/run.py"), "--plan", sweep),
             *("--snakefile", str(ROOT / "Snakefile")),
             *("--profile", str(profile), "--directory", str(folder)),
-            *("--config", f"sweep={ROOT / 'config/test.yaml'}", "--dry-run"),
+            *("--config", f"sweep={sweep}", "--dry-run"),
         ],
         capture_output=True,
         text=True,
         timeout=300,
         check=False,
+        cwd=folder,
         env=kept | environment,
     )
 
 
-def test_make_shows_errors_of_a_profile_but_does_not_announce_it(tmp_path):
+def test_make_says_what_is_to_run_and_shows_errors_of_a_profile_without_announcing_it(tmp_path):
     done = plan(tmp_path)
     assert done.returncode == 0, done.stderr
+    assert done.stdout.startswith("8 simulations = ")
     assert "profile" not in done.stderr
     missing = plan(tmp_path, profile=tmp_path / "nowhere")
     assert missing.returncode == 1
