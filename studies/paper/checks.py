@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
 from crackfront.analysis.estimate import with_error
+from studies.pages import markdown_table
 
 Result = Literal[
     "agrees", "differs as the law of k says", "cannot be decided", "is not met", "FAIL"
@@ -73,18 +74,18 @@ def close_to(
     )
 
 
-def checks_tables(checks: Iterable[Check], scale: str) -> Iterator[str]:
-    """Lines of Markdown: statements of the paper and exact results, then expectations.
+def checks_tables(checks: Sequence[Check], scale: str) -> Iterator[str]:
+    """Parts in Markdown: statements of the paper and exact results, then expectations.
 
     A row is a check; the reason of each expectation stands below their table.
     """
     statements, expectations = _groups(checks)
-    yield from _table(statements, scale)
+    yield _table(statements, scale)
     if expectations:
         yield ""
         yield f"{EXPECTATIONS}, which the paper does not state:"
         yield ""
-        yield from _table(expectations, scale)
+        yield _table(expectations, scale)
         for reason in dict.fromkeys(check.expectation for check in expectations):
             yield ""
             yield reason
@@ -94,26 +95,24 @@ STATEMENTS = "Statements of the paper and exact results"
 EXPECTATIONS = "Expectations of this project"
 
 
-def _groups(checks: Iterable[Check]) -> tuple[list[Check], list[Check]]:
+def _groups(checks: Sequence[Check]) -> tuple[list[Check], list[Check]]:
     """Statements of the paper with exact results, and expectations."""
-    every = list(checks)
-    return (
-        [check for check in every if not check.expectation],
-        [check for check in every if check.expectation],
+    statements = [check for check in checks if not check.expectation]
+    expectations = [check for check in checks if check.expectation]
+    return statements, expectations
+
+
+def _table(checks: Iterable[Check], scale: str) -> str:
+    """Table in Markdown, one row a check."""
+    rows = (
+        (check.claim, check.expected, check.computed, _result_text(check, scale), check.remark)
+        for check in checks
     )
+    return markdown_table("claim | expected | found | result | remark", rows)
 
 
-def _table(checks: Iterable[Check], scale: str) -> Iterator[str]:
-    """Lines of a Markdown table, one row a check."""
-    yield "| claim | expected | found | result | remark |"
-    yield "| --- | --- | --- | --- | --- |"
-    for check in checks:
-        cells = check.claim, check.expected, check.computed, _told(check, scale), check.remark
-        yield f"| {' | '.join(cells)} |"
-
-
-def _told(check: Check, scale: str) -> str:
-    """Result of a check as its row tells it."""
+def _result_text(check: Check, scale: str) -> str:
+    """Result of a check in its row, with the number of the law or the reason."""
     if check.result == "FAIL":
         return "**FAIL**"
     if check.result == "differs as the law of k says":
@@ -123,7 +122,7 @@ def _told(check: Check, scale: str) -> str:
     return check.result
 
 
-def counted(checks: Iterable[Check]) -> tuple[str, ...]:
+def counted(checks: Sequence[Check]) -> tuple[str, ...]:
     """Sentences that count the results of both groups.
 
     Examples

@@ -39,6 +39,9 @@ _MODE = "mode"
 _PIXELS = 4
 """Points of a tile in its shortest wavelength."""
 
+_MILLI = 1e3
+"""Millijoules in a joule."""
+
 _ROOM = 20
 """How far below the shortest wavelength of the surfaces the film is shown."""
 
@@ -138,17 +141,14 @@ def profile_periodogram(heights: Array, pixel: float) -> Array:
 
 def synthetic_film_checks(record: SyntheticFilm) -> tuple[Check, ...]:
     """Whether the surfaces have the densities of their spectrum, and enough of its scales."""
-    spacing, contributions = 2 * math.pi / record.side, record.mode * record.synthetic
-    converted = record.contact_modulus / 8 * spacing * float(np.sum(contributions))
-    wavelength = 2 * np.pi / record.mode
-    dominant = (wavelength > record.dominant_shortest) & (wavelength < record.dominant_longest)
-    carried = float(np.sum(contributions[dominant]))
-    projected = float(np.sum((record.mode * record.included)[dominant]))
-    ends = 2 * np.pi / record.dominant_longest, 2 * np.pi / record.dominant_shortest
-    q = np.geomspace(*ends, POINTS_PER_DECADE)
-    film = np.exp(np.interp(np.log(q), np.log(record.wavevector), np.log(record.profile)))
-    scatter = 3 * record.energy_error / record.mode_energy
-    share = record.mode_energy / record.film_energy
+    return (*_surface_checks(record), *_density_checks(record), _scales_check(record))
+
+
+def _surface_checks(record: SyntheticFilm) -> tuple[Check, ...]:
+    """Mean square height and e_el of the surfaces, by their maps and by their lines."""
+    spacing = 2 * math.pi / record.side
+    weighted = float(np.sum(record.mode * record.synthetic))
+    converted = record.contact_modulus / 8 * spacing * weighted
     return (
         close_to(
             "Parseval: sum of the density of the lines, over their mean square height",
@@ -158,9 +158,9 @@ def synthetic_film_checks(record: SyntheticFilm) -> tuple[Check, ...]:
         ),
         close_to(
             "e_el of the surfaces: as the spectrum has at their modes, within 3 standard errors",
-            1e3 * record.tile_energy,
-            1e3 * record.mode_energy,
-            3e3 * record.energy_error,
+            _MILLI * record.tile_energy,
+            _MILLI * record.mode_energy,
+            3 * _MILLI * record.energy_error,
             units="mJ/m2",
             remark=f"{record.realisations} surfaces",
         ),
@@ -168,33 +168,57 @@ def synthetic_film_checks(record: SyntheticFilm) -> tuple[Check, ...]:
             "e_el from the density of the lines by the paper's conversion, over e_el of the maps",
             converted / record.tile_energy,
             1.0,
-            scatter,
+            _scatter(record),
             remark="exact on average; tolerance of 3 standard errors of e_el",
         ),
+    )
+
+
+def _density_checks(record: SyntheticFilm) -> tuple[Check, ...]:
+    """Density of the lines in the range that carries most of e_el, weighted as e_el weights it."""
+    longest, shortest = record.dominant_longest, record.dominant_shortest
+    wavelength = 2 * np.pi / record.mode
+    dominant = (wavelength > shortest) & (wavelength < longest)
+    measured = float(np.sum((record.mode * record.synthetic)[dominant]))
+    projected = float(np.sum((record.mode * record.included)[dominant]))
+    q = np.geomspace(2 * np.pi / longest, 2 * np.pi / shortest, POINTS_PER_DECADE)
+    film = np.exp(np.interp(np.log(q), np.log(record.wavevector), np.log(record.profile)))
+    film_integral = float(np.trapezoid(q**2 * film, np.log(q)))
+    return (
         close_to(
             "density of the lines over the projection of the included scales, in the range that "
             "carries 80% of e_el",
-            carried / projected,
+            measured / projected,
             1.0,
-            scatter,
+            _scatter(record),
             remark="weighted by q, as e_el is; tolerance of 3 standard errors of e_el",
         ),
         close_to(
             "density of the lines over the density of the film's spectrum, in the same range",
-            carried * spacing / float(np.trapezoid(q**2 * film, np.log(q))),
+            measured * (2 * math.pi / record.side) / film_integral,
             1.0,
             0.1,
             remark="waves shorter than the cutoff are missing in long profiles too; the measured "
             "density of the film is not part of this repository",
         ),
-        Check(
-            "the included scales contain those that carry 80% of e_el",
-            _micrometres(record.dominant_shortest, record.dominant_longest),
-            f"within {_micrometres(record.shortest, record.side)}",
-            record.shortest < record.dominant_shortest and record.dominant_longest < record.side,
-            f"they carry {share:.3f} of e_el; the paper does not print its cutoff",
-        ),
     )
+
+
+def _scales_check(record: SyntheticFilm) -> Check:
+    """Whether the surfaces have all waves that carry most of e_el."""
+    share = record.mode_energy / record.film_energy
+    return Check(
+        "the included scales contain those that carry 80% of e_el",
+        _micrometres(record.dominant_shortest, record.dominant_longest),
+        f"within {_micrometres(record.shortest, record.side)}",
+        record.shortest < record.dominant_shortest and record.dominant_longest < record.side,
+        f"they carry {share:.3f} of e_el; the paper does not print its cutoff",
+    )
+
+
+def _scatter(record: SyntheticFilm) -> float:
+    """Three standard errors of e_el of the surfaces, relative to it."""
+    return 3 * record.energy_error / record.mode_energy
 
 
 def _micrometres(low: float, high: float) -> str:
