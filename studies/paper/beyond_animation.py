@@ -15,12 +15,13 @@ from crackfront.core.cycle.run import run_cycle
 from crackfront.core.variables import ADHESION, ENERGY, FORCE, LATERAL, VERTICAL, variable
 from crackfront.plots.fronts import closed_front, draw_field
 from crackfront.plots.parts import FORCE_LABEL, RADIUS_LABEL
-from crackfront.plots.style import BLACK, BLUE, PAGE, VERMILION, blank_figure, explain, house_style
+from crackfront.plots.style import BLUE, PAGE, VERMILION, blank_figure, explain, house_style
 from crackfront.simulate.run_simulation import compile_solver
 from crackfront.simulate.simulation import simulation_adhesion, simulation_field
 from crackfront.simulate.sphere.full_cycle import FullCycle
 from studies.paper.checks import Check, close_to
-from studies.paper.drawing import BRANCHES, Animation
+from studies.paper.cycle_animation import LAST_FRAMES, GrowingLoop, shown_state
+from studies.paper.drawing import Animation
 from studies.paper.figure import Figure, Integers, Progress, values_of
 from studies.paper.rough import RoughCycleParameters, patch_of, whole_cycle
 
@@ -120,10 +121,6 @@ def motion_checks(shown: AnimatedCycle) -> tuple[Check, ...]:
     )
 
 
-_LAST_FRAMES = 10
-"""Frames without contact at the end."""
-
-
 def motion_figure(shown: AnimatedCycle) -> Drawing:
     """The last frame with contact, and the whole loop."""
     animation = motion_animation(shown)
@@ -134,43 +131,31 @@ def motion_figure(shown: AnimatedCycle) -> Drawing:
 
 def motion_animation(shown: AnimatedCycle) -> Animation:
     """The front over the field, and the loop: one frame a state, and some without contact."""
+    n_state = shown.direction.size
     with house_style():
         figure = blank_figure(PAGE, 0.53 * PAGE)
         map_axes, loop_axes = figure.subplots(1, 2)
         mean, reach = 1 - shown.elastic_energy, 4 * np.sqrt(shown.elastic_energy)
         draw_field(map_axes, shown.x, shown.y, shown.patch, mean, reach)
-        loop_axes.set(xlabel=FORCE_LABEL, ylabel=f"mean {RADIUS_LABEL}")
-        limits = (
-            (shown.force, loop_axes.set_xlim, 0.06),
-            (shown.mean_radius, loop_axes.set_ylim, 0.06),
-        )
-        for values, setter, above in limits:
-            low, high = values.min(), values.max()
-            setter(low - 0.06 * (high - low), high + above * (high - low))
-        (line,) = map_axes.plot([], [], linewidth=1.2)
+        (front,) = map_axes.plot([], [], linewidth=1.2)
         title = map_axes.set_title("penetration $+0.00$")
-        branches = {
-            direction: loop_axes.plot([], [], color=colour, label=name)[0]
-            for direction, name, _, colour in BRANCHES
-        }
-        (point,) = loop_axes.plot([], [], "o", color=BLACK, zorder=4, label="front on the left")
-        loop_axes.legend(loc="lower right")
+        loop_axes.set(xlabel=FORCE_LABEL, ylabel=f"mean {RADIUS_LABEL}")
+        name = "front on the left"
+        loop = GrowingLoop(loop_axes, shown.direction, shown.force, shown.mean_radius, name)
         explain(figure, f"unit of the penetration: ${VERTICAL.tex}$")
-    last = shown.direction.size
 
     def show(frame: int) -> None:
-        state, touching = min(frame, last - 1), frame < last
-        line.set_color(BLUE if shown.direction[state] > 0 else VERMILION)
-        line.set_data(*closed_front(shown.angle, shown.front[state]) if touching else ([], []))
-        b = shown.penetration[state] if touching else shown.end_penetration
-        title.set_text(f"penetration ${b:+.2f}${'' if touching else ', contact lost'}")
-        for direction, drawn in branches.items():
-            branch = np.flatnonzero(shown.direction[: state + 1] == direction)
-            drawn.set_data(shown.force[branch], shown.mean_radius[branch])
-        seen = slice(state, state + 1) if touching else slice(0, 0)
-        point.set_data(shown.force[seen], shown.mean_radius[seen])
+        state, in_contact = shown_state(frame, n_state)
+        loop.show(state, in_contact=in_contact)
+        front.set_color(BLUE if shown.direction[state] > 0 else VERMILION)
+        if in_contact:
+            front.set_data(*closed_front(shown.angle, shown.front[state]))
+            title.set_text(f"penetration ${shown.penetration[state]:+.2f}$")
+        else:
+            front.set_data([], [])
+            title.set_text(f"penetration ${shown.end_penetration:+.2f}$, contact lost")
 
-    return Animation(figure, (line, title, *branches.values(), point), last + _LAST_FRAMES, show)
+    return Animation(figure, (front, title, *loop.artists), n_state + LAST_FRAMES, show)
 
 
 FIGURE = Figure(

@@ -14,10 +14,11 @@ from crackfront.core.arrays import Array
 from crackfront.core.cycle.record import Recorder
 from crackfront.core.outcome import Status
 from crackfront.core.variables import variable
-from crackfront.plots.style import BLACK, PAGE, blank_figure, explain, house_style
+from crackfront.plots.style import PAGE, blank_figure, explain, house_style
 from crackfront.simulate.simulation import simulation_field
 from crackfront.validation import Positive
 from studies.paper.checks import Check
+from studies.paper.cycle_animation import LAST_FRAMES, GrowingLoop, shown_state
 from studies.paper.drawing import BRANCHES, Animation
 from studies.paper.figure import Figure, Integers, Progress
 from studies.paper.nanodiamond import NanodiamondCycle
@@ -79,13 +80,14 @@ def video(parameters: VideoParameters, progress: Progress) -> Video:
 def video_checks(shown: Video) -> tuple[Check, ...]:
     """What must be true of every frame."""
     moved = shown.direction[1:, None] * np.diff(shown.front, axis=0)
-    reached, lost = 1e3 * float(shown.force.max()), Status.LOST_CONTACT.value
+    largest, reached = _MILLI * shown.largest_force, _MILLI * float(shown.force.max())
+    lost = Status.LOST_CONTACT.value
     return (
         Check(
             "the cycle is whole: it reaches the largest force and ends by losing contact",
-            f"{1e3 * shown.largest_force:g} mN; {lost}",
+            f"{largest:g} mN; {lost}",
             f"{reached:.4g} mN; {shown.status}",
-            reached >= 1e3 * shown.largest_force and shown.status == lost,
+            reached >= largest and shown.status == lost,
         ),
         Check(
             "no site of the front moves back, neither in approach nor in retraction",
@@ -99,8 +101,14 @@ def video_checks(shown: Video) -> tuple[Check, ...]:
 _EVERY = 3
 """Frames from one perimeter that stays to the next."""
 
-_LAST_FRAMES = 10
-"""Frames without contact at the end."""
+_MICRO = 1e6
+"""Micrometres in a metre."""
+
+_MILLI = 1e3
+"""Millinewtons in a newton."""
+
+_NO_CONTACT = np.zeros((3, 2))
+"""Corners of a triangle without an area."""
 
 
 def video_figure(shown: Video) -> Drawing:
@@ -113,50 +121,37 @@ def video_figure(shown: Video) -> Drawing:
 
 def video_animation(shown: Video) -> Animation:
     """Contact area with the perimeters of its branch, and the loop: one frame a state."""
+    n_state = shown.direction.size
+    x, y = (_MICRO * shown.front * component(shown.angle) for component in (np.cos, np.sin))
     with house_style():
         figure = blank_figure(PAGE, 0.5 * PAGE)
         area_axes, loop_axes = figure.subplots(1, 2)
-        x, y = (1e6 * shown.front * way(shown.angle) for way in (np.cos, np.sin))
-        reach = 1.05 * float(1e6 * shown.front.max())
+        reach = 1.05 * float(_MICRO * shown.front.max())
         area_axes.set(xlim=(-reach, reach), ylim=(-reach, reach), aspect="equal")
         area_axes.set(xlabel="$x$ (µm)", ylabel="$y$ (µm)", facecolor="0.35")
-        contact = Polygon(np.zeros((3, 2)), facecolor="0.85", edgecolor="none")
+        contact = Polygon(_NO_CONTACT, facecolor="0.85", edgecolor="none")
         area_axes.add_patch(contact)
         perimeters = LineCollection([], linewidths=0.4)
         area_axes.add_collection(perimeters)
         title = area_axes.set_title("0 s")
-        force, radius = 1e3 * shown.force, 1e6 * shown.radius
-        margins = 0.06 * np.ptp(radius), 0.06 * np.ptp(force)
-        loop_axes.set_xlim(force.min() - margins[1], force.max() + margins[1])
-        loop_axes.set_ylim(radius.min() - margins[0], radius.max() + margins[0])
         loop_axes.set(xlabel="normal force (mN)", ylabel="mean contact radius (µm)")
-        branches = {
-            direction: loop_axes.plot([], [], color=colour, label=name)[0]
-            for direction, name, _, colour in BRANCHES
-        }
-        (point,) = loop_axes.plot([], [], "o", color=BLACK, zorder=4, label="frame on the left")
-        loop_axes.legend(loc="lower right")
+        force, radius = _MILLI * shown.force, _MICRO * shown.radius
+        loop = GrowingLoop(loop_axes, shown.direction, force, radius, "frame on the left")
         explain(figure, f"bright: the contact; lines: its perimeters, one in {_EVERY} frames")
     colours = {direction: colour for direction, _, _, colour in BRANCHES}
-    last = shown.direction.size
 
     def show(frame: int) -> None:
-        state, touching = min(frame, last - 1), frame < last
+        state, in_contact = shown_state(frame, n_state)
+        loop.show(state, in_contact=in_contact)
         direction = shown.direction[state]
-        edge = np.column_stack([x[state], y[state]]) if touching else np.zeros((3, 2))
-        contact.set_xy(edge)
-        passed = np.flatnonzero(shown.direction[: state + 1] == direction)[::-_EVERY]
-        perimeters.set_segments([np.column_stack([x[earlier], y[earlier]]) for earlier in passed])
+        contact.set_xy(np.column_stack([x[state], y[state]]) if in_contact else _NO_CONTACT)
+        earlier = np.flatnonzero(shown.direction[: state + 1] == direction)[::-_EVERY]
+        perimeters.set_segments([np.column_stack([x[line], y[line]]) for line in earlier])
         perimeters.set_color(colours[direction])
-        title.set_text(f"{shown.time[state]:.0f} s{'' if touching else ', contact lost'}")
-        for branch, drawn in branches.items():
-            seen = np.flatnonzero(shown.direction[: state + 1] == branch)
-            drawn.set_data(force[seen], radius[seen])
-        now = slice(state, state + 1) if touching else slice(0, 0)
-        point.set_data(force[now], radius[now])
+        title.set_text(f"{shown.time[state]:.0f} s{'' if in_contact else ', contact lost'}")
 
-    moving = (contact, perimeters, title, *branches.values(), point)
-    return Animation(figure, moving, last + _LAST_FRAMES, show)
+    moving = (contact, perimeters, title, *loop.artists)
+    return Animation(figure, moving, n_state + LAST_FRAMES, show)
 
 
 FIGURE = Figure(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
 
@@ -21,6 +21,7 @@ from crackfront.core.arrays import Array
 from crackfront.core.cycle.follow import Load
 from crackfront.core.cycle.record import CycleRecord, Recorder
 from crackfront.core.outcome import Status
+from crackfront.core.units import Scales
 from crackfront.plots.style import BLACK, ORANGE, PAGE, blank_figure, explain, house_style
 from crackfront.simulate.simulation import simulation_adhesion, simulation_field
 from studies.paper.checks import Check, close_to
@@ -33,6 +34,12 @@ from studies.paper.rough import ONE_DIGIT, expected_seconds, recorded
 
 _MICRO = 1e6
 """Micrometres in a metre."""
+
+_MILLI = 1e3
+"""Millijoules in a joule, millinewtons in a newton."""
+
+_NANO = 1e9
+"""Nanometres in a metre."""
 
 _SEVERAL_TENS = (20.0, 100.0)
 """Extents that count as several tens of micrometres (Units: um)."""
@@ -48,57 +55,69 @@ def nanodiamond_contact(
     parameters: NanodiamondParameters, progress: Progress
 ) -> NanodiamondContact:
     """Approach to the largest force, retraction until contact is lost, and the fits of w_int."""
-    scales = parameters.scales
-    surface = _Surface(parameters, 0)
+    scales, surface = parameters.scales, _Surface(parameters, 0)
     record = surface.record(parameters.cycle(surface.recorder, progress))
-    perimeters = surface.perimeters
     if not np.any(record.states.direction < 0):
         raise ValueError(f"the largest force was not reached: {record.status.value}")
-    if not perimeters.lines:
+    if not surface.perimeters.lines:
         raise ValueError("no state lies between jump-in and shown_force; raise shown_force")
     progress(f"retraction: {record.status.value}")
     steady = steady_adhesion(record, surface.correlation_length)
     if steady.sentence:
         raise ValueError(steady.sentence)
-    energy, whole = surface.elastic_energy, parameters.whole_elastic_energy
-    arc, extents, widest = _instabilities(parameters, surface, progress)
-    states, points, adhesion = record.states, parameters.points(), scales.work_of_adhesion
+    instabilities = _instabilities(parameters, surface, progress)
+    works = np.array([[steady.w_appr, steady.w_appr_error], [steady.w_retr, steady.w_retr_error]])
+    approach, retraction = scales.work_of_adhesion * works
+    states = record.states
     radius, force = states.mean_radius * scales.lateral, states.force * scales.force
-    simulated = ForceRadius(force, radius, states.direction)
-    synthetic = _synthetic_points(parameters, radius)
     return NanodiamondContact(
         status=record.status.value,
         sphere_radius=scales.radius,
         **values_of(scales, "work_of_adhesion", "contact_modulus"),
         **values_of(parameters, "factor", "whole_elastic_energy", "short_cutoff", "roll_off"),
         **values_of(parameters, "hurst", "largest_force", "shown_force", "precision"),
-        elastic_energy=energy,
-        jump_in=perimeters.states[0].penetration * scales.vertical,
+        elastic_energy=surface.elastic_energy,
         direction=states.direction,
         penetration=states.penetration * scales.vertical,
         radius=radius,
         force=force,
-        approach=adhesion * np.array([steady.w_appr, steady.w_appr_error]),
-        retraction=adhesion * np.array([steady.w_retr, steady.w_retr_error]),
-        angle=perimeters.angle,
-        line=(np.array(perimeters.lines) * scales.lateral).astype(np.float32),
-        line_force=np.array([state.force for state in perimeters.states]) * scales.force,
-        threshold=surface.correlation_length * scales.lateral,
+        approach=approach,
+        retraction=retraction,
         load_step=parameters.step,
-        tile_side=surface.simulation.resolution.tile_side * scales.lateral,
-        surface=np.repeat(np.arange(len(extents)), [len(widths) for widths in extents]),
-        extents=np.concatenate(extents) * scales.lateral,
-        widest=np.array(widest) * scales.lateral,
-        arc_angle=arc.angle,
-        arc_inner=arc.inner * scales.lateral,
-        arc_outer=arc.outer * scales.lateral,
-        synthetic_fit=fitted_adhesion(synthetic, scales, whole, parameters.factor),
-        simulated_fit=fitted_adhesion(simulated, scales, energy, parameters.factor),
-        measured_fit=fitted_adhesion(points, scales, whole, parameters.factor),
-        measured_force=points.force,
-        measured_radius=points.radius,
-        measured_direction=points.direction,
+        **_perimeter_values(surface, scales),
+        **_instability_values(instabilities, scales),
+        **_fits(parameters, surface, ForceRadius(force, radius, states.direction)),
     )
+
+
+def _perimeter_values(surface: _Surface, scales: Scales) -> dict[str, Any]:
+    """Perimeters of the approach, and the sizes that they are compared with, in SI units."""
+    perimeters = surface.perimeters
+    return {
+        "jump_in": perimeters.states[0].penetration * scales.vertical,
+        "angle": perimeters.angle,
+        "line": (np.array(perimeters.lines) * scales.lateral).astype(np.float32),
+        "line_force": np.array([state.force for state in perimeters.states]) * scales.force,
+        "threshold": surface.correlation_length * scales.lateral,
+        "tile_side": surface.simulation.resolution.tile_side * scales.lateral,
+    }
+
+
+def _fits(
+    parameters: NanodiamondParameters, surface: _Surface, simulated: ForceRadius
+) -> dict[str, Any]:
+    """Measured points, and w_int from synthetic, simulated and measured approaches."""
+    scales, factor = parameters.scales, parameters.factor
+    whole, measured = parameters.whole_elastic_energy, parameters.points()
+    synthetic = _synthetic_points(parameters, simulated.radius)
+    return {
+        "synthetic_fit": fitted_adhesion(synthetic, scales, whole, factor),
+        "simulated_fit": fitted_adhesion(simulated, scales, surface.elastic_energy, factor),
+        "measured_fit": fitted_adhesion(measured, scales, whole, factor),
+        "measured_force": measured.force,
+        "measured_radius": measured.radius,
+        "measured_direction": measured.direction,
+    }
 
 
 class _Surface:
@@ -128,25 +147,47 @@ class _Surface:
         return widest_instability(self.field, steps, self.correlation_length, precision, solver)
 
 
+@dataclass(frozen=True, slots=True)
+class _Instabilities:
+    """Instabilities of the approaches on all surfaces (Units: reduced lateral length)."""
+
+    arc: Advance
+    """The widest on the first surface."""
+    widths: list[list[float]]
+    """Widths of the parts that jump in a load step, of each surface."""
+    widest: list[float]
+    """Width of the widest instability of each surface."""
+
+
 def _instabilities(
     parameters: NanodiamondParameters, first: _Surface, progress: Progress
-) -> tuple[Advance, list[list[float]], list[float]]:
-    """Widest instability of the first surface; of all surfaces widths in load steps, and widest.
-
-    (Units: reduced lateral length)
-    """
+) -> _Instabilities:
+    """Instabilities of the first surface, whose cycle is known, and of further approaches."""
     scales, precision = parameters.scales, parameters.precision / parameters.scales.vertical
     arc = first.widest(precision)
-    extents, widest = [first.perimeters.extents], [arc.extent]
+    instabilities = _Instabilities(arc, [first.perimeters.extents], [arc.extent])
     for realisation in range(1, parameters.n_surface):
         surface = _Surface(parameters, realisation)
         surface.record(parameters.approach(surface.recorder, parameters.shown_force))
-        extents.append(surface.perimeters.extents)
-        widest.append(surface.widest(precision).extent)
-    for realisation, extent in enumerate(widest):
-        text = f"{extent * scales.lateral * _MICRO:.0f} um"
+        instabilities.widths.append(surface.perimeters.extents)
+        instabilities.widest.append(surface.widest(precision).extent)
+    for realisation, width in enumerate(instabilities.widest):
+        text = f"{width * scales.lateral * _MICRO:.0f} um"
         progress(f"surface {realisation}: widest instability {text}")
-    return arc, extents, widest
+    return instabilities
+
+
+def _instability_values(instabilities: _Instabilities, scales: Scales) -> dict[str, Any]:
+    """Instabilities of all surfaces in SI units."""
+    arc, widths = instabilities.arc, instabilities.widths
+    return {
+        "surface": np.repeat(np.arange(len(widths)), [len(extents) for extents in widths]),
+        "extents": np.concatenate(widths) * scales.lateral,
+        "widest": np.array(instabilities.widest) * scales.lateral,
+        "arc_angle": arc.angle,
+        "arc_inner": arc.inner * scales.lateral,
+        "arc_outer": arc.outer * scales.lateral,
+    }
 
 
 def _synthetic_points(parameters: NanodiamondParameters, radius: Array) -> ForceRadius:
@@ -178,9 +219,10 @@ def nanodiamond_checks(contact: NanodiamondContact) -> tuple[Check, ...]:
 
 def _surface_checks(contact: NanodiamondContact) -> tuple[Check, ...]:
     """The surface, and that the cycle is whole."""
-    every = replace(contact.spectrum, short_cutoff=EVERY_WAVELENGTH * contact.spectrum.roll_off)
-    share = contact.spectrum.mean_square(0.5) / every.mean_square(0.5)
-    reached, largest = 1e3 * float(contact.force.max()), 1e3 * contact.largest_force
+    whole = replace(contact.spectrum, short_cutoff=EVERY_WAVELENGTH * contact.spectrum.roll_off)
+    share = contact.spectrum.mean_square(0.5) / whole.mean_square(0.5)
+    shortest, whole_energy = _NANO * contact.short_cutoff, _MILLI * contact.whole_elastic_energy
+    reached, largest = _MILLI * float(contact.force.max()), _MILLI * contact.largest_force
     width = 2 * _MICRO * float(contact.radius.max())
     return (
         Check(
@@ -195,13 +237,13 @@ def _surface_checks(contact: NanodiamondContact) -> tuple[Check, ...]:
             f"{_MICRO * contact.tile_side:.0f} um",
             _MICRO * contact.tile_side >= width,
         ),
-        _near("e_el of all wavelengths", 1e3 * contact.whole_elastic_energy, _PAPER_ENERGY, 0.05),
+        _near("e_el of all wavelengths", whole_energy, _PAPER_ENERGY, 0.05),
         _near(
             "e_el of the simulated surface: as the spectrum has at its wavelengths",
-            1e3 * contact.elastic_energy,
-            1e3 * share * contact.whole_elastic_energy,
+            _MILLI * contact.elastic_energy,
+            _MILLI * share * contact.whole_elastic_energy,
             0.05 * _PAPER_ENERGY,
-            remark=f"wavelengths above {1e9 * contact.short_cutoff:.0f} nm, which have {share:.3f} "
+            remark=f"wavelengths above {shortest:.0f} nm, which have {share:.3f} "
             "of the e_el of all; the chance of one tile leaves the difference",
         ),
     )
@@ -209,15 +251,16 @@ def _surface_checks(contact: NanodiamondContact) -> tuple[Check, ...]:
 
 def _hysteresis_checks(contact: NanodiamondContact) -> tuple[Check, ...]:
     """Hysteresis by the theory with k = 3, in the simulation and in the experiment."""
-    surface, whole = 1e3 * contact.work_of_adhesion, 1e3 * contact.whole_elastic_energy
-    energy = 1e3 * contact.elastic_energy
-    hysteresis = 1e3 * float(contact.retraction[0] - contact.approach[0])
-    error = 1e3 * math.hypot(contact.approach[1], contact.retraction[1])
+    surface, whole = _MILLI * contact.work_of_adhesion, _MILLI * contact.whole_elastic_energy
+    energy = _MILLI * contact.elastic_energy
+    approach, retraction = _MILLI * contact.approach[0], _MILLI * contact.retraction[0]
+    hysteresis = _MILLI * float(contact.retraction[0] - contact.approach[0])
+    error = _MILLI * math.hypot(contact.approach[1], contact.retraction[1])
     law = contact.law
     law_hysteresis = (law.approach.factor.value + law.retraction.factor.value) * energy
     reach = 2 * REACH * law.both.standard_error * energy
     remark = (
-        f"w_appr = {1e3 * contact.approach[0]:.1f} and w_retr = {1e3 * contact.retraction[0]:.1f}, "
+        f"w_appr = {approach:.1f} and w_retr = {retraction:.1f}, "
         f"± {error:.1f} on their difference: k = {hysteresis / (2 * energy):.2f}; k falls with "
         f"disorder, here w_rms = {2 * math.sqrt(energy / surface):.2f} w_int; tolerance: one "
         "digit of k"
@@ -236,9 +279,9 @@ def _hysteresis_checks(contact: NanodiamondContact) -> tuple[Check, ...]:
         ),
         Check(
             "hysteresis of the simulation: the order of magnitude of the measured one",
-            f"{1e3 * MEASURED:g} {_ENERGY} within a factor of {math.sqrt(10):.2g}",
+            f"{_MILLI * MEASURED:g} {_ENERGY} within a factor of {math.sqrt(10):.2g}",
             f"{hysteresis:.4g} {_ENERGY}",
-            abs(math.log10(hysteresis / (1e3 * MEASURED))) <= 0.5,
+            abs(math.log10(hysteresis / (_MILLI * MEASURED))) <= 0.5,
             "the paper claims the order of magnitude; w_int was not adjusted to our own approach",
         ),
     )
@@ -262,10 +305,10 @@ def _instability_check(contact: NanodiamondContact) -> Check:
         f"the widest of a surface: {low:g} to {high:g} um, within the 95% interval of the mean",
         f"{with_interval(mean)} um",
         mean.high >= low and mean.low <= high,
-        f"of {widest.size} surfaces: {listed} um; connected sites that advance by more than the "
+        f"{widest.size} surfaces: {listed} um; connected sites that advance by more than the "
         f"correlation length of w_loc, {_MICRO * contact.threshold:.2f} um, separated to "
-        f"{1e9 * contact.precision:.2g} nm of penetration; in whole load steps of "
-        f"{1e9 * contact.load_step:.0f} nm, which merge some, the widest are {merged} um, and of "
+        f"{_NANO * contact.precision:.2g} nm of penetration; in whole load steps of "
+        f"{_NANO * contact.load_step:.0f} nm, which merge some, the widest are {merged} um, and of "
         f"{extents.size} parts {np.count_nonzero(extents > low)} are wider than {low:g} um and "
         f"{np.count_nonzero(extents > high)} wider than {high:g} um",
     )
@@ -273,9 +316,9 @@ def _instability_check(contact: NanodiamondContact) -> Check:
 
 def _fit_checks(contact: NanodiamondContact) -> tuple[Check, ...]:
     """The w_int that a fit to the approach gives."""
-    surface, energy = 1e3 * contact.work_of_adhesion, 1e3 * contact.elastic_energy
-    value, low, high = 1e3 * contact.synthetic_fit
-    approach_factor = (surface - energy - 1e3 * contact.approach[0]) / energy
+    surface, energy = _MILLI * contact.work_of_adhesion, _MILLI * contact.elastic_energy
+    value, low, high = _MILLI * contact.synthetic_fit
+    approach_factor = (surface - energy - _MILLI * contact.approach[0]) / energy
     by_law = contact.law.approach.factor
     checks = [
         Check(
@@ -287,19 +330,19 @@ def _fit_checks(contact: NanodiamondContact) -> tuple[Check, ...]:
         ),
         _near(
             f"w_int from the simulated approach with k = {contact.factor:g}",
-            1e3 * contact.simulated_fit[0],
+            _MILLI * contact.simulated_fit[0],
             surface,
             ONE_DIGIT * energy,
             remark=f"the approach alone has k = {approach_factor:.2f}, and the fit is off by its "
             "difference from that assumed times e_el",
             law=(
                 surface + (contact.factor - by_law.value) * energy,
-                REACH * math.hypot(by_law.standard_error * energy, 1e3 * contact.approach[1]),
+                REACH * math.hypot(by_law.standard_error * energy, _MILLI * contact.approach[1]),
             ),
         ),
     ]
     if contact.measured_force.size:
-        value, low, high = 1e3 * contact.measured_fit
+        value, low, high = _MILLI * contact.measured_fit
         checks.append(
             _near(
                 f"w_int from the measured approach with k = {contact.factor:g}",
@@ -310,10 +353,6 @@ def _fit_checks(contact: NanodiamondContact) -> tuple[Check, ...]:
             )
         )
     return tuple(checks)
-
-
-_MILLI = 1e3
-"""Millijoules in a joule."""
 
 
 def nanodiamond_figure(contact: NanodiamondContact) -> Drawing:
@@ -355,37 +394,56 @@ def _draw_perimeters(axes: Axes, contact: NanodiamondContact) -> None:
 
 def _draw_loop(axes: Axes, contact: NanodiamondContact) -> None:
     """Radius against force: simulation, JKR curves by it and by k = 3, measured points."""
-    surface, energy, scales = contact.work_of_adhesion, contact.elastic_energy, contact.scales
-    shown = np.linspace(0, 1.08 * contact.radius.max(), 300)
-    radius, force = contact.radius * _MICRO, contact.force * _MILLI
-    place = shown * _MICRO
-
-    def smooth(adhesion: float) -> Array:
-        reduced = jkr.equilibrium_force(shown / scales.lateral, adhesion / surface)
-        return reduced * scales.force * _MILLI
-
+    surface, energy = contact.work_of_adhesion, contact.elastic_energy
     works = contact.approach[0], contact.retraction[0]
     for (direction, name, short, colour), adhesion in zip(BRANCHES, works, strict=True):
-        branch = contact.direction == direction
-        if direction > 0:
-            branch &= contact.penetration >= contact.jump_in
-        axes.plot(force[branch], radius[branch], color=colour, linewidth=1.4, label=name, zorder=3)
+        _draw_simulated(axes, contact, direction, color=colour, label=name)
         label = rf"JKR, $w_\mathrm{{{short}}}$ = {adhesion * _MILLI:.1f} mJ/m$^2$"
-        style: dict[str, Any] = {"color": colour, "linewidth": 0.7}
-        axes.plot(smooth(adhesion), place, dashes=(1, 1.2), label=label, **style)
+        _draw_jkr(axes, contact, adhesion, dashes=(1, 1.2), color=colour, label=label)
         theory = surface - energy - direction * PAPER_FACTOR * energy
         label = rf"JKR, $k = {PAPER_FACTOR:g}$: {theory * _MILLI:.1f} mJ/m$^2$"
-        axes.plot(smooth(max(theory, 0.0)), place, dashes=(4, 2), label=label, zorder=1, **style)
-        measured = contact.measured_direction == direction
-        if np.any(measured):
-            points = contact.measured_force * _MILLI, contact.measured_radius * _MICRO
-            points = points[0][measured], points[1][measured]
-            axes.plot(*points, "D", color=colour, mfc="white", label=f"measured, {name}", zorder=4)
-    axes.set_ylim(0.75 * contact.radius[contact.direction < 0].min() * _MICRO, place[-1])
+        look = {"dashes": (4, 2), "color": colour, "zorder": 1}
+        _draw_jkr(axes, contact, max(theory, 0.0), label=label, **look)
+        _draw_measured(axes, contact, direction, color=colour, label=f"measured, {name}")
+    lowest = contact.radius[contact.direction < 0].min()
+    axes.set_ylim(0.75 * lowest * _MICRO, _largest_shown(contact) * _MICRO)
+    force = contact.force * _MILLI
     low, high = force.min(), force.max()
     axes.set_xlim(low - 0.15 * (high - low), high + 0.08 * (high - low))
     axes.set(xlabel="normal force (mN)", ylabel="mean contact radius (µm)")
     axes.legend(loc="lower right")
+
+
+def _largest_shown(contact: NanodiamondContact) -> float:
+    """Largest radius of the axes (Units: m)."""
+    return 1.08 * float(contact.radius.max())
+
+
+def _draw_simulated(axes: Axes, contact: NanodiamondContact, direction: int, **style: Any) -> None:
+    """Simulated states of a branch; the approach begins after jump-in."""
+    branch = contact.direction == direction
+    if direction > 0:
+        branch &= contact.penetration >= contact.jump_in
+    force, radius = contact.force[branch] * _MILLI, contact.radius[branch] * _MICRO
+    axes.plot(force, radius, linewidth=1.4, zorder=3, **style)
+
+
+def _draw_jkr(axes: Axes, contact: NanodiamondContact, adhesion: float, **style: Any) -> None:
+    """JKR curve of a work of adhesion in J / m^2."""
+    scales = contact.scales
+    radius = np.linspace(0, _largest_shown(contact), 300)
+    work = adhesion / contact.work_of_adhesion
+    force = jkr.equilibrium_force(radius / scales.lateral, work) * scales.force
+    axes.plot(force * _MILLI, radius * _MICRO, linewidth=0.7, **style)
+
+
+def _draw_measured(axes: Axes, contact: NanodiamondContact, direction: int, **style: Any) -> None:
+    """Measured points of a branch, if there are any."""
+    measured = contact.measured_direction == direction
+    if np.any(measured):
+        force = contact.measured_force[measured] * _MILLI
+        radius = contact.measured_radius[measured] * _MICRO
+        axes.plot(force, radius, "D", mfc="white", zorder=4, **style)
 
 
 FIGURE = Figure(
