@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import fields
 from pathlib import Path
@@ -63,6 +64,17 @@ def read_records(path: Path, kind: type[Record], along: str) -> tuple[Record, ..
         kind(**{name: column[row] for name, column in values.items()})
         for row in range(dataset.sizes[along])
     )
+
+
+def thinned(size: int, most: int) -> slice:
+    """Slice that keeps equally spaced points, at most `most` of them.
+
+    Examples
+    --------
+    >>> list(range(10))[thinned(10, 4)]
+    [0, 3, 6, 9]
+    """
+    return slice(None, None, math.ceil(size / most))
 
 
 def _columns(
