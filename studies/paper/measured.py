@@ -5,11 +5,9 @@ Two kinds of file are known: forces with contact radii, and spectral densities o
 
 from __future__ import annotations
 
-import csv
-import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,18 +17,24 @@ from crackfront.analysis.estimate import Estimate, student_estimate
 from crackfront.core import jkr
 from crackfront.core.arrays import Array
 from crackfront.core.units import Scales
+from crackfront.measured.tables.headed_table import table_of_texts
+from crackfront.measured.tables.parsed_table import Table
+from crackfront.surfaces.written_units import unit_value
 from crackfront.sweep.section import section_error
 from studies.paper.figure import Integers
+
+if TYPE_CHECKING:
+    from pandas import Series
 
 _FEWEST_POINTS = 3
 """Points that a fit with an interval needs."""
 
 
 class Quantity(NamedTuple):
-    """A column of numbers: `name (unit)` in the header, with units that lead to SI by a factor."""
+    """A column of numbers: `name (unit)` in the header, of the dimension of an SI unit."""
 
     name: str
-    units: Mapping[str, float]
+    unit: str
     positive: bool = False
 
 
@@ -47,87 +51,58 @@ def read_measured(
 ) -> MeasuredTable:
     """Columns of a CSV file, without empty lines, comments (#) and other columns.
 
-    A pydantic error says if the file cannot be read or has no rows, if a column is missing or
+    A pydantic error says if the file cannot be read or lacks rows, if a column is missing or
     stands twice, or if a unit or a value is missing or not understood.
     """
-    rows = _rows(path)
-    top, header = f"{path}, line {rows[0][0]}", [_name_and_unit(title) for title in rows[0][1]]
-    names = [name for name, _ in header]
-    for name in (*(item.name for item in quantities), *words):
-        if names.count(name) != 1:
-            problem = "stands twice; remove one" if name in names else "is missing"
-            raise section_error(
-                f"{top}: column {name} {problem}; the header has {', '.join(names)}"
-            )
-    units = dict(header)
-    for name, allowed, _ in quantities:
-        if (unit := units[name]) not in allowed:
-            problem = f"is in {unit}" if unit else "lacks a unit"
-            raise section_error(
-                f"{top}: {name} {problem}; write {name} (unit) with one of {', '.join(allowed)}"
-            )
-    if len(rows) == 1:
-        raise section_error(f"{path} has a header but no rows; add the points")
-    lines, numbers, texts = [], [], []
-    for line, row in rows[1:]:
-        where = f"{path}, line {line}"
-        if len(row) != len(header):
-            raise section_error(
-                f"{where} has {len(row)} values for {len(header)} columns; complete it"
-            )
-        texts_by_name = dict(zip(names, row, strict=True))
-        numbers.append(
-            [
-                _number(where, texts_by_name[item.name], item, units[item.name])
-                for item in quantities
-            ]
-        )
-        texts.append([texts_by_name[name].strip() for name in words])
-        lines.append(line)
-    return MeasuredTable(np.array(lines), np.array(numbers).T, np.array(texts, dtype=str).T)
-
-
-def _rows(path: Path) -> list[tuple[int, list[str]]]:
-    """Header and rows of a file with the numbers of their lines."""
     try:
-        text = path.read_text(encoding="utf-8-sig")
+        table = table_of_texts(path)
+        numbers = [_si_values(table, quantity) for quantity in quantities]
+        texts = [_column(table, name).to_numpy(dtype=str) for name in words]
     except OSError as error:
         raise section_error(f"{path} cannot be read: {error.strerror}") from error
-    except UnicodeDecodeError as error:
-        raise section_error(f"{path} is not UTF-8 text; save it as UTF-8") from error
-    lines = ("" if line.lstrip().startswith("#") else line for line in text.splitlines())
-    reader = csv.reader(lines, strict=True)
-    try:
-        rows = [(reader.line_num, row) for row in reader if any(row)]
-    except csv.Error as error:
-        raise section_error(f"{path}, line {reader.line_num}: {error}") from error
-    if not rows:
-        raise section_error(f"{path} is empty; it needs a header and rows")
-    return rows
+    except ValueError as error:
+        raise section_error(str(error)) from error
+    if not table.lines:
+        raise section_error(f"{path} has a header but lacks rows; add the points")
+    return MeasuredTable(np.array(table.lines), np.array(numbers), np.array(texts, dtype=str))
 
 
-def _name_and_unit(title: str) -> tuple[str, str]:
-    """Name and unit of a column, `name (unit)` or a name alone."""
-    name, _, unit = title.partition("(")
-    return name.strip(), unit.strip().removesuffix(")")
+def _place(table: Table, name: str) -> int:
+    """Place of the column of a name; a ValueError if it is missing or stands twice."""
+    names = [heading.name for heading in table.headings]
+    if names.count(name) != 1:
+        problem = "stands twice; remove one" if name in names else "is missing"
+        raise ValueError(
+            f"{table.path}: column {name} {problem}; the header has {', '.join(names)}"
+        )
+    return names.index(name)
 
 
-def _number(where: str, text: str, item: Quantity, unit: str) -> float:
-    """A finite number in SI units."""
-    try:
-        value = float(text)
-    except ValueError:
-        value = math.nan
-    if not math.isfinite(value) or (item.positive and value <= 0):
-        must = "a positive number" if item.positive else "a finite number"
-        raise section_error(f"{where}: {item.name} is {text.strip()!r}; it must be {must}")
-    return value * item.units[unit]
+def _column(table: Table, name: str) -> Series:
+    """Texts of a column."""
+    return table.cells[_place(table, name)].str.strip()
+
+
+def _si_values(table: Table, quantity: Quantity) -> Array:
+    """Numbers of a column in SI units; a ValueError if one is not finite or not positive."""
+    name, place = quantity.name, _place(table, quantity.name)
+    unit = table.headings[place].unit
+    if not unit:
+        raise ValueError(f"{table.path}: {name} lacks a unit; write {name} ({quantity.unit})")
+    (values,) = table.numbers([place])
+    is_wrong = ~np.isfinite(values) | (quantity.positive & (values <= 0))
+    for row in np.flatnonzero(is_wrong):
+        text, must = _column(table, name)[row], "positive" if quantity.positive else "finite"
+        raise ValueError(
+            f"{table.path}, line {table.lines[row]}: {name} is {text!r}; it must be a {must} number"
+        )
+    return values * unit_value(unit, quantity.unit)
 
 
 _BRANCHES = {"approach": 1, "retraction": -1}
 
-_FORCE = Quantity("force", {"N": 1.0, "mN": 1e-3, "uN": 1e-6})
-_RADIUS = Quantity("radius", {"m": 1.0, "mm": 1e-3, "um": 1e-6, "nm": 1e-9}, positive=True)
+_FORCE = Quantity("force", "N")
+_RADIUS = Quantity("radius", "m", positive=True)
 
 
 class ForceRadius(NamedTuple):
@@ -141,8 +116,8 @@ class ForceRadius(NamedTuple):
 def read_force_radius(path: Path | None) -> ForceRadius:
     """Points from a CSV file with the columns force (mN), radius (um) and branch, as measured.
 
-    The units are N, mN or uN, and m, mm, um or nm; the branch is approach or retraction. Without a
-    file there are no points. Other branches are errors, and so is an approach after a
+    The units are any of force and length; the branch is approach or retraction. Without a file
+    there are no points. Other branches are errors, and so is an approach after a
     retraction, of less than three points, or whose force does not grow.
     """
     if path is None:
@@ -172,8 +147,8 @@ def read_force_radius(path: Path | None) -> ForceRadius:
     return ForceRadius(force, radius, direction)
 
 
-_WAVEVECTOR = Quantity("q", {"1/m": 1.0, "1/um": 1e6, "1/nm": 1e9}, positive=True)
-_DENSITY = Quantity("C1D", {"m^3": 1.0, "um^3": 1e-18, "nm^3": 1e-27}, positive=True)
+_WAVEVECTOR = Quantity("q", "1/m", positive=True)
+_DENSITY = Quantity("C1D", "m^3", positive=True)
 
 
 class ProfileDensity(NamedTuple):
@@ -186,7 +161,7 @@ class ProfileDensity(NamedTuple):
 def read_profile_density(path: Path | None) -> ProfileDensity:
     """Profile density from a CSV file with the columns q (1/m) and C1D (m^3).
 
-    The units are 1/m, 1/um or 1/nm, and m^3, um^3 or nm^3. The mean square height is the integral
+    The units are any of the same dimensions. The mean square height is the integral
     of C1D over q > 0, divided by pi. Without a file there are no points. A single row
     is an error, and so are wavevectors that do not increase.
     """
