@@ -66,8 +66,8 @@ def truncated_power_law(values: Array, smallest: float, rng: np.random.Generator
     """
     used = _above(values, smallest)
     exponent, cutoff = best = _most_likely(used)
-    again = [_most_likely(rng.choice(used, used.size), best)[0] for _ in range(_N_BOOTSTRAP)]
-    low, high = _interval(exponent, again)
+    resampled = [_most_likely(rng.choice(used, used.size), best)[0] for _ in range(_N_BOOTSTRAP)]
+    low, high = _interval(exponent, resampled)
     return PowerLaw(exponent, low, high, cutoff * smallest, smallest, int(used.size))
 
 
@@ -88,12 +88,12 @@ def _above(values: Array, smallest: float) -> Array:
     return used
 
 
-def _interval(exponent: float, again: Sequence[float]) -> tuple[float, float]:
+def _interval(exponent: float, resampled: Sequence[float]) -> tuple[float, float]:
     """95% interval of an exponent, from the exponents of bootstrap samples.
 
     It assumes a normal distribution: quantiles of some hundred samples scatter twice as much.
     """
-    reach = REACH * float(np.std(again, ddof=1))
+    reach = REACH * float(np.std(resampled, ddof=1))
     return exponent - reach, exponent + reach
 
 
@@ -201,11 +201,11 @@ def joint_power_law(
         )
     binned = [_binned(sample, smallest) for sample in samples]
     best = _most_likely_joint(binned, smallest)
-    again = []
+    resampled = []
     for _ in range(_N_JOINT_BOOTSTRAP):
         drawn = [(values, rng.multinomial(n.sum(), n / n.sum())) for values, n in binned]
-        again.append(_most_likely_joint(drawn, smallest).exponent)
-    low, high = _interval(best.exponent, again)
+        resampled.append(_most_likely_joint(drawn, smallest).exponent)
+    low, high = _interval(best.exponent, resampled)
     shape = best.shoulder, 4 * best.quarter, best.steepness
     upper = [_binned(sample, 2 * smallest) for sample in samples]
     later = _most_likely_joint(upper, 2 * smallest).exponent
@@ -239,53 +239,80 @@ def _most_likely_joint(samples: Samples, smallest: float) -> _JointParameters:
     scales = np.array([cutoff_scale(*sample) for sample in samples])
     used = [(values[values >= smallest], counts[values >= smallest]) for values, counts in samples]
 
-    def at(steepness: float) -> tuple[float, Array]:
-        return _natural_parameters(used, scales, smallest, steepness)
+    def surprise(steepness: float) -> float:
+        return _natural_parameters(used, scales, smallest, steepness)[0]
 
     options = {"bounds": _STEEPNESS, "method": "bounded", "options": {"xatol": 1e-2}}
-    steepness = float(minimize_scalar(lambda value: at(value)[0], **options).x)
-    exponent, shoulder, quarter = (float(value) for value in at(steepness)[1])
+    steepness = float(minimize_scalar(surprise, **options).x)
+    _, natural = _natural_parameters(used, scales, smallest, steepness)
+    exponent, shoulder, quarter = natural.tolist()
     return _JointParameters(scales, exponent, shoulder, quarter, steepness)
+
+
+class _SampleLikelihood(NamedTuple):
+    """What the likelihood of the joint law takes from a sample, at one delta."""
+
+    observed: Array
+    """Sums of the statistics over all values, (3,)."""
+    statistics: Array
+    """Statistics at the places of a quadrature, (3, n)."""
+    weights: Array
+    """Weights of the quadrature, (n,)."""
+    n_value: int
 
 
 def _natural_parameters(
     samples: Samples, scales: Array, smallest: float, steepness: float
 ) -> tuple[float, Array]:
     """Least surprise, and (tau, C, B/4) there, for one delta: an exponential family."""
-    measured, rules = [], []
+    likelihoods = []
     for (values, counts), scale in zip(samples, scales, strict=True):
-        measured.append(_statistics(values, scale, steepness) @ counts)
+        observed = _statistics(values, scale, steepness) @ counts
         places, weights = _rule(smallest, scale)
-        rules.append((_statistics(places, scale, steepness), weights, int(counts.sum())))
+        statistics = _statistics(places, scale, steepness)
+        likelihoods.append(_SampleLikelihood(observed, statistics, weights, int(counts.sum())))
+    return _least_surprise(likelihoods)
 
-    def moments(natural: Array) -> tuple[float, Array, Array]:
-        """Surprise, its gradient and its curvature."""
-        value, slope, curvature = 0.0, np.zeros(3), np.zeros((3, 3))
-        for observed, (statistics, weights, count) in zip(measured, rules, strict=True):
-            exponent = natural @ statistics
-            share = weights * np.exp(exponent - exponent.max())
-            total = share.sum()
-            mean = statistics @ share / total
-            square = (statistics * share) @ statistics.T / total
-            value += count * (np.log(total) + exponent.max()) - natural @ observed
-            slope += count * mean - observed
-            curvature += count * (square - np.outer(mean, mean))
-        return value, slope, curvature
 
-    natural = np.array([1.3, 0.2, 0.3])
-    value, slope, curvature = moments(natural)
+def _least_surprise(likelihoods: Sequence[_SampleLikelihood]) -> tuple[float, Array]:
+    """Least surprise and its natural parameters, by Newton steps that are halved if too long."""
+    natural = np.array(_NATURAL_START)
+    surprise, slope, curvature = _surprise(natural, likelihoods)
     for _ in range(_N_NEWTON):
         step = np.linalg.solve(curvature, slope)
-        gain, length = float(step @ slope), 1.0
+        gain = float(step @ slope)
         if gain < _GAIN:
             break
         # The surprise is convex: halving a step that overshoots ends.
-        while (tried := moments(natural - length * step))[0] > value - 0.1 * length * gain:
+        length = 1.0
+        trial = _surprise(natural - length * step, likelihoods)
+        while trial[0] > surprise - 0.1 * length * gain:
             length /= 2
+            trial = _surprise(natural - length * step, likelihoods)
         natural = natural - length * step
-        value, slope, curvature = tried
-    return value, natural
+        surprise, slope, curvature = trial
+    return surprise, natural
 
+
+def _surprise(
+    natural: Array, likelihoods: Sequence[_SampleLikelihood]
+) -> tuple[float, Array, Array]:
+    """Negative logarithm of the likelihood of all samples, its gradient and its curvature."""
+    surprise, slope, curvature = 0.0, np.zeros(3), np.zeros((3, 3))
+    for observed, statistics, weights, count in likelihoods:
+        exponent = natural @ statistics
+        share = weights * np.exp(exponent - exponent.max())
+        total = share.sum()
+        mean = statistics @ share / total
+        square = (statistics * share) @ statistics.T / total
+        surprise += count * (np.log(total) + exponent.max()) - natural @ observed
+        slope += count * mean - observed
+        curvature += count * (square - np.outer(mean, mean))
+    return surprise, slope, curvature
+
+
+_NATURAL_START = (1.3, 0.2, 0.3)
+"""First guess of tau, C and B / 4."""
 
 _N_NEWTON = 100
 """Limit on Newton steps."""
