@@ -18,8 +18,9 @@ from crackfront.simulate.run_simulation import run_simulation
 from crackfront.simulate.simulation import Simulation
 from crackfront.simulate.sphere.full_cycle import FullCycle
 from crackfront.simulate.sphere.steady_branches import SteadySchedule
-from studies.accuracy.scenes import HELD_OUT, Progress, Scene
+from studies.accuracy.scenes import HELD_OUT, Scene
 from studies.accuracy.study import branches_seconds, measured_branches
+from studies.progress import Progress, silent
 
 _RUN, _BRANCH = "realisation", "branch"
 
@@ -102,12 +103,12 @@ class Coverage:
 
 
 def sampling_errors(
-    scene: Scene, surfaces: range, progress: Progress = lambda line: None
+    scene: Scene, surfaces: range, progress: Progress = silent
 ) -> tuple[Sample, ...]:
     """Hysteresis of a scene with other schedules and tiles.
 
-    By path independence the states of a coarse schedule are also states of a fine one, so that
-    travel and step change the mean alone; another tile is another surface.
+    States are independent of the path, so that a fine schedule also visits all states of a coarse
+    one: travel and step change the mean alone. Another tile is another surface.
     """
     samples = []
     for setting, values in _TRIED.items():
@@ -160,7 +161,7 @@ def held_out_coverage(
     scene: Scene,
     requested: tuple[float, ...],
     n_realisation: int,
-    progress: Progress = lambda line: None,
+    progress: Progress = silent,
 ) -> tuple[Coverage, ...]:
     """True and stated errors on surfaces that no law was fitted to, for errors of k.
 

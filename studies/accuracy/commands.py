@@ -122,17 +122,17 @@ def energies(scans: int, keep: bool) -> None:
         "Roll-offs": synthetic.ROLL_OFFS,
         "Held-out scans": synthetic.HELD_OUT,
     }
-    every = [
+    all_scans = [
         (kind, number) for kinds in tables.values() for kind in kinds for number in range(scans)
     ]
-    energies_of_scans = defaultdict(list)
-    for kind, number in with_progress(every, len(every), "scans"):
-        energies_of_scans[kind].append(synthetic.found_scan(kind, number))
+    scans_by_kind = defaultdict(list)
+    for kind, number in with_progress(all_scans, len(all_scans), "scans"):
+        scans_by_kind[kind].append(synthetic.measured_scan(kind, number))
     parts = {
-        name: synthetic.energy_table({kind: energies_of_scans[kind] for kind in kinds})
+        name: synthetic.energy_table({kind: scans_by_kind[kind] for kind in kinds})
         for name, kinds in tables.items()
     }
-    numbers = {"coverage of the hardest scans": synthetic.hardest_coverage(energies_of_scans)}
+    numbers = {"coverage of the hardest scans": synthetic.hardest_coverage(scans_by_kind)}
     tell("accuracy", parts, numbers=numbers, keep=keep)
 
 
@@ -145,7 +145,7 @@ def movement(scans: tuple[Path, ...], keep: bool) -> None:
     SCANS are read one by one; without any, one synthetic scan of each kind is taken.
     """
     surfaces = {str(scan): list(read_measurements([scan])) for scan in scans} or {
-        kind.name: [scan.measurement for scan in synthetic.found_scan(kind, 0).surface.scans]
+        kind.name: [scan.measurement for scan in synthetic.measured_scan(kind, 0).surface.scans]
         for kind in synthetic.KINDS
     }
     shown = with_progress(surfaces.items(), len(surfaces), "scans")

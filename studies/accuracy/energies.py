@@ -73,6 +73,8 @@ class Kind:
     name: str
     spectrum: Spectrum
     distortion: Distortion = lambda heights, rng: heights
+    cut_first: bool = False
+    """Whether the scan is cut out before it is distorted, by a form or holes of its size."""
     tile: int = 2
     resolved: bool = True
     oblong: bool = False
@@ -93,8 +95,8 @@ class Kind:
 
 
 @dataclass(frozen=True, slots=True)
-class Found:
-    """Mean square half-derivative that was found for a scan, relative to the true one."""
+class MeasuredScan:
+    """Mean square half-derivative as measured from a scan, relative to the true one."""
 
     ratio: Estimate[float]
     surface: MeasuredSurface
@@ -209,9 +211,9 @@ KINDS = (
     Kind("tip of 1 um", FILM, tip_radius=1e-6),
     Kind("noise", FILM, _noise),
     Kind("rows that are shifted", FILM, _rows),
-    Kind("tilt and bow", FILM, _bow),
-    Kind("form that is left", FILM, _form),
-    Kind("missing points", FILM, _holes),
+    Kind("tilt and bow", FILM, _bow, cut_first=True),
+    Kind("form that is left", FILM, _form, cut_first=True),
+    Kind("missing points", FILM, _holes, cut_first=True),
     Kind("oblong pixels", _self_affine(0.8, points=4.0), oblong=True),
     Kind("three line scans", _self_affine(0.8), is_line=True),
     Kind("tip of 3 um, H = 0.4", _self_affine(0.4), resolved=False, tip_radius=3e-6),
@@ -250,7 +252,7 @@ HELD_OUT = (
     Kind("H = 0.8, roll-off of 1.5 sides", _self_affine(0.8, 1.5 * SIDE), tile=5, resolved=False),
     Kind("H = 0.7, scratches", _self_affine(0.7, SIDE / 10), shaped=lambda h: -np.exp(-h / 3)),
     Kind("H = 0.6, three line scans", _self_affine(0.6, SIDE / 10), is_line=True),
-    Kind("H = 0.9, missing points", _self_affine(0.9), _holes),
+    Kind("H = 0.9, missing points", _self_affine(0.9), _holes, cut_first=True),
     Kind("two slopes, H = 0.7 and 1", _two_slopes(0.7, 1.0)),
 )
 """Scans that had no part in any choice."""
@@ -259,21 +261,22 @@ _HARDEST = "roll-off of two sides, H = 1"
 """Kind of scans whose intervals contain the truth least often."""
 
 
-def found_scan(kind: Kind, number: int) -> Found:
-    """What is found for a scan of a kind."""
+def measured_scan(kind: Kind, number: int) -> MeasuredScan:
+    """A scan of a kind as `crackfront predict` evaluates it."""
     key = _key(kind, number)
     rng = np.random.default_rng(np.random.SeedSequence(SEED, spawn_key=key))
-    surface = (_lines if kind.is_line else _map)(kind, rng)
-    half_derivative = surface.half_derivative
-    return Found(half_derivative.each(lambda number: number / MEAN_SQUARE), surface)
+    surface = _lines(kind, rng) if kind.is_line else _map(kind, rng)
+    ratio = surface.half_derivative.each(lambda value: value / MEAN_SQUARE)
+    return MeasuredScan(ratio, surface)
 
 
 def _key(kind: Kind, number: int) -> tuple[int, ...]:
     """Key of the seed of a scan."""
     if kind in KINDS:
         return KINDS.index(kind), number
-    table, kinds = (1, ROLL_OFFS) if kind in ROLL_OFFS else (2, HELD_OUT)
-    return table, kinds.index(kind), number
+    if kind in ROLL_OFFS:
+        return 1, ROLL_OFFS.index(kind), number
+    return 2, HELD_OUT.index(kind), number
 
 
 def _map(kind: Kind, rng: np.random.Generator) -> MeasuredSurface:
@@ -282,11 +285,8 @@ def _map(kind: Kind, rng: np.random.Generator) -> MeasuredSurface:
     heights = gaussian_field(kind.truth(rng), whole, kind.tile * SIDE, rng)[::_FINER, ::_FINER]
     if kind.shaped:
         shaped = kind.shaped(heights / heights.std())
-        undistorted, distorted = (
-            rough_adhesion(1e-9 * values, SIDE).e_el for values in (heights, shaped)
-        )
-        heights = shaped * math.sqrt(undistorted / distorted)
-    if kind.distortion in (_bow, _form, _holes):
+        heights = shaped * math.sqrt(_relative_energy(heights) / _relative_energy(shaped))
+    if kind.cut_first:
         heights = heights[:N_POINT, :N_POINT]
     if kind.tip_radius:
         heights = _dilated(heights, kind.tip_radius)
@@ -294,6 +294,11 @@ def _map(kind: Kind, rng: np.random.Generator) -> MeasuredSurface:
     if kind.oblong:
         return scanned(heights[:, ::2], (PIXEL, 2 * PIXEL), kind.name)
     return scanned(heights, PIXEL, kind.name, kind.tip_radius)
+
+
+def _relative_energy(heights: Array) -> float:
+    """e_el of periodic heights, in a unit that is the same for all."""
+    return rough_adhesion(1e-9 * heights, SIDE).e_el
 
 
 def _lines(kind: Kind, rng: np.random.Generator) -> MeasuredSurface:
@@ -310,39 +315,48 @@ def _lines(kind: Kind, rng: np.random.Generator) -> MeasuredSurface:
         return measured_surface(read_measurements(paths, ReadingOptions(unit="um")))
 
 
-def energy_table(energies: Mapping[Kind, Sequence[Found]]) -> str:
+def energy_table(energies: Mapping[Kind, Sequence[MeasuredScan]]) -> str:
     """e_el of all scans relative to the true one, and how often the intervals contain it."""
     rows = []
     for kind, scans in energies.items():
-        ratios = np.array([scan.ratio.value for scan in scans])
-        covered = np.mean([scan.covers for scan in scans])
-        shares = [scan.surface.joint.shares.measured for scan in scans]
+        ratios = _ratios(scans)
+        factor = np.median([scan.factor for scan in scans])
+        measured = np.median([scan.surface.joint.shares.measured for scan in scans])
+        resolved = "yes" if kind.resolved else "no"
         rows.append(
-            f"{kind.name} | {'yes' if kind.resolved else 'no'} | {np.median(ratios):.2f} | "
-            f"{np.median(np.abs(ratios - 1)):.0%} | {covered:.0%} | "
-            f"{np.median([scan.factor for scan in scans]):.2f} | {np.median(shares):.0%}"
+            f"{kind.name} | {resolved} | {np.median(ratios):.2f} | "
+            f"{np.median(np.abs(ratios - 1)):.0%} | {_coverage(scans):.0%} | "
+            f"{factor:.2f} | {measured:.0%}"
         )
     table = markdown_table(
         "scans | resolved | e_el found / true | median error | intervals that contain it | "
         "their factor | e_el measured",
         rows,
     )
-    every = [scan for scans in energies.values() for scan in scans]
-    ratios = np.array([scan.ratio.value for scan in every])
-    covered = np.mean([scan.covers for scan in every])
-    error = np.median(np.abs(ratios - 1))
+    all_scans = [scan for scans in energies.values() for scan in scans]
+    ratios = _ratios(all_scans)
     return (
-        f"{table}\n\n{len(every)} scans: median error {error:.0%}, geometric mean of "
-        f"found / true {np.exp(np.mean(np.log(ratios))):.2f}, {covered:.1%} of the "
-        "intervals contain the true value"
+        f"{table}\n\n{len(all_scans)} scans: median error {np.median(np.abs(ratios - 1)):.0%}, "
+        f"geometric mean of found / true {np.exp(np.mean(np.log(ratios))):.2f}, "
+        f"{_coverage(all_scans):.1%} of the intervals contain the true value"
     )
 
 
-def hardest_coverage(energies: Mapping[Kind, Sequence[Found]]) -> Number:
+def _ratios(scans: Sequence[MeasuredScan]) -> Array:
+    """e_el of scans over the true one."""
+    return np.array([scan.ratio.value for scan in scans])
+
+
+def _coverage(scans: Sequence[MeasuredScan]) -> float:
+    """Share of the intervals that contain the truth."""
+    return float(np.mean([scan.covers for scan in scans]))
+
+
+def hardest_coverage(energies: Mapping[Kind, Sequence[MeasuredScan]]) -> Number:
     """Share of the intervals that contain the truth, of the scans that show their roll-off least.
 
     The error is half of the 95% interval of the binomial distribution, taken as normal.
     """
     (scans,) = (scans for kind, scans in energies.items() if kind.name == _HARDEST)
-    share = float(np.mean([scan.covers for scan in scans]))
+    share = _coverage(scans)
     return Number(share, REACH * math.sqrt(share * (1 - share) / len(scans)))

@@ -15,8 +15,9 @@ from crackfront.simulate.labels import labelled, labelled_fields
 from crackfront.simulate.settings import Settings
 from crackfront.simulate.storage import UnreadableFileError, read_dataset
 from studies.accuracy import averages
-from studies.accuracy.scenes import FINEST, HELD_OUT, SCENES, Progress, Scene, Trial
+from studies.accuracy.scenes import FINEST, HELD_OUT, SCENES, Scene, Trial
 from studies.accuracy.study import Errors, SceneErrors, scene_errors, trial_seconds
+from studies.progress import Progress
 from studies.records import read_records, stacked
 
 Record = TypeVar("Record")
@@ -45,7 +46,7 @@ def _of_trials(
 ) -> Study:
     """Study of the errors of trials, on surfaces from a number on.
 
-    They are compared with the reference of their scene unless another one is given.
+    They are compared with the reference of their scene unless another one is named.
     """
 
     def compared(scene: Scene) -> Scene:

@@ -84,7 +84,7 @@ def _laws(study: SceneErrors, setting: SettingName) -> Iterator[ErrorLaw]:
 def _falling_line(x: Array, values: Array, slowest: float) -> tuple[float, float]:
     """Likeliest line ln(value) = c_0 + c_1 x of a least slope, from the coarsest value on."""
     # The squares have a gamma distribution about the line.
-    # Of the values at the end that are too small the first counts.
+    # The first of the values at the end that are too small counts.
     counted = 2 + np.max(np.flatnonzero(values >= _LEAST), initial=0)
     x, square = x[:counted], np.maximum(values[:counted], _LEAST) ** 2
 

@@ -10,6 +10,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 from xarray import Dataset
 
 from crackfront.core.arrays import Array
@@ -23,6 +24,7 @@ from crackfront.surfaces.loops import run_loop
 from crackfront.surfaces.random_surface import random_surface
 from crackfront.surfaces.scales import Scales
 from crackfront.surfaces.si_units import in_si_units
+from studies.accuracy.study import rms
 from studies.pages import markdown_table
 
 SPHERE = Scales(radius=1.25e-3, work_of_adhesion=63e-3, contact_modulus=0.7e6 / 0.75)
@@ -76,7 +78,7 @@ class Instrument:
     retraction: float = 1.0
     """Part of the way of the mount from the turn to pull-off that it goes back."""
     knows_modulus: bool = True
-    """Whether the modulus is given, not fitted."""
+    """Whether the modulus is stated, not fitted."""
     sees_contact: bool = True
     """Whether the contact radius is recorded; else the stiffness of the machine is known."""
 
@@ -119,7 +121,7 @@ class Coverage:
     inside: Array
     """Whether w_appr, w_retr and hysteresis lie in their intervals. Shape (n_loop, 3)."""
     offset: Array
-    """Found minus true work, over the true hysteresis. Shape (n_loop, 3)."""
+    """Measured minus true work, over the true hysteresis. Shape (n_loop, 3)."""
     reach: Array
     """Half of each interval over the true hysteresis. Shape (n_loop, 3)."""
     too_short: int = 0
@@ -136,44 +138,52 @@ def cycles(count: int, press: Press = SHALLOW) -> Iterator[Dataset]:
 
 
 def recording(cycle: Dataset, instrument: Instrument, rng: np.random.Generator) -> Recording:
-    """Rows of a rig whose mount goes forth and back: of the states those that a soft machine meets.
-
-    Where the force falls faster than the machine gives way the edge jumps on until the mount has to
-    move again.
-    """
-    force, penetration, radius, direction = (
-        np.asarray(cycle[name]) for name in ("force", "penetration", "mean_radius", "direction")
+    """Rows of a rig whose mount goes forth and back, with noise: only states that it meets."""
+    force, penetration, radius = (
+        np.asarray(cycle[name]) for name in ("force", "penetration", "mean_radius")
     )
     mount = penetration + force / instrument.stiffness
+    rows = _recorded_states(mount, np.asarray(cycle["direction"]), instrument, rng)
+    before = np.zeros(instrument.free_rows)
+    after = before if instrument.retraction == 1 else np.zeros(0)
+    free = np.linspace(1e-6, 0, before.size)
+    way_back = free[::-1][: after.size]
+    recorded_force = np.concatenate([before, force[rows], after])
+    recorded_radius = np.concatenate([before, radius[rows], after])
+    displacement = np.concatenate([mount[rows[0]] - free, mount[rows], mount[rows[-1]] - way_back])
+    largest = float(np.max(np.abs(force)))
+    recorded_force += largest * _force_noise(displacement.size, instrument, rng)
+    recorded_radius *= 1 + instrument.radius_noise * rng.normal(size=displacement.size)
+    return Recording(
+        recorded_force, recorded_radius if instrument.sees_contact else None, displacement
+    )
+
+
+def _recorded_states(
+    mount: Array, direction: Array, instrument: Instrument, rng: np.random.Generator
+) -> NDArray[np.intp]:
+    """Indices of the states that a rig records, at random, the turn in any case.
+
+    If the force falls faster than the machine gives way, the edge jumps on until the mount has to
+    move again: a soft machine does not meet the states between.
+    """
     visited = np.flatnonzero(_first_visits(mount, direction))
     turn = int(np.argmax(mount[visited]))
     if instrument.retraction < 1:
         way = mount[visited[turn]] - mount[visited]
-        visited = visited[
-            (np.arange(visited.size) <= turn) | (way <= instrument.retraction * way[-1])
-        ]
+        is_approach = np.arange(visited.size) <= turn
+        visited = visited[is_approach | (way <= instrument.retraction * way[-1])]
     is_recorded = rng.random(visited.size) < instrument.recorded
     is_recorded[turn] = True
-    rows = visited[is_recorded]
-    largest = float(np.max(np.abs(force)))
-    before = np.zeros(instrument.free_rows)
-    after = before if instrument.retraction == 1 else np.zeros(0)
-    free = np.linspace(1e-6, 0, before.size)
-    columns = {
-        "force": np.concatenate([before, force[rows], after]),
-        "radius": np.concatenate([before, radius[rows], after]),
-        "displacement": np.concatenate(
-            [mount[rows[0]] - free, mount[rows], mount[rows[-1]] - free[::-1][: after.size]]
-        ),
-    }
-    count = columns["force"].size
+    return visited[is_recorded]
+
+
+def _force_noise(count: int, instrument: Instrument, rng: np.random.Generator) -> Array:
+    """Noise, drift and wave of the force in rows of a rig, relative to the largest force."""
     noise = instrument.force_noise * rng.normal(size=count)
     noise += instrument.drift * np.linspace(-0.3, 0.7, count)
     noise += instrument.wave * np.sin(np.arange(count) / 7)
-    columns["force"] += largest * noise
-    columns["radius"] *= 1 + instrument.radius_noise * rng.normal(size=count)
-    seen = instrument.sees_contact
-    return Recording(columns["force"], columns["radius"] if seen else None, columns["displacement"])
+    return noise
 
 
 def _first_visits(mount: Array, direction: Array) -> Array:
@@ -228,16 +238,20 @@ def coverage_table(coverages: Mapping[str, Coverage]) -> str:
     """Shares of intervals that contain the truth, in Markdown, an instrument a row, and of all."""
     rows = []
     for name, rig in coverages.items():
-        shares = [f"{share:.0%}" for share in (*np.mean(rig.inside, axis=0), np.mean(rig.inside))]
-        error = f"{np.sqrt(np.mean(rig.offset[:, 2] ** 2)):.0%}"
+        error = f"{rms(rig.offset[:, 2]):.0%}"
         half = f"{np.median(rig.reach[:, 2]):.0%}"
-        rows.append((name, str(len(rig.inside)), str(rig.too_short), *shares, error, half))
+        rows.append([name, *_coverage_cells(rig.inside, rig.too_short), error, half])
     inside = np.concatenate([rig.inside for rig in coverages.values()])
     too_short = sum(rig.too_short for rig in coverages.values())
-    shares = [f"{share:.0%}" for share in (*np.mean(inside, axis=0), np.mean(inside))]
-    rows.append(("**all**", str(len(inside)), str(too_short), *shares, "", ""))
+    rows.append(["**all**", *_coverage_cells(inside, too_short), "", ""])
     return markdown_table(
         "rig | loops | rejected | w_appr | w_retr | hysteresis | all three | rms error of the "
         "hysteresis | half of its interval",
         rows,
     )
+
+
+def _coverage_cells(inside: Array, too_short: int) -> list[str]:
+    """Numbers of loops, and shares of intervals that contain each work, and of all intervals."""
+    shares = (*np.mean(inside, axis=0), np.mean(inside))
+    return [str(len(inside)), str(too_short), *(f"{share:.0%}" for share in shares)]

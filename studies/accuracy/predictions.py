@@ -61,7 +61,7 @@ FILMS = (
 
 @dataclass(frozen=True, slots=True)
 class Comparison:
-    """What was predicted for a film, and what simulations found."""
+    """Prediction for a film, and simulations of it."""
 
     film: Film
     prediction: Prediction

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TypeVar
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 
@@ -199,36 +199,64 @@ def _error_sizes(factor_errors: Array, requested: float) -> list[str]:
 
 def _coverage_table(coverages: Iterable[tuple[Scene, tuple[Coverage, ...]]]) -> str:
     """How often intervals of the stated errors cover the true ones, and how wide they are."""
-    rows = []
-    pooled: tuple[list[Array], list[Array]] = [], []
+    rows, numerical_ratios, total_ratios = [], [], []
     for scene, scene_coverages in coverages:
         for item in scene_coverages:
-            parts = (item.numerical, item.numerical_interval), (item.total, item.total_interval)
-            entries = [f"{rms(item.numerical) / scene.elastic_energy:.2g}"]
-            for (true, interval), every in zip(parts, pooled, strict=True):
-                is_finite = np.isfinite(interval) & np.isfinite(true)
-                if not np.any(is_finite):  # a run without a steady part is part of every truth
-                    entries += [""] * 3
-                    continue
-                error = np.abs(true[is_finite])
-                every.append(error / interval[is_finite])
-                entries += [
-                    f"{np.median(error) / scene.elastic_energy:.2g}",
-                    f"{np.median(interval[is_finite]) / scene.elastic_energy:.2g}",
-                    f"{100 * np.mean(every[-1] <= 1):.0f}%",
+            numerical = _covered(item.numerical, item.numerical_interval)
+            total = _covered(item.total, item.total_interval)
+            numerical_ratios.append(numerical.ratio)
+            total_ratios.append(total.ratio)
+            rows.append(
+                [
+                    scene.name,
+                    f"{item.requested:g}",
+                    f"{rms(item.numerical) / scene.elastic_energy:.2g}",
+                    *_covered_cells(numerical, scene.elastic_energy),
+                    *_covered_cells(total, scene.elastic_energy),
                 ]
-            rows.append([scene.name, f"{item.requested:g}", *entries])
-    ends = []
-    for every in pooled:
-        relative = np.concatenate(every)
-        widths = f"{1 / np.median(relative):.1f} times the median"
-        ends += ["", widths, f"{100 * np.mean(relative <= 1):.1f}%"]
-    rows.append(["**all**", "", "", *ends])
+            )
+    pooled = (np.concatenate(ratios) for ratios in (numerical_ratios, total_ratios))
+    rows.append(["**all**", "", "", *(cell for ratio in pooled for cell in _pooled_cells(ratio))])
     return markdown_table(
         "scene | requested | numerical: rms | median | interval | covered | total: median "
         "| interval | covered",
         rows,
     )
+
+
+class _Covered(NamedTuple):
+    """Magnitudes of true errors, and half widths of their intervals."""
+
+    error: Array
+    interval: Array
+
+    @property
+    def ratio(self) -> Array:
+        """True errors over their intervals, at most 1 if they are covered."""
+        return self.error / self.interval
+
+
+def _covered(true: Array, interval: Array) -> _Covered:
+    """Errors that have an interval: a run without a steady part is part of every truth."""
+    is_finite = np.isfinite(interval) & np.isfinite(true)
+    return _Covered(np.abs(true[is_finite]), interval[is_finite])
+
+
+def _covered_cells(covered: _Covered, elastic_energy: float) -> list[str]:
+    """Median error and interval of k, and the share that is covered; empty without any."""
+    if not covered.error.size:
+        return ["", "", ""]
+    return [
+        f"{np.median(covered.error) / elastic_energy:.2g}",
+        f"{np.median(covered.interval) / elastic_energy:.2g}",
+        f"{100 * np.mean(covered.ratio <= 1):.0f}%",
+    ]
+
+
+def _pooled_cells(ratio: Array) -> list[str]:
+    """Width of the intervals in median errors, and the share of all errors that is covered."""
+    widths = f"{1 / np.median(ratio):.1f} times the median"
+    return ["", widths, f"{100 * np.mean(ratio <= 1):.1f}%"]
 
 
 def _setting_table(study: SceneErrors) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
@@ -16,9 +16,6 @@ from crackfront.simulate.numerics import Numerics
 from crackfront.simulate.settings import Settings, chosen_settings
 from crackfront.simulate.simulation import Simulation, simulation_of
 from crackfront.simulate.sphere.full_cycle import FullCycle
-
-Progress = Callable[[str], None]
-"""What is called with a line when a part of a study is done."""
 
 REQUESTED = (0.1, 0.03, 0.02, 0.01, 0.003)
 """Errors of k for which the laws choose numerics that are then tried."""

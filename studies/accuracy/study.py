@@ -21,7 +21,8 @@ from crackfront.simulate.costs import run_cost
 from crackfront.simulate.settings import Settings
 from crackfront.simulate.simulation import simulation_field
 from crackfront.simulate.sphere.steady_branches import forward_circle
-from studies.accuracy.scenes import Progress, Scene, Trial
+from studies.accuracy.scenes import Scene, Trial
+from studies.progress import Progress, silent
 
 _RUN, _BRANCH, _PER_CUTOFF = "realisation", "branch", "1 / short cutoff"
 
@@ -68,7 +69,7 @@ class Errors:
 
 @dataclass(frozen=True, slots=True)
 class SceneErrors:
-    """Errors of all settings of a scene, and what its reference found."""
+    """Errors of all settings of a scene, and the results of its reference."""
 
     scene: Scene
     errors: tuple[Errors, ...]
@@ -104,7 +105,7 @@ def trial_seconds(scene: Scene, trials: list[Trial]) -> float:
 
 
 def scene_errors(
-    scene: Scene, trials: list[Trial], surfaces: range, progress: Progress = lambda line: None
+    scene: Scene, trials: list[Trial], surfaces: range, progress: Progress = silent
 ) -> SceneErrors:
     """Errors of trials of the numerics on numbered surfaces of a scene."""
     exact = [measured_branches(scene, scene.reference, number) for number in surfaces]
@@ -120,13 +121,13 @@ def scene_errors(
     for trial in trials:
         branches = [measured_branches(scene, trial.settings, number) for number in surfaces]
         errors.append(_errors(scene, trial, branches, exact))
-        of_k, seconds = rms(errors[-1].adhesion) / scene.elastic_energy, errors[-1].seconds.mean()
-        progress(f"{trial.setting} {trial.value:g}: rms error of k {of_k:.2g}, {seconds:.2f} s")
+        error, seconds = rms(errors[-1].adhesion) / scene.elastic_energy, errors[-1].seconds.mean()
+        progress(f"{trial.setting} {trial.value:g}: rms error of k {error:.2g}, {seconds:.2f} s")
     return replace(study, errors=tuple(errors))
 
 
 def _errors(scene: Scene, trial: Trial, measured: list[Branches], exact: list[Branches]) -> Errors:
-    """Differences of the found branches from the exact ones, surface by surface."""
+    """Differences of measured branches from the exact ones, surface by surface."""
     pairs = list(zip(measured, exact, strict=True))
     adhesion = np.array(
         [a.apparent_work_of_adhesion - b.apparent_work_of_adhesion for a, b in pairs]

@@ -15,7 +15,7 @@ from studies.accuracy.energies import (
     KINDS,
     PIXEL,
     SIDE,
-    found_scan,
+    measured_scan,
 )
 
 
@@ -33,7 +33,7 @@ def surface_of():
         with pytest.MonkeyPatch.context() as patch:
             patch.setattr(draws, "BATCHES", (1,))
             patch.setattr(draws, "BATCH", 2**10)
-            return found_scan(kind(name), 0)
+            return measured_scan(kind(name), 0)
 
     return name_and_seed
 
@@ -188,7 +188,7 @@ def test_surfaces_that_are_not_gaussian_are_told_and_known_less_well(surface_of)
 
 @pytest.mark.slow
 def test_intervals_of_two_hundred_scans_hold_the_truth():
-    every = [(kind, found_scan(kind, number)) for kind in KINDS for number in range(12)]
+    every = [(kind, measured_scan(kind, number)) for kind in KINDS for number in range(12)]
     assert len(every) > 200
     assert np.median([abs(scan.ratio.value - 1) for _, scan in every]) < 0.2
     assert np.mean([scan.covers for _, scan in every]) >= 0.9
