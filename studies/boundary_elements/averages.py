@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import groupby
 from operator import attrgetter
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -15,6 +15,7 @@ from crackfront.analysis.estimate import REACH, Estimate, student_estimate
 from crackfront.analysis.validity import ValidityRow
 from crackfront.core import jkr
 from crackfront.core.adhesion import adhesion_rms, larkin_length
+from crackfront.core.arrays import Array
 from crackfront.core.spectrum import SelfAffineSpectrum
 from studies.boundary_elements.hysteresis import Hysteresis
 
@@ -41,7 +42,7 @@ class Setting:
     """Surfaces of one spectrum, amplitude, grid and load step."""
 
     rows: tuple[Hysteresis, ...]
-    # Where the rows are extrapolated: a longer range on them and on further surfaces.
+    # For an extrapolation: a longer range on the same and on further surfaces.
     coarse: tuple[Hysteresis, ...] = ()
 
     @property
@@ -68,11 +69,7 @@ class Setting:
         return self._estimate(logarithm, *models)
 
     def _estimate(self, function: Callable[..., float], *values: Value) -> Estimate:
-        """Function of means, with the standard error of the jackknife over the surfaces.
-
-        Its degrees of freedom are Welch's and Satterthwaite's, of surfaces with and without a
-        shorter range.
-        """
+        """Function of means, with the standard error of the jackknife over the surfaces."""
         # Extrapolated: mean of the longer range over all surfaces, plus the mean of the change.
         fine, coarse = (
             {row.seed: np.array([value(row) for value in values]) for row in rows}
@@ -86,17 +83,21 @@ class Setting:
 
         if len(fine) < 2:
             return student_estimate(estimate_without(), math.nan, 0)
-        count, n_fine = self.surfaces, len(fine)
         changed = np.array([estimate_without(seed) for seed in {**fine, **coarse}])
         squares = (changed - np.mean(changed)) ** 2
-        error = math.sqrt((count - 1) / count * float(np.sum(squares)))
-        parts = float(np.sum(squares[:n_fine])), float(np.sum(squares[n_fine:]))
-        squares_by_freedom = parts[0] ** 2 / (n_fine - 1) + parts[1] ** 2 / max(1, count - n_fine)
-        return student_estimate(
-            estimate_without(),
-            error,
-            sum(parts) ** 2 / squares_by_freedom if squares_by_freedom else n_fine - 1,
-        )
+        error = math.sqrt((self.surfaces - 1) / self.surfaces * float(np.sum(squares)))
+        freedom = _degrees_of_freedom(squares[: len(fine)], squares[len(fine) :])
+        return student_estimate(estimate_without(), error, freedom)
+
+
+def _degrees_of_freedom(fine: Array, coarse: Array) -> float:
+    """Welch's and Satterthwaite's degrees of freedom of a jackknife over two kinds of surfaces.
+
+    The arrays are squares of its changes, by surfaces with and without a shorter range.
+    """
+    squares = float(np.sum(fine)), float(np.sum(coarse))
+    weighted = squares[0] ** 2 / (fine.size - 1) + squares[1] ** 2 / max(1, coarse.size)
+    return sum(squares) ** 2 / weighted if weighted else fine.size - 1
 
 
 def settings(rows: Iterable[Hysteresis]) -> tuple[Setting, ...]:
@@ -153,14 +154,20 @@ def rough_settings(candidates: Iterable[Setting]) -> list[Setting]:
     return [setting for setting in candidates if setting.rows[0].asked_energy > 0]
 
 
-def rows_by_zone(
-    rows: Sequence[Hysteresis], short_cutoff: float
-) -> dict[tuple[float, ...], ValidityRow]:
-    """How far the front is right, at every spectrum, amplitude, and range, and at none.
+class ZoneKey(NamedTuple):
+    """Spectrum and amplitude of a setting, and the length of its cohesive zone."""
 
-    The keys are roll-off over cutoff, Hurst exponent, amplitude, and the length of the cohesive
-    zone over the cutoff.
-    """
+    roll_off: float
+    """Over the short cutoff."""
+    hurst: float
+    elastic_energy: float
+    """Requested. (Units: w_int)"""
+    zone: float
+    """Length of the cohesive zone over the short cutoff; 0 without a range."""
+
+
+def rows_by_zone(rows: Sequence[Hysteresis], short_cutoff: float) -> dict[ZoneKey, ValidityRow]:
+    """How far the front is right, at every spectrum, amplitude, and range, and at none."""
     by_zone, smooth = {}, _smooth_loss(rows)
     for setting in sorted(rough_settings(settings(rows)), key=attrgetter("surfaces")):
         row = _validity_row(setting, setting.excess(smooth), 0.0, short_cutoff)
@@ -183,24 +190,24 @@ def excess_by_order(rows: Sequence[Hysteresis]) -> list[tuple[Setting, tuple[Est
     ]
 
 
-def _zone_key(setting: Setting, short_cutoff: float) -> tuple[float, ...]:
+def _zone_key(setting: Setting, short_cutoff: float) -> ZoneKey:
     """Key of a setting in the table by zone."""
     row = setting.rows[0]
     zone = ZONE * row.interaction_range**2 / short_cutoff
-    return round(row.roll_off / short_cutoff, 2), row.hurst, row.asked_energy, round(zone, 2)
+    roll_off = round(row.roll_off / short_cutoff, 2)
+    return ZoneKey(roll_off, row.hurst, row.asked_energy, round(zone, 2))
 
 
 def brought_to_no_range(
-    rows: Mapping[tuple[float, ...], ValidityRow],
-    counterparts: Mapping[tuple[float, ...], ValidityRow],
+    rows: Mapping[ZoneKey, ValidityRow], counterparts: Mapping[ZoneKey, ValidityRow]
 ) -> Iterator[ValidityRow]:
     """Rows of one range in the limit of none, by what the range changes on others of equal keys.
 
     The errors of all three are taken as independent.
     """
-    for (*scene, zone), row in rows.items():
-        same, limit = counterparts.get((*scene, zone)), counterparts.get((*scene, 0.0))
-        if zone and same and limit and math.isfinite(row.error):
+    for key, row in rows.items():
+        same, limit = counterparts.get(key), counterparts.get(key._replace(zone=0.0))
+        if key.zone and same and limit and math.isfinite(row.error):
             error = math.hypot(row.error, same.error, limit.error)
             yield replace(row, ratio=row.ratio * limit.ratio / same.ratio, error=error)
 

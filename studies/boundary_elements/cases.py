@@ -1,4 +1,4 @@
-"""Cases of a validation: a surface, how it is loaded, and the grid and attraction it is given."""
+"""Cases of a validation: a surface, its loads, its grid and the range of attraction."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ VERSION = 1
 """
 
 _STEADY = (0.25, 0.75)
-"""Where the branches of a whole loop are steady, relative to the largest penetration."""
+"""Ends of the steady part of a whole loop, relative to the largest penetration."""
 
 
 class SteadyBranches(Section):

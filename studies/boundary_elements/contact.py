@@ -42,7 +42,7 @@ _MOST_PRODUCTS = 200
 """Largest number of products with the elastic operator in a step."""
 
 _ROUND_OFF = 10 * float(np.finfo(float).eps)
-"""Changes of the energy that have no meaning, relative to it."""
+"""Changes of the energy that are meaningless, relative to it."""
 
 _PROBED = 1e-2
 """Residual, relative to its start, to which the curvature of a state is probed."""
@@ -89,7 +89,7 @@ class HalfSpaceContact:
     def evaluate(
         self, displacement: Array, penetration: float, elastic: Array | None = None
     ) -> tuple[float, Array]:
-        """Energy per area of a pixel, and its derivative; the elastic pressures if not given."""
+        """Energy per area of a pixel, and its derivative; `elastic` saves a product."""
         pressure = self.elastic_pressure(displacement) if elastic is None else elastic
         gradient = pressure.copy()
         energy = 0.5 * float(np.vdot(displacement, gradient))
@@ -196,7 +196,7 @@ def equilibrium(
     radius: float,
     max_iterations: int = 500,
 ) -> Equilibrium:
-    """State in which a contact comes to rest from a given (2 n_point, 2 n_point) displacement.
+    """State in which a contact comes to rest from a (2 n_point, 2 n_point) displacement.
 
     The tolerance is the largest pressure out of balance that may be left, relative to the largest
     tension; the trust radius of the first step is the root of twice its elastic energy per area of
@@ -206,52 +206,40 @@ def equilibrium(
     ----------
     .. [1] Nocedal, Wright, Numerical Optimization, 2nd ed., Algorithms 4.1 and 7.2 (Steihaug).
     """
-    lowest, side = contact.surface + penetration, contact.n_point
-    state = _above(displacement.copy(), lowest)
-    elastic = contact.elastic_pressure(state)
-    energy, gradient = contact.evaluate(state, penetration, elastic)
-    began, products, barriers, saddles, relative = energy, 0, 0, 0, math.inf
+    lowest = contact.surface + penetration
+    state = _trial(contact, _above(displacement.copy(), lowest), penetration)
+    first_energy, relative = state.energy, math.inf
+    products = barriers = saddles = 0
     for _ in range(max_iterations):
-        closed = (state[:side, :side] <= lowest) & (gradient[:side, :side] >= 0)
-        softening = contact.softening(state, penetration)
-        model = _Linearised(contact, closed, gradient.copy(), softening)
-        model.free(model.gradient)
+        model = _linearised(contact, state, penetration)
         relative = float(np.max(np.abs(model.gradient))) / contact.largest_tension
         if relative > tolerance:
             step = _truncated_step(model, radius, forcing=min(_FORCING, math.sqrt(relative)))
+            products += step.products
         else:
             step = _downward_step(model, radius)
-            if model.decrease(step.values) <= _ROUND_OFF * (1 + abs(energy)):
+            products += step.products
+            if model.decrease(step.values) <= state.round_off:
                 return Equilibrium(
-                    displacement=state,
-                    products=products + step.products,
+                    displacement=state.displacement,
+                    products=products,
                     residual=relative,
                     radius=radius,
-                    energy=energy,
-                    released=began - energy,
+                    energy=state.energy,
+                    released=first_energy - state.energy,
                     barriers=barriers,
                     saddles=saddles,
                 )
             saddles += 1
-        trial = _above(state + step.values, lowest)
-        trial_elastic = contact.elastic_pressure(trial)
-        trial_energy, trial_gradient = contact.evaluate(trial, penetration, trial_elastic)
-        gain = _gain(energy, trial_energy, model.decrease(trial - state))
-        products += step.products + 1
+        trial = _trial(contact, _above(state.displacement + step.values, lowest), penetration)
+        products += 1
+        gain = _gain(state, trial, model.decrease(trial.displacement - state.displacement))
+        if gain >= _ACCEPTED and _passes_barrier(contact, state, trial, penetration):
+            barriers += 1
+            gain = -math.inf
+        radius = _trust_radius(radius, step, gain)
         if gain >= _ACCEPTED:
-            halfway = contact.evaluate(
-                (state + trial) / 2, penetration, (elastic + trial_elastic) / 2
-            )
-            if _passes_barrier(trial - state, energy, trial_energy, *halfway):
-                barriers += 1
-                gain = -math.inf
-        if gain < _POOR:
-            radius = _POOR * step.norm
-        elif gain > 1 - _POOR and step.at_boundary:
-            radius *= 2.0
-        if gain >= _ACCEPTED:
-            state, elastic = trial, trial_elastic
-            energy, gradient = trial_energy, trial_gradient
+            state = trial
     raise ValueError(
         f"at penetration {penetration:.6g} the boundary elements did not come to rest in "
         f"{max_iterations} steps (pressure out of balance {relative:.2g} of the largest tension, "
@@ -259,13 +247,47 @@ def equilibrium(
     )
 
 
+@dataclass(frozen=True, slots=True)
+class _State:
+    """A displacement with its elastic pressures, energy and derivative of the energy."""
+
+    displacement: Array
+    elastic: Array
+    energy: float
+    gradient: Array
+
+    @property
+    def round_off(self) -> float:
+        """Change of the energy that is meaningless."""
+        return _ROUND_OFF * (1 + abs(self.energy))
+
+
+def _trial(contact: HalfSpaceContact, displacement: Array, penetration: float) -> _State:
+    """State of a displacement at a penetration."""
+    elastic = contact.elastic_pressure(displacement)
+    return _State(displacement, elastic, *contact.evaluate(displacement, penetration, elastic))
+
+
+def _trust_radius(radius: float, step: _Step, gain: float) -> float:
+    """Trust radius after a step: smaller after a poor one, larger after a good one at its end."""
+    if gain < _POOR:
+        return _POOR * step.norm
+    if gain > 1 - _POOR and step.at_boundary:
+        return 2.0 * radius
+    return radius
+
+
 def _passes_barrier(
-    way: Array, before: float, after: float, halfway: float, gradient: Array
+    contact: HalfSpaceContact, state: _State, trial: _State, penetration: float
 ) -> bool:
-    """Whether the energy rises on the way to a lower one, by itself and its gradient halfway."""
-    climbing = float(np.vdot(gradient, way)) > 0
-    round_off = _ROUND_OFF * (1 + abs(before))
-    return halfway > before + round_off or (climbing and after < halfway - round_off)
+    """Whether the energy rises on the way to a trial, by itself and its gradient halfway."""
+    middle = (state.displacement + trial.displacement) / 2
+    elastic = (state.elastic + trial.elastic) / 2
+    energy, gradient = contact.evaluate(middle, penetration, elastic)
+    climbing = float(np.vdot(gradient, trial.displacement - state.displacement)) > 0
+    return energy > state.energy + state.round_off or (
+        climbing and trial.energy < energy - state.round_off
+    )
 
 
 def _above(displacement: Array, lowest: Array) -> Array:
@@ -302,14 +324,25 @@ class _Linearised:
         return -float(np.vdot(self.gradient, step) + 0.5 * np.vdot(step, curved))
 
 
-def _gain(before: float, after: float, predicted: float) -> float:
-    """Decrease of the energy relative to the predicted one; one where both are round-off."""
+def _linearised(contact: HalfSpaceContact, state: _State, penetration: float) -> _Linearised:
+    """Quadratic model of the energy at a state."""
+    side, lowest = contact.n_point, contact.surface + penetration
+    touching = state.displacement[:side, :side] <= lowest
+    closed = touching & (state.gradient[:side, :side] >= 0)
+    softening = contact.softening(state.displacement, penetration)
+    model = _Linearised(contact, closed, state.gradient.copy(), softening)
+    model.free(model.gradient)
+    return model
+
+
+def _gain(state: _State, trial: _State, predicted: float) -> float:
+    """Decrease of the energy relative to the predicted one; one if both are round-off."""
     if predicted <= 0:
         return -math.inf
-    round_off = _ROUND_OFF * (1 + abs(before))
-    if predicted <= round_off and before - after >= -round_off:
+    decrease = state.energy - trial.energy
+    if predicted <= state.round_off and decrease >= -state.round_off:
         return 1.0
-    return (before - after) / predicted
+    return decrease / predicted
 
 
 @dataclass(frozen=True, slots=True)
@@ -379,7 +412,8 @@ def _downward_step(model: _Linearised, radius: float) -> _Step:
             return _Step(down * radius / math.sqrt(stretch) * direction, radius, True, count)
         residual += power / curvature * product
         relaxed = model.free(model.contact.elastic_displacement(residual))
-        ratio, power = float(np.vdot(residual, relaxed)) / power, float(np.vdot(residual, relaxed))
+        following = float(np.vdot(residual, relaxed))
+        ratio, power = following / power, following
         direction *= ratio
         direction -= relaxed
     return _Step(np.zeros_like(direction), 0.0, False, count)

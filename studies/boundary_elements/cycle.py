@@ -12,9 +12,10 @@ import numpy as np
 from scipy.ndimage import map_coordinates
 
 from crackfront.core.arrays import Array
+from crackfront.core.cycle.follow import Load
 from crackfront.core.variables import ENERGY, FORCE, LATERAL, STEP, VERTICAL, variable, variables
 from studies.boundary_elements.cases import Case
-from studies.boundary_elements.contact import equilibrium
+from studies.boundary_elements.contact import Equilibrium, HalfSpaceContact, equilibrium
 
 _ANGLE, _SHOWN, _X, _Y = "angle", "shown", "x", "y"
 PRESSURE = f"{FORCE} / ({LATERAL})^2"
@@ -23,9 +24,6 @@ _LEAST_RADIUS = 1e-2
 """Trust radius that every load step may begin with."""
 
 RUNNING, LOST_CONTACT, ALL_LOADS = "running", "lost contact", "all loads"
-
-_COUNTED = "products", "residual", "barriers", "saddles"
-"""What a state tells of how it was found."""
 
 N_ANGLE = 720
 """Rays on which the perimeter of a contact is looked for."""
@@ -71,55 +69,73 @@ def boundary_cycle(
 ) -> BoundaryCycle:
     """Quasi-static approach and retraction: a whole loop, or the steady parts of its branches.
 
-    An unfinished cycle of the same case is resumed; the cycle so far is given to `keep` after every
+    An unfinished cycle of the same case is resumed; `keep` gets the cycle so far after every
     load step. A ValueError says if a state does not come to rest.
     """
-    contact, so_far = case.contact(), resume or _no_states(case.n_point)
-    n_finished, side = so_far.penetration.size, case.n_point
-    loads = islice(case.loads.loads(case.interaction_range), n_finished, None)
-    displacement = contact.elastic_displacement(np.pad(so_far.pressure, (0, side)))
-    for penetration, direction, _ in loads:
-        if so_far.status != RUNNING:
-            return so_far
+    contact, cycle = case.contact(), resume or _no_states(case.n_point)
+    displacement = contact.elastic_displacement(np.pad(cycle.pressure, (0, case.n_point)))
+    loads = islice(case.loads.loads(case.interaction_range), cycle.penetration.size, None)
+    for load in loads:
+        if cycle.status != RUNNING:
+            return cycle
         started = time.process_time()
-        radius = max(so_far.trust_radius, _LEAST_RADIUS)
         balanced = equilibrium(
-            contact, displacement, penetration, tolerance=case.tolerance, radius=radius
+            contact,
+            displacement,
+            load.value,
+            tolerance=case.tolerance,
+            radius=max(cycle.trust_radius, _LEAST_RADIUS),
         )
         displacement = balanced.displacement
-        pressure = contact.elastic_pressure(displacement)[:side, :side]
-        gap, edge = contact.gap(displacement, penetration), EDGE * case.interaction_range
-        shown = so_far.shown_pressure
-        if math.isclose(penetration, case.loads.shown_penetration, abs_tol=1e-9):
-            shown = shown.copy()
-            shown[0 if direction > 0 else 1] = pressure
-        lost = direction < 0 and not np.any(gap < case.interaction_range)
-        area = case.pixel**2
-        state = {
-            "penetration": penetration,
-            "direction": direction,
-            "force": float(np.sum(pressure)) * area,
-            "radius": perimeter(gap, case.pixel, edge),
-            "seconds": time.process_time() - started,
-            "energy": balanced.energy * area,
-            "released": balanced.released * area,
-            **{name: getattr(balanced, name) for name in _COUNTED},
-        }
-        so_far = replace(
-            so_far,
-            status=LOST_CONTACT if lost else RUNNING,
-            shown_pressure=shown,
-            pressure=pressure,
-            trust_radius=balanced.radius,
-            **{
-                name: np.append(getattr(so_far, name), np.asarray(value)[None], axis=0)
-                for name, value in state.items()
-            },
-        )
-        keep(so_far)
-    so_far = replace(so_far, status=ALL_LOADS)
-    keep(so_far)
-    return so_far
+        cycle = _continued(case, contact, cycle, load, balanced, started)
+        keep(cycle)
+    cycle = replace(cycle, status=ALL_LOADS)
+    keep(cycle)
+    return cycle
+
+
+def _continued(
+    case: Case,
+    contact: HalfSpaceContact,
+    cycle: BoundaryCycle,
+    load: Load,
+    balanced: Equilibrium,
+    started: float,
+) -> BoundaryCycle:
+    """A cycle with one more state, whose load step started at a processor time in s."""
+    side, area = case.n_point, case.pixel**2
+    pressure = contact.elastic_pressure(balanced.displacement)[:side, :side]
+    gap = contact.gap(balanced.displacement, load.value)
+    is_lost = load.direction < 0 and not np.any(gap < case.interaction_range)
+    shown = cycle.shown_pressure
+    if math.isclose(load.value, case.loads.shown_penetration, abs_tol=1e-9):
+        shown = shown.copy()
+        shown[0 if load.direction > 0 else 1] = pressure
+    state = {
+        "penetration": load.value,
+        "direction": load.direction,
+        "force": float(np.sum(pressure)) * area,
+        "radius": perimeter(gap, case.pixel, EDGE * case.interaction_range),
+        "seconds": time.process_time() - started,
+        "energy": balanced.energy * area,
+        "released": balanced.released * area,
+        "products": balanced.products,
+        "residual": balanced.residual,
+        "barriers": balanced.barriers,
+        "saddles": balanced.saddles,
+    }
+    columns = {
+        name: np.append(getattr(cycle, name), np.asarray(value)[None], axis=0)
+        for name, value in state.items()
+    }
+    return replace(
+        cycle,
+        status=LOST_CONTACT if is_lost else RUNNING,
+        shown_pressure=shown,
+        pressure=pressure,
+        trust_radius=balanced.radius,
+        **columns,
+    )
 
 
 def _no_states(side: int) -> BoundaryCycle:
@@ -136,7 +152,7 @@ def _no_states(side: int) -> BoundaryCycle:
 def perimeter(gap: Array, pixel: float, edge: float) -> Array:
     """Outermost distance from the apex at which the gap is below the gap at the edge, on every ray.
 
-    The gap is (n_point, n_point), the distance (N_ANGLE,) and 0 where a ray has no contact.
+    The gap is (n_point, n_point), the distance (N_ANGLE,) and 0 on rays without contact.
     (Units: reduced vertical length, reduced lateral length)
     """
     centre = len(gap) // 2

@@ -67,29 +67,12 @@ def differences(case: Case, boundary: BoundaryCycle, front: FrontCycle) -> Diffe
     The boundary elements jump into contact too early, by the range of their attraction, and with a
     larger radius; approach is compared from where their perimeter has left that one everywhere.
     """
-    states = front.states
-    theirs, ours = _compared_states(case, boundary, front)
+    states, theirs, ours = front.states, *_compared_states(case, boundary, front)
     force = boundary.force[theirs] - states.force[ours]
     area = boundary.contact_area[theirs] / states.contact_area[ours] - 1
     distance = np.abs(boundary.radius[theirs] - front.radius[ours])
     shown = boundary.radius[shown_states(case, boundary)] - front.radius[shown_states(case, states)]
     perimeters = np.mean(np.abs(shown), axis=1) / case.short_cutoff
-    least, large = case.short_cutoff / 8, case.short_cutoff / 4
-    boundary_jumps, front_jumps = (
-        jumps(
-            cycle.penetration[states_compared],
-            cycle.direction[states_compared],
-            radius[states_compared],
-            least,
-        )
-        for cycle, states_compared, radius in (
-            (boundary, theirs, boundary.radius),
-            (states, ours, front.radius),
-        )
-    )
-    angle = _SAME_PLACE * case.short_cutoff / float(np.mean(states.mean_radius))
-    pairs = matched_jumps(boundary_jumps, front_jumps, angle, _SAME_LOAD)
-    shift = np.array([a.penetration - b.penetration for a, b in pairs if b.distance >= large])
     return Differences(
         n_point=case.n_point,
         interaction_range=case.interaction_range,
@@ -104,14 +87,43 @@ def differences(case: Case, boundary: BoundaryCycle, front: FrontCycle) -> Diffe
         perimeter_approach=float(perimeters[0]),
         perimeter_retraction=float(perimeters[1]),
         perimeter_all=float(np.mean(distance)) / case.short_cutoff,
-        jumps_boundary=sum(jump.distance >= large for jump in boundary_jumps),
-        jumps_front=sum(jump.distance >= large for jump in front_jumps),
-        jumps_shared=shift.size,
-        jump_shift=float(np.mean(shift)) if shift.size else 0.0,
-        jump_spread=rms(shift) if shift.size else 0.0,
+        **_jump_values(case, boundary, front, (theirs, ours)),
         pull_off_force=float(boundary.force.min() - states.force.min()),
         pull_off_penetration=float(boundary.penetration[-1] - front.end),
     )
+
+
+def _jump_values(
+    case: Case,
+    boundary: BoundaryCycle,
+    front: FrontCycle,
+    compared: tuple[NDArray[np.int64], NDArray[np.int64]],
+) -> dict[str, Any]:
+    """Numbers of jumps of both, and where those that they share differ."""
+    states, (theirs, ours) = front.states, compared
+    smallest, large = case.short_cutoff / 8, case.short_cutoff / 4
+    boundary_jumps = jumps(
+        boundary.penetration[theirs], boundary.direction[theirs], boundary.radius[theirs], smallest
+    )
+    front_jumps = jumps(
+        states.penetration[ours], states.direction[ours], front.radius[ours], smallest
+    )
+    angle = _SAME_PLACE * case.short_cutoff / float(np.mean(states.mean_radius))
+    pairs = matched_jumps(boundary_jumps, front_jumps, angle, _SAME_LOAD)
+    shift = np.array(
+        [
+            boundary_jump.penetration - front_jump.penetration
+            for boundary_jump, front_jump in pairs
+            if front_jump.distance >= large
+        ]
+    )
+    return {
+        "jumps_boundary": sum(jump.distance >= large for jump in boundary_jumps),
+        "jumps_front": sum(jump.distance >= large for jump in front_jumps),
+        "jumps_shared": shift.size,
+        "jump_shift": float(np.mean(shift)) if shift.size else 0.0,
+        "jump_spread": rms(shift) if shift.size else 0.0,
+    }
 
 
 def jumps(penetration: Array, direction: NDArray[Any], radius: Array, least: float) -> list[Jump]:

@@ -96,7 +96,7 @@ def hysteresis(case: Case, boundary: BoundaryCycle, front: FrontCycle) -> Hyster
 def apparent_adhesion(force: Array, penetration: Array) -> Array:
     """Work of adhesion of the smooth sphere that has a force at a penetration (Units: w_int).
 
-    Of the two radii of F = 3 a b / 2 - a^3 / 2 the larger one has an open edge.
+    The larger one of the two radii of F = 3 a b / 2 - a^3 / 2 has an open edge.
 
     Examples
     --------

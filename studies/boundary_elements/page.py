@@ -56,7 +56,7 @@ def kept_surfaces() -> dict[str, Sequence[Hysteresis]]:
 def kept_validity(surfaces: Mapping[str, Sequence[Hysteresis]]) -> list[ValidityRow]:
     """How far the front is right, by all surfaces: the table of the package."""
     strong, fine = (rows_by_zone(rows, SHORT_CUTOFFS[name]) for name, rows in surfaces.items())
-    limits = [row for (*_, zone), row in strong.items() if not zone]
+    limits = [row for key, row in strong.items() if not key.zone]
     return [*limits, *brought_to_no_range(fine, strong)]
 
 

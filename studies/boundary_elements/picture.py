@@ -28,11 +28,9 @@ from crackfront.plots.parts import (
 )
 from crackfront.plots.style import (
     BLACK,
-    BLUE,
     COLOURS,
     MARKERS,
     PAGE,
-    VERMILION,
     blank_figure,
     explain,
     house_style,
@@ -43,7 +41,8 @@ from studies.boundary_elements.cycle import N_ANGLE, PRESSURE, BoundaryCycle
 from studies.boundary_elements.edges import CLASSES, EdgeForces
 from studies.boundary_elements.front import FrontCycle, shown_states
 from studies.boundary_elements.hysteresis import Hysteresis
-from studies.paper.drawing import draw_jump
+from studies.paper.drawing import BRANCHES, draw_jump
+from studies.records import thinned
 
 _MOST_POINTS = 320
 """Points along a side of the part that is stored; more are thinned out."""
@@ -59,7 +58,8 @@ _TENSION = "#009E7300", "#009E73C0", "#003D2C"
 
 _DASHES = (3, 1.5)
 _DOTS = (0.8, 1.6)
-_BRANCHES = ((1, "approach", BLUE), (-1, "retraction", VERMILION))
+
+_ENERGY_LABEL = r"energy of full conformity $e_\mathrm{el}/w_\mathrm{int}$"
 
 _ASIDE = 0.0025
 """How far ratios at one e_el are set off sideways from each other. (Units: w_int)"""
@@ -103,7 +103,7 @@ def validation_picture(
     reach = float(np.max(shown)) + _MARGIN
     position: Array = np.arange(float(case.n_point)) * case.pixel - case.side / 2
     inside = np.flatnonzero(np.abs(position) <= reach)
-    shown_points = inside[:: max(1, -(-inside.size // _MOST_POINTS))]
+    shown_points = inside[thinned(inside.size, _MOST_POINTS)]
     part = np.ix_(shown_points, shown_points)
     return ValidationPicture(
         short_cutoff=case.short_cutoff,
@@ -141,7 +141,7 @@ def validation_figure(picture: ValidationPicture) -> Figure:
 def _draw_forces(axes: Axes, picture: ValidationPicture) -> None:
     """Forces of both models, their jumps in and out of contact, and the shown states."""
     axes.axhline(0.0, color="0.7", linewidth=0.4, zorder=1)
-    for sign, name, colour in _BRANCHES:
+    for sign, name, _, colour in BRANCHES:
         branch = (picture.boundary_direction == sign) & (picture.boundary_area > 0)
         axes.plot(
             picture.boundary_penetration[branch],
@@ -205,8 +205,8 @@ def _draw_contact(axes: Axes, picture: ValidationPicture) -> None:
         vmax=float(tension.max()) / 2,
         interpolation="nearest",
     )
-    # Where both branches have one contact, the approach is seen on both sides of the retraction.
-    for line, ((_, _, colour), width) in enumerate(zip(_BRANCHES, (2.0, 0.8), strict=True)):
+    # The approach is wider, so that it is seen where both branches have one contact.
+    for line, ((*_, colour), width) in enumerate(zip(BRANCHES, (2.0, 0.8), strict=True)):
         for radius, style in ((picture.front_radius, _DASHES), (picture.fixed_radius, _DOTS)):
             # Dashes are in widths of the line; both branches get dashes of one length.
             dashes = [part / width for part in style]
@@ -216,7 +216,7 @@ def _draw_contact(axes: Axes, picture: ValidationPicture) -> None:
         Line2D([], [], color=_TENSION[-1], linewidth=3, label="tension in approach"),
         Line2D([], [], color=BLACK, dashes=_DASHES, label="front, crack turns"),
         Line2D([], [], color=BLACK, dashes=_DOTS, label="front, crack fixed"),
-        *(Line2D([], [], color=colour, label=f"in {name}") for _, name, colour in _BRANCHES),
+        *(Line2D([], [], color=colour, label=f"in {name}") for _, name, _, colour in BRANCHES),
     ]
     axes.legend(
         handles=handles,
@@ -237,39 +237,43 @@ def hysteresis_figure(rows: Sequence[Hysteresis], short_cutoff: float) -> Figure
 
     Ratios at the ranges that were computed are small and open; single surfaces are left out.
     """
-    computed, limits = (
-        rough_settings(averaged) for averaged in (settings(rows), limit_settings(rows))
-    )
-    computed = [setting for setting in computed if setting.surfaces > 1]
-    shapes = sorted({setting.rows[0].scene[:2] for setting in limits})
+    limits = rough_settings(limit_settings(rows))
+    computed = [setting for setting in rough_settings(settings(rows)) if setting.surfaces > 1]
+    shapes = sorted({_shape(setting) for setting in limits})
     with house_style():
         figure = blank_figure(PAGE, 0.48 * PAGE)
         values, ratios = figure.subplots(1, 2)
         for number, shape in enumerate(shapes):
-            near, far = (
-                [setting for setting in candidates if setting.rows[0].scene[:2] == shape]
-                for candidates in (computed, limits)
-            )
+            near = [setting for setting in computed if _shape(setting) == shape]
+            far = [setting for setting in limits if _shape(setting) == shape]
             look = {"color": COLOURS[number], "marker": MARKERS[number], "linewidth": 0.8}
             spectrum = _spectrum(far[0].rows[0], short_cutoff)
             _draw_models(values, far, spectrum, look)
             sideways = number - (len(shapes) - 1) / 2
             _draw_ratios(ratios, near, far, sideways, spectrum, look)
         _draw_ratio_law(ratios)
-        energy = r"energy of full conformity $e_\mathrm{el}/w_\mathrm{int}$"
         for axes, panel in ((values, "a"), (ratios, "b")):
-            axes.set(xlim=(0.0, None), xlabel=energy)
+            axes.set(xlim=(0.0, None), xlabel=_ENERGY_LABEL)
             axes.legend(loc="upper left")
             label_panel(axes, panel)
-        values.set_ylabel(r"hysteresis / $w_\mathrm{int}$")
-        values.set_ylim(0.0, None)
-        ratios.set_ylabel("hysteresis, front / boundary elements")
-        ratios.set_yscale("log")
-        label_decimals(ratios.yaxis, FixedLocator(_RATIOS))
-        ratios.minorticks_off()
-        ratios.set_ylim(top=_LEGEND_ROOM * ratios.get_ylim()[1])
+        values.set(ylim=(0.0, None), ylabel=r"hysteresis / $w_\mathrm{int}$")
+        _set_ratio_axis(ratios)
         explain(figure, _ranges_explained(computed))
         return figure
+
+
+def _shape(setting: Setting) -> tuple[float, ...]:
+    """Roll-off and Hurst exponent of the surfaces of a setting."""
+    return setting.rows[0].roll_off, setting.rows[0].hurst
+
+
+def _set_ratio_axis(axes: Axes) -> None:
+    """Logarithmic ordinate of ratios, with room for the legend."""
+    axes.set_ylabel("hysteresis, front / boundary elements")
+    axes.set_yscale("log")
+    label_decimals(axes.yaxis, FixedLocator(_RATIOS))
+    axes.minorticks_off()
+    axes.set_ylim(top=_LEGEND_ROOM * axes.get_ylim()[1])
 
 
 def _draw_models(axes: Axes, far: Sequence[Setting], spectrum: str, look: dict[str, Any]) -> None:
@@ -361,39 +365,11 @@ def _draw_estimates(
 
 def edge_figure(rows: Sequence[EdgeForces]) -> Figure:
     """What is not balanced against e_el, and the force that the line has at the shortest range."""
-    ranges = sorted({row.interaction_range for row in rows})
     with house_style():
         figure = blank_figure(PAGE, 0.46 * PAGE)
         imbalances, forces = figure.subplots(1, 2)
-        for reach, face in zip(ranges, (BLACK, "white"), strict=False):
-            alike = sorted(
-                (row for row in rows if row.interaction_range == reach),
-                key=attrgetter("elastic_energy"),
-            )
-            imbalances.plot(
-                [row.elastic_energy for row in alike],
-                [row.left / row.pinning for row in alike],
-                "o-",
-                color=BLACK,
-                linewidth=0.6,
-                markerfacecolor=face,
-                label=f"{reach:g}",
-            )
-        shortest = [row for row in rows if row.interaction_range == ranges[0]]
-        for row, colour, marker in zip(shortest, COLOURS, MARKERS, strict=False):
-            label = rf"$e_\mathrm{{el}} = {row.elastic_energy:.2f}\,w_\mathrm{{int}}$"
-            forces.plot(row.line, row.needed, marker, color=colour, label=label)
-        forces.axline((0.0, 0.0), slope=1.0, color="0.6", linewidth=0.8, zorder=0)
-        imbalances.set(
-            xlim=(0.0, 1.1 * max(row.elastic_energy for row in rows)),
-            ylim=(0.0, 1.1 * max(row.left / row.pinning for row in rows)),
-            xlabel=r"energy of full conformity $e_\mathrm{el}/w_\mathrm{int}$",
-            ylabel="rms force left / rms pinning",
-        )
-        forces.set(
-            xlabel=r"force of the line, first order / $w_\mathrm{int}$",
-            ylabel=r"force that balances the others / $w_\mathrm{int}$",
-        )
+        _draw_imbalances(imbalances, rows)
+        _draw_line_forces(forces, rows)
         for axes, panel in ((imbalances, "a"), (forces, "b")):
             axes.legend(loc="upper left")
             label_panel(axes, panel)
@@ -404,3 +380,40 @@ def edge_figure(rows: Sequence[EdgeForces]) -> Figure:
             f"b: means over {CLASSES} classes of sites; grey: both forces are equal",
         )
         return figure
+
+
+def _draw_imbalances(axes: Axes, rows: Sequence[EdgeForces]) -> None:
+    """Rms force that is left over the rms pinning, against e_el, for both ranges."""
+    ranges = sorted({row.interaction_range for row in rows})
+    for reach, face in zip(ranges, (BLACK, "white"), strict=False):
+        alike = [row for row in rows if row.interaction_range == reach]
+        alike.sort(key=attrgetter("elastic_energy"))
+        axes.plot(
+            [row.elastic_energy for row in alike],
+            [row.left / row.pinning for row in alike],
+            "o-",
+            color=BLACK,
+            linewidth=0.6,
+            markerfacecolor=face,
+            label=f"{reach:g}",
+        )
+    axes.set(
+        xlim=(0.0, 1.1 * max(row.elastic_energy for row in rows)),
+        ylim=(0.0, 1.1 * max(row.left / row.pinning for row in rows)),
+        xlabel=_ENERGY_LABEL,
+        ylabel="rms force left / rms pinning",
+    )
+
+
+def _draw_line_forces(axes: Axes, rows: Sequence[EdgeForces]) -> None:
+    """Needed force of the line against the force of first order, at the shortest range."""
+    shortest = min(row.interaction_range for row in rows)
+    alike = [row for row in rows if row.interaction_range == shortest]
+    for row, colour, marker in zip(alike, COLOURS, MARKERS, strict=False):
+        label = rf"$e_\mathrm{{el}} = {row.elastic_energy:.2f}\,w_\mathrm{{int}}$"
+        axes.plot(row.line, row.needed, marker, color=colour, label=label)
+    axes.axline((0.0, 0.0), slope=1.0, color="0.6", linewidth=0.8, zorder=0)
+    axes.set(
+        xlabel=r"force of the line, first order / $w_\mathrm{int}$",
+        ylabel=r"force that balances the others / $w_\mathrm{int}$",
+    )

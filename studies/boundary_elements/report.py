@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import asdict
 from operator import attrgetter
-from typing import Any
 
 from crackfront.analysis.estimate import Estimate
 from crackfront.analysis.validity import ValidityRow, excess_coefficient
@@ -116,19 +114,19 @@ def order_table(rows: Sequence[Hysteresis]) -> str:
     )
 
 
-def size_table(tables: Sequence[Mapping[tuple[float, ...], ValidityRow]]) -> str:
+def size_table(tables: Sequence[Mapping[averages.ZoneKey, ValidityRow]]) -> str:
     """Ratios of surfaces that differ in their size g alone, not in amplitude, shape or zone."""
-    keys = sorted(set.intersection(*({*table} for table in tables)))
+    keys = sorted(set.intersection(*(set(table) for table in tables)))
     return _table(
         "Hysteresis of the front over the hysteresis of boundary elements. Rows differ in g alone "
         "if amplitude, shape and *zone / cutoff* are equal: the length of the cohesive zone over "
         "the cutoff. Intervals are 68% (Student's t).",
         "roll-off / cutoff | H | e_el | zone / cutoff | g | ratio | interval | surfaces",
         (
-            f"{row.roll_off:g} | {row.hurst:g} | {row.elastic_energy:.4f} | {zone:g} | "
+            f"{row.roll_off:g} | {row.hurst:g} | {row.elastic_energy:.4f} | {key.zone:g} | "
             f"{row.size:.2g} | {row.ratio:.2f} | {_interval(row)} | {row.surfaces}"
-            for *scene, zone in keys
-            for row in (table[*scene, zone] for table in tables)
+            for key in keys
+            for row in (table[key] for table in tables)
         ),
     )
 
@@ -141,23 +139,16 @@ def _interval(row: ValidityRow) -> str:
 
 
 _CRACK = "points | range | e_el | crack"
-_CRACK_CELLS = "{n_point} | {interaction_range:g} | {elastic_energy:.4f} | {crack}"
 
 
-def _cell_values(row: Differences) -> dict[str, Any]:
-    """Values of a row, with forces relative to the pull-off force and the name of the crack."""
-    values = asdict(row)
-    forces = {name: value / PULL_OFF for name, value in values.items() if "force" in name}
-    return values | forces | {"crack": "turns" if row.rotated else "fixed"}
+def _crack_cells(row: Differences) -> str:
+    """Cells of :data:`_CRACK`."""
+    crack = "turns" if row.rotated else "fixed"
+    return f"{row.n_point} | {row.interaction_range:g} | {row.elastic_energy:.4f} | {crack}"
 
 
 def _difference_table(loops: Sequence[Differences]) -> str:
     """Forces, areas and perimeters."""
-    cells = (
-        f"{_CRACK_CELLS} | {{force_mean:.2%}} | {{force_median:.2%}} | "
-        "{force_rms:.2%} | {force_largest:.2%} | {area_mean:.2%} | {area_rms:.2%} | "
-        "{perimeter_approach:.4f} | {perimeter_retraction:.4f} | {perimeter_all:.4f}"
-    )
     return _table(
         "Boundary elements minus front. Forces are in units of the pull-off force of the smooth "
         "sphere, and areas are relative. Distances of perimeters are in short cutoffs: at the "
@@ -165,23 +156,31 @@ def _difference_table(loops: Sequence[Differences]) -> str:
         "the edge or is *fixed*.",
         f"{_CRACK} | force, mean | median size | rms | largest | area, mean | rms "
         "| perimeter, appr. | retr. | all",
-        (cells.format(**_cell_values(row)) for row in loops),
+        (
+            f"{_crack_cells(row)} | {row.force_mean / PULL_OFF:.2%} | "
+            f"{row.force_median / PULL_OFF:.2%} | {row.force_rms / PULL_OFF:.2%} | "
+            f"{row.force_largest / PULL_OFF:.2%} | {row.area_mean:.2%} | {row.area_rms:.2%} | "
+            f"{row.perimeter_approach:.4f} | {row.perimeter_retraction:.4f} | "
+            f"{row.perimeter_all:.4f}"
+            for row in loops
+        ),
     )
 
 
 def _jump_table(loops: Sequence[Differences]) -> str:
     """Jumps and the end of contact."""
-    cells = (
-        f"{_CRACK_CELLS} | {{jumps_boundary}} | {{jumps_front}} | {{jumps_shared}} | "
-        "{jump_shift:.4f} | {jump_spread:.4f} | {pull_off_force:.2%} | {pull_off_penetration:.3f}"
-    )
     return _table(
         "Jumps are arcs of the perimeter that move a quarter of a short cutoff or more in one load "
         "step. A jump of the front is *shared* if the boundary elements jump at the same place "
         "within 0.1 of penetration; shifts of penetration are boundary elements minus front.",
         f"{_CRACK} | boundary | front | shared | mean shift | rms shift | pull-off force "
         "| end of contact",
-        (cells.format(**_cell_values(row)) for row in loops),
+        (
+            f"{_crack_cells(row)} | {row.jumps_boundary} | {row.jumps_front} | "
+            f"{row.jumps_shared} | {row.jump_shift:.4f} | {row.jump_spread:.4f} | "
+            f"{row.pull_off_force / PULL_OFF:.2%} | {row.pull_off_penetration:.3f}"
+            for row in loops
+        ),
     )
 
 

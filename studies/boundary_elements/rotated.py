@@ -86,7 +86,7 @@ def _modes(heights: Array, pixel: float) -> tuple[Array, Array, NDArray[np.compl
     along = (2 * np.pi * fftfreq(count, pixel) for count in (n_x, n_y))
     q_x, q_y = np.meshgrid(*along, indexing="ij")
     floor = np.finfo(float).eps * float(np.max(np.abs(amplitude), initial=0.0))
-    # Of two modes that are conjugate one is kept, with twice the amplitude.
+    # One of two conjugate modes is kept, with twice the amplitude.
     is_used = ((q_x > 0) | ((q_x == 0) & (q_y > 0))) & (np.abs(amplitude) > floor)
     q_x, q_y, amplitude = q_x[is_used], q_y[is_used], amplitude[is_used]
     wavevector = np.hypot(q_x, q_y)

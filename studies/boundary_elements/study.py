@@ -1,10 +1,11 @@
-"""A validation, case by case: what is computed, found again and written."""
+"""A validation, case by case: what is computed, resumed and written."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from importlib import import_module
 from pathlib import Path
+from typing import Any
 
 from crackfront.measured.optional_libraries import MissingExtraError
 from crackfront.plots.style import save_figure
@@ -29,9 +30,8 @@ from studies.boundary_elements.picture import (
     validation_picture,
 )
 from studies.boundary_elements.report import validation_report
+from studies.progress import Progress
 from studies.records import read_record, write_record, write_records
-
-Progress = Callable[[str], None]
 
 _LIBRARIES = ("ContactMechanics", "Adhesion", "SurfaceTopography", "finufft")
 
@@ -52,41 +52,64 @@ def write_validation(
     progress: Progress,
     watched: Callable[[tuple[Case, ...]], Iterable[Case]] = iter,
 ) -> None:
-    """Compare the front with boundary elements, case by case, and write what is found so far.
+    """Compare the front with boundary elements, case by case, and write the results so far.
 
-    Every load step of the boundary elements is kept in the folder, and found again. Cases are
+    Every load step of the boundary elements is kept in the folder, so that a run resumes. Cases are
     computed as `watched` yields them, which may show how far this is. A ValueError says if a front
     fails.
     """
-    fronts = _Fronts(parameters.front)
-    rows: list[Hysteresis] = []
-    loops: list[Differences] = []
-    edges: list[EdgeForces] = []
-    pictured: tuple[float, ...] = ()
+    results = _Results(folder, origin, _Fronts(parameters.front))
     for case in watched(validation_cases(parameters)):
-        boundary = _cycle(folder, case, origin, progress)
-        rows.append(hysteresis(case, boundary, fronts.cycle(case)))
-        write_records(folder / "hysteresis.nc", rows, "case", origin)
-        if case.loads.steady is None:
-            loops += _loop_differences(case, boundary, fronts)
-            write_records(folder / "differences.nc", loops, "case", origin)
-        elif case.elastic_energy:
-            edges.append(edge_forces(case, boundary, fronts.cycle(case)))
-            write_records(folder / "edges.nc", edges, "case", origin)
-        write_text(folder / "validation.md", validation_report(rows, loops))
-        rank = case.elastic_energy, -case.roll_off, case.n_point
-        if case.elastic_energy and rank > pictured:
-            _write_picture(folder, case, boundary, fronts, origin)
-            pictured = rank
+        row = results.add(case, _cycle(folder, case, origin, progress))
         progress(
-            f"{case.label}: hysteresis {rows[-1].boundary_difference:.4f} by boundary elements, "
-            f"{rows[-1].front_difference:.4f} by the front"
+            f"{case.label}: hysteresis {row.boundary_difference:.4f} by boundary elements, "
+            f"{row.front_difference:.4f} by the front"
         )
-    if edges:
-        save_figure(edge_figure(edges), folder / "edges")
-    if limit_settings(rows):
-        save_figure(hysteresis_figure(rows, parameters.short_cutoff), folder / "hysteresis")
+    results.draw(parameters.short_cutoff)
     progress(f"tables: {folder / 'validation.md'}")
+
+
+class _Results:
+    """Finished cases, written to a folder whenever one is added."""
+
+    def __init__(self, folder: Path, origin: Provenance, fronts: _Fronts) -> None:
+        self._folder, self._origin, self._fronts = folder, origin, fronts
+        self._rows: list[Hysteresis] = []
+        self._loops: list[Differences] = []
+        self._edges: list[EdgeForces] = []
+        self._pictured_rank: tuple[float, ...] = ()
+
+    def add(self, case: Case, boundary: BoundaryCycle) -> Hysteresis:
+        """Compare the front with a case, and write all tables again; the row of the case."""
+        row = hysteresis(case, boundary, self._fronts.cycle(case))
+        self._rows.append(row)
+        self._write("hysteresis.nc", self._rows)
+        if case.loads.steady is None:
+            self._loops += _loop_differences(case, boundary, self._fronts)
+            self._write("differences.nc", self._loops)
+        elif case.elastic_energy:
+            self._edges.append(edge_forces(case, boundary, self._fronts.cycle(case)))
+            self._write("edges.nc", self._edges)
+        report = validation_report(self._rows, self._loops)
+        write_text(self._folder / "validation.md", report)
+        # The picture shows the roughest case, of these the shortest roll-off and finest grid.
+        rank = case.elastic_energy, -case.roll_off, case.n_point
+        if case.elastic_energy and rank > self._pictured_rank:
+            _write_picture(self._folder, case, boundary, self._fronts, self._origin)
+            self._pictured_rank = rank
+        return row
+
+    def _write(self, name: str, records: Sequence[Any]) -> None:
+        """Write the records of all cases so far."""
+        write_records(self._folder / name, records, "case", self._origin)
+
+    def draw(self, short_cutoff: float) -> None:
+        """Draw the figures of all cases, if there are enough."""
+        if self._edges:
+            save_figure(edge_figure(self._edges), self._folder / "edges")
+        if limit_settings(self._rows):
+            figure = hysteresis_figure(self._rows, short_cutoff)
+            save_figure(figure, self._folder / "hysteresis")
 
 
 class _Fronts:
