@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -73,14 +73,17 @@ def measured_cells() -> tuple[LawCell, ...]:
     return csv_rows(MEASURED.read_text(encoding="utf-8"), LawCell)
 
 
-def mean_factors(kind: FieldKind, *columns: ArrayLike) -> Means:
-    """Mean k of realisations with the values of :data:`COLUMNS`; those without are left out."""
-    e_el, w_appr, w_retr, *errors = (np.asarray(column, dtype=float) for column in columns)
+def mean_factors(kind: FieldKind, columns: Mapping[str, ArrayLike]) -> Means:
+    """Mean k of realisations by the columns :data:`COLUMNS`; those without a value are left out."""
+    e_el, w_appr, w_retr, w_appr_error, w_retr_error = (
+        np.asarray(columns[name], dtype=float) for name in COLUMNS
+    )
     e_el = np.where(np.isfinite(w_appr + w_retr), e_el, np.nan)
     mean = mean_adhesion(kind, e_el)
     lowering, raising = (mean - w_appr) / e_el, (w_retr - mean) / e_el
     approach, retraction = mean_estimate(lowering)[0], mean_estimate(raising)[0]
     both, count = mean_estimate((lowering + raising) / 2)
+    numerical_error = (w_appr_error + w_retr_error) / (2 * e_el)
     return Means(
         elastic_energy=float(mean_estimate(e_el)[0].value),
         realisations=int(count),
@@ -90,16 +93,20 @@ def mean_factors(kind: FieldKind, *columns: ArrayLike) -> Means:
         retraction_error=float(retraction.standard_error),
         both=float(both.value),
         both_error=float(both.standard_error),
-        numerical_error=float(mean_estimate(sum(errors) / (2 * e_el))[0].value),
+        numerical_error=float(mean_estimate(numerical_error)[0].value),
     )
 
 
 def cell_means(kind: FieldKind, dataset: xr.Dataset) -> dict[tuple[int, int], Means]:
     """Means of every spectrum and amplitude of a sweep, by their places in it."""
-    columns = [dataset[name].values for name in COLUMNS]
+    columns = {name: dataset[name].values for name in COLUMNS}
+    n_spectrum, n_amplitude = columns["e_el"].shape[:2]
     return {
-        (place, amplitude): mean_factors(kind, *(column[place, amplitude] for column in columns))
-        for place, amplitude in np.ndindex(columns[0].shape[:2])
+        (place, amplitude): mean_factors(
+            kind, {name: values[place, amplitude] for name, values in columns.items()}
+        )
+        for place in range(n_spectrum)
+        for amplitude in range(n_amplitude)
     }
 
 

@@ -109,7 +109,7 @@ def fit(configurations: tuple[Path, ...], output: Path) -> None:
 def spheres(configurations: tuple[Path, ...], tables: tuple[Path, ...], output: Path) -> None:
     """Compare spheres with the law, from sweeps that have been run or from tables.
 
-    Of sweeps it writes spheres.csv, which is kept as docs/reference/spheres.csv.
+    For sweeps it writes spheres.csv, which is kept as docs/reference/spheres.csv.
     """
     rows = [row for path in configurations for row in _rows(path, sphere_rows)]
     if rows:

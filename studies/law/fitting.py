@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 from scipy.optimize import least_squares
@@ -24,6 +25,13 @@ from crackfront.core.arrays import Array
 from studies.law.cells import HELD_OUT, LawCell
 
 _START = (3.8, 0.55, 0.05, 0.1, 1.1, 1.35, 1.9, 1.3, 0.15, 0.0)
+"""First guess of the coefficients."""
+
+_MODEL_START = (0.03, 0.05)
+"""First guess of the model errors of ln k and ln g."""
+
+_ROUNDS = 4
+"""Fits, each with the model errors of the one before; they do not change any more."""
 
 _SIZES = (LEAST_SIZE, 0.5, 1.0, 2.0, 5.0)
 """Least sizes g of the groups of fronts whose departures from the law are stated."""
@@ -32,37 +40,42 @@ _NEAR = 0.8
 """Largest difference of ln g of cells whose scatter is pooled, as few tiles say little of it."""
 
 
+class _Fronts(NamedTuple):
+    """Measured fronts to which the law is fitted, (n_cell,) each."""
+
+    disorder: Array
+    size: Array
+    breadth: Array
+    factor: Array
+    error: Array
+    """Standard error of the factor k over tiles."""
+
+    @property
+    def places(self) -> tuple[Array, Array, Array]:
+        """Arguments of the law: s, g and breadth."""
+        return self.disorder, self.size, self.breadth
+
+
 def fitted_law(cells: Sequence[LawCell]) -> Law:
     """Law of measured cells but those held out, by least squares, from :data:`LEAST_SIZE` on.
 
-    A cell weighs by its own error and the model error together, which is found in the same way as
-    the residuals: once with the first guess, then with what they say.
+    A cell weighs by its own error and the model error together. The first fit assumes model errors,
+    and each further one estimates them from the residuals of the fit before.
     """
     used = [cell for cell in cells if cell.size >= LEAST_SIZE and cell.spectrum not in HELD_OUT]
-    s, g, breadth, k = (
-        np.array([getattr(cell, name) for cell in used])
-        for name in ("disorder", "size", "breadth", "both")
-    )
-    places = s, g, breadth
-    error = _pooled_error(g, np.array([cell.error for cell in used]))
-    coefficients, model = np.array(_START), (0.03, 0.05)
-    for _ in range(4):
-        spread = np.hypot(error, model_error(coefficients, s, g, breadth, model))
-
-        def residuals(trial: Array, spread: Array = spread) -> Array:
-            exponent = trial[-1] if trial.size > len(COEFFICIENTS) else FINITE_SIZE_EXPONENT
-            values = law_value(trial[: len(COEFFICIENTS)], s, g, breadth, float(exponent))
-            return (values - k) / spread
-
-        solution = least_squares(residuals, coefficients)
-        coefficients = solution.x
-        model = _likeliest_model(coefficients, places, k, error)
-    free = least_squares(residuals, [*coefficients, FINITE_SIZE_EXPONENT])
+    fronts = _fronts(used)
+    coefficients, model = np.array(_START), _MODEL_START
+    for _ in range(_ROUNDS):
+        spread = np.hypot(fronts.error, model_error(coefficients, *fronts.places, model))
+        coefficients = least_squares(_residuals, coefficients, args=(fronts, spread)).x
+        model = _likeliest_model(coefficients, fronts)
+    start = [*coefficients, FINITE_SIZE_EXPONENT]
+    free = least_squares(_residuals, start, args=(fronts, spread))
     # The residuals have unit variance.
     covariance = np.linalg.pinv(free.jac.T @ free.jac)
-    relative = law_value(coefficients, s, g, breadth)[g >= 1] / k[g >= 1] - 1
+    large = fronts.size >= 1
+    relative = (law_value(coefficients, *fronts.places) / fronts.factor - 1)[large]
     numerical = [cell.numerical_error / cell.both for cell in used if cell.size >= 1]
-    ranges = [(float(values[values > 0].min()), float(values.max())) for values in places]
     return Law(
         coefficients=tuple(coefficients.tolist()),
         covariance=tuple(map(tuple, covariance.tolist())),
@@ -72,33 +85,59 @@ def fitted_law(cells: Sequence[LawCell]) -> Law:
         exponent=(float(free.x[-1]), float(np.sqrt(covariance[-1, -1]))),
         rms=float(np.sqrt(np.mean(relative**2))),
         worst=float(np.max(np.abs(relative))),
-        disorder=ranges[0],
-        size=(LEAST_SIZE, ranges[1][1]),
-        breadth=ranges[2],
+        disorder=_positive_range(fronts.disorder),
+        size=(LEAST_SIZE, float(fronts.size.max())),
+        breadth=_positive_range(fronts.breadth),
         departures=_departures(cells, coefficients),
     )
 
 
+def _fronts(cells: Sequence[LawCell]) -> _Fronts:
+    """Columns of cells, with pooled errors."""
+    disorder, size, breadth, factor, error = (
+        np.array([getattr(cell, name) for cell in cells])
+        for name in ("disorder", "size", "breadth", "both", "error")
+    )
+    return _Fronts(disorder, size, breadth, factor, _pooled_error(size, error))
+
+
+def _residuals(trial: Array, fronts: _Fronts, spread: Array) -> Array:
+    """Departures of the law from k over their spread; a last, further entry is the exponent."""
+    exponent = trial[-1] if trial.size > len(COEFFICIENTS) else FINITE_SIZE_EXPONENT
+    values = law_value(trial[: len(COEFFICIENTS)], *fronts.places, float(exponent))
+    return np.asarray((values - fronts.factor) / spread)
+
+
+def _positive_range(values: Array) -> tuple[float, float]:
+    """Smallest value above zero, and the largest value."""
+    return float(values[values > 0].min()), float(values.max())
+
+
 def _departures(cells: Sequence[LawCell], coefficients: Array) -> tuple[Departure, ...]:
     """How far all measured cells lie above the law, those held out too, by breadth and size."""
+    sizes = [*_SIZES, _just_above(cell.size for cell in cells)]
+    breadths = [
+        min(cell.breadth for cell in cells),
+        TYPICAL_BREADTH,
+        _just_above(cell.breadth for cell in cells),
+    ]
     rows = []
-    last, broad = (
-        math.nextafter(max(getattr(cell, name) for cell in cells), math.inf)
-        for name in ("size", "breadth")
-    )
-    narrow = min(cell.breadth for cell in cells)
-    for narrowest, broadest in pairwise((narrow, TYPICAL_BREADTH, broad)):
-        for least, largest in pairwise((*_SIZES, last)):
-            group = [
+    for narrowest, broadest in pairwise(breadths):
+        for least, largest in pairwise(sizes):
+            ratios = [
                 cell.both / float(law_value(coefficients, cell.disorder, cell.size, cell.breadth))
                 for cell in cells
                 if least <= cell.size < largest and narrowest <= cell.breadth < broadest
             ]
-            relative = np.array(group) - 1
+            relative = np.array(ratios) - 1
             mean, rms = float(np.mean(relative)), float(np.sqrt(np.mean(relative**2)))
-            row = Departure(narrowest, broadest, least, largest, mean, rms, len(group))
-            rows.append(row)
+            rows.append(Departure(narrowest, broadest, least, largest, mean, rms, len(ratios)))
     return tuple(rows)
+
+
+def _just_above(values: Iterable[float]) -> float:
+    """The next number above all values: the open end of a range that contains them."""
+    return math.nextafter(max(values), math.inf)
 
 
 def _pooled_error(size: Array, error: Array) -> Array:
@@ -113,14 +152,13 @@ def _pooled_error(size: Array, error: Array) -> Array:
     return np.array([np.sqrt(np.median(error[has_error][row] ** 2) / 0.455) for row in near])
 
 
-def _likeliest_model(
-    coefficients: Array, places: tuple[Array, Array, Array], k: Array, error: Array
-) -> tuple[float, float]:
+def _likeliest_model(coefficients: Array, fronts: _Fronts) -> tuple[float, float]:
     """Model errors that make the residuals likeliest."""
-    value, slope = law_value(coefficients, *places), law_slope(coefficients, *places)
-    residuals = value - k
+    value = law_value(coefficients, *fronts.places)
+    slope = law_slope(coefficients, *fronts.places)
+    residuals = value - fronts.factor
     grid = np.linspace(0.002, 0.15, 75)
-    by_length = error**2 + (grid[:, None] * slope) ** 2
+    by_length = fronts.error**2 + (grid[:, None] * slope) ** 2
     costs = np.empty((grid.size, grid.size))
     for row, factor in enumerate(grid):
         variance = by_length + (factor * value) ** 2

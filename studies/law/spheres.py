@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import astuple, dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -58,9 +58,16 @@ def read_spheres(paths: Sequence[Path]) -> list[SphereRow]:
 def _row(
     name: str, kind: FieldKind, spectrum: SelfAffineSpectrum, radius: float, means: Means
 ) -> SphereRow:
-    """Row of a sphere with what was found for it."""
-    shape = spectrum.short_cutoff, spectrum.roll_off, spectrum.hurst
-    return SphereRow(name, kind, *shape, radius, *astuple(means))
+    """Row of spheres on surfaces of a spectrum."""
+    return SphereRow(
+        spectrum=name,
+        kind=kind,
+        short_cutoff=spectrum.short_cutoff,
+        roll_off=spectrum.roll_off,
+        hurst=spectrum.hurst,
+        contact_radius=radius,
+        **asdict(means),
+    )
 
 
 def sphere_rows(sweep: Sweep, dataset: xr.Dataset) -> Iterator[SphereRow]:
@@ -99,7 +106,7 @@ SCENES = (
     Scene("from-0", "roughness", SelfAffineSpectrum(0.01, 0.01, 1.0), 0.05, _steady(0.0)),
     Scene("from-3", "roughness", SelfAffineSpectrum(0.01, 0.04, 0.6), 0.05, _steady(3.0)),
     Scene("chemical", "chemical", SelfAffineSpectrum(0.01, 0.01, 1.0), 0.08, _steady(1.0)),
-    # Of Main Fig. 5, as its spectrum is in reduced lengths.
+    # The spectrum of Main Fig. 5 in reduced lengths.
     Scene(
         "nanodiamond", "roughness", SelfAffineSpectrum(0.00104, 0.0334, 1.0), 0.173, _steady(1.0)
     ),
@@ -118,14 +125,14 @@ def scene_rows(scenes: Sequence[Scene] = SCENES, realisations: int = 3) -> Itera
             sweep_row(run_simulation(replace(first, realisation=number)))
             for number in range(realisations)
         ]
-        columns = [[getattr(run, name) for run in runs] for name in COLUMNS]
+        columns = {name: [getattr(run, name) for run in runs] for name in COLUMNS}
         radius = np.mean([(run.lowest_radius + run.highest_radius) / 2 for run in runs])
-        means = mean_factors(scene.kind, *columns)
+        means = mean_factors(scene.kind, columns)
         yield _row(scene.name, scene.kind, scene.spectrum, float(radius), means)
 
 
 def reference_rows(path: Path, schedule: SteadySchedule) -> Iterator[SphereRow]:
-    """Spheres of the kept data of SI Fig. S-5, of given penetrations."""
+    """Spheres of the kept data of SI Fig. S-5, whose schedule these data do not state."""
     dataset = read_dataset(path)
     radius = jkr.equilibrium_radius((schedule.start + schedule.max_penetration) / 2)
     for (place, _), means in cell_means("roughness", dataset).items():
