@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -14,6 +14,7 @@ from crackfront.sweep.parameters import load_sweep
 from crackfront.sweep.sweep import Sweep
 from studies.law.front_sweeps import front_sweeps
 from studies.pages import markdown_table
+from studies.progress import Progress
 
 _CONFIG = Path(__file__).parents[2] / "config"
 
@@ -41,9 +42,7 @@ def compared_sweeps(folder: Path) -> dict[str, Sweep]:
     return sweeps | {name: fronts[name] for name in _FRONTS_OF_LAW}
 
 
-def measured_costs(
-    sweeps: Mapping[str, Sweep], progress: Callable[[str], None]
-) -> list[MeasuredCost]:
+def measured_costs(sweeps: Mapping[str, Sweep], progress: Progress) -> list[MeasuredCost]:
     """Costs of the first realisation of each spectrum at its weakest and strongest amplitude."""
     costs = []
     for name, sweep in sweeps.items():

@@ -8,9 +8,10 @@ from __future__ import annotations
 
 import tempfile
 import time
-from dataclasses import asdict, astuple, dataclass, replace
+from collections.abc import Callable
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
-from typing import Literal
+from typing import TYPE_CHECKING, Literal, NamedTuple
 
 import numpy as np
 
@@ -39,8 +40,15 @@ from crackfront.sweep.rows import sweep_row
 from studies.pages import markdown_table
 from studies.speed.machine import restart_peak
 
+if TYPE_CHECKING:
+    import xarray as xr
+
 TOLERANCE = 1e-5
+"""Force that may be left on a front, per length, in w_int."""
+
 RING_AMPLITUDE = 0.2
+"""Amplitude of the rings in w_int."""
+
 RING_SAMPLES = 16
 """Samples a period of the rings."""
 
@@ -137,25 +145,10 @@ def measured(scene: Scene, need: Need) -> Row:
     compile_solver("newton", FullCycle)
     run_cycle(ring_field(SMALL, 1), FullCycle(0.0, 1.0))
     before, start = restart_peak(), time.process_time()
-    field: Field
-    if need.rays:
-        field = ring_field(scene, need.rays)
-        record = run_cycle(field, scene.cycle, Newton(TOLERANCE))
-    else:
-        result = run_simulation(simulation(scene, need))
-        record = result.record
+    run = _ring_run(scene, need.rays) if need.rays else _surface_run(scene, need)
     seconds, peak = time.process_time() - start, 1e-6 * (peak_memory() - before)
-    if need.rays:
-        dataset = cycle_dataset(record, field.geometry)
-    else:
-        row, origin = sweep_row(result), provenance()
-        finished = FinishedSimulation(result.simulation, row, record, origin.arithmetic)
-        dataset = curves_dataset([finished])
-        field = simulation_field(simulation(scene, need))
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "run.nc"
-        write_dataset(path, dataset, provenance())
-        size = path.stat().st_size
+    field, record = run.field(), run.record
+    recorded = record.dissipated_energy, record.pull_off_energy, record.fronts
     return Row(
         name=need.name,
         status=record.status.name.lower(),
@@ -165,9 +158,44 @@ def measured(scene: Scene, need: Need) -> Row:
         seconds=seconds,
         peak=peak,
         field=(_bytes(field) + _bytes(make_memory(field))) / 1e6,
-        record=_bytes((*asdict(record.states).values(), *astuple(record)[3:])) / 1e6,
-        file=size / 1e3,
+        record=_bytes((*asdict(record.states).values(), *recorded)) / 1e6,
+        file=_file_bytes(run.dataset()) / 1e3,
     )
+
+
+class _Run(NamedTuple):
+    """A record, and how its field and its dataset are made."""
+
+    record: CycleRecord
+    field: Callable[[], Field]
+    dataset: Callable[[], xr.Dataset]
+
+
+def _ring_run(scene: Scene, rays: int) -> _Run:
+    """Cycle on rings."""
+    field = ring_field(scene, rays)
+    record = run_cycle(field, scene.cycle, Newton(TOLERANCE))
+    return _Run(record, lambda: field, lambda: cycle_dataset(record, field.geometry))
+
+
+def _surface_run(scene: Scene, need: Need) -> _Run:
+    """Simulation on the surface; its field is made again, since a result lacks it."""
+    result = run_simulation(simulation(scene, need))
+
+    def dataset() -> xr.Dataset:
+        row, origin = sweep_row(result), provenance()
+        finished = FinishedSimulation(result.simulation, row, result.record, origin.arithmetic)
+        return curves_dataset([finished])
+
+    return _Run(result.record, lambda: simulation_field(simulation(scene, need)), dataset)
+
+
+def _file_bytes(dataset: xr.Dataset) -> int:
+    """Size of a dataset in a file."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "run.nc"
+        write_dataset(path, dataset, provenance())
+        return path.stat().st_size
 
 
 def _way(record: CycleRecord) -> float:

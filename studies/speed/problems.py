@@ -19,7 +19,7 @@ Group = Literal["disorder", "scaling", "smoke"]
 """Tables of problems; `smoke` is for tests."""
 
 LARGEST_RADIUS = 2.6
-"""Where the fields end. (Units: reduced lateral length)"""
+"""Radius at which the fields end. (Units: reduced lateral length)"""
 
 PIXELS_PER_CUTOFF = 8
 """Resolution of the tiles."""

@@ -44,13 +44,14 @@ ROOT = Path(__file__).parents[2]
 RANKS = tuple(2**power for power in range(13))
 
 SUBMIT_SECONDS = 1.0
-"""Between two submissions of Snakemake."""
+"""Time between two submissions of Snakemake. (Units: s)"""
 
 JOBS = ((1000, 16), (250, 32), (160, 32))
 """Shards of a million simulations, and the ranks of a job: fewer where jobs are short."""
 
 REALISATIONS_OF_A_SHARD = 2000
-"""Of a synthetic sweep: its two amplitudes make shards of 4000 simulations, 250 of a million."""
+"""Realisations of a shard of a synthetic sweep. Its two amplitudes make shards of 4000 simulations,
+250 of a million."""
 
 LATE_COMMANDS = ("plan", "status", "aggregate", "fit")
 """Commands on a stored sweep, in the order of their use."""
@@ -94,7 +95,7 @@ def job_seconds(tasks: Sequence[float] | Array, n_worker: int, losses: Losses) -
 def played(
     shards: Sequence[Array], losses: Losses, job_ranks: int, rank_numbers: Sequence[int] = RANKS
 ) -> list[Played]:
-    """Play a sweep, given as seconds of the tasks of its shards, through on numbers of ranks.
+    """Play a sweep through on numbers of ranks, from the seconds of the tasks of its shards.
 
     Up to `job_ranks` ranks belong to one job, more to several.
     """
@@ -172,11 +173,16 @@ def start_seconds() -> float:
         plan += ["--directory", folder, "--config", f"sweep={sweep}"]
         simulate = ["-m", "crackfront", "simulate", sweep, "--output", folder]
         for number in range(2):
-            before = resource.getrusage(resource.RUSAGE_CHILDREN)
+            before = _seconds_of_children()
             for arguments in (plan, plan, [*simulate, "--realisations", f"{number}-{number}"]):
                 subprocess.run([sys.executable, *arguments], capture_output=True, check=True)
-    after = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+    return _seconds_of_children() - before
+
+
+def _seconds_of_children() -> float:
+    """Processor time of all processes that this one has started and waited for (Units: s)."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
 
 
 def synthetic(folder: Path, n_simulation: int, *, curves: bool = True) -> Path:
@@ -269,32 +275,36 @@ def late_table(sizes: Sequence[int]) -> str:
     `sha256sum --check` reads what `verify` reads. The last `plan` sees a sweep one of whose
     shards has all its rows, but lacks its file.
     """
-    rows = []
-    for n_row in sizes:
-        with tempfile.TemporaryDirectory() as above:
-            (folder := Path(above, "results", "test")).mkdir(parents=True)
-            path = synthetic(folder, n_row, curves=(curves := n_row <= _MOST_WITH_CURVES))
-            rows.append(["snakemake -n", f"{n_row}", *_late_cells(in_fresh_process(planned, path))])
-            commands = LATE_COMMANDS + (("checksums", "verify") if curves else ())
-            rows += [
-                [name, f"{n_row}", *_late_cells(in_fresh_process(late, path, name))]
-                for name in commands
-            ]
-            if curves:
-                rows.append(["sha256sum", f"{n_row}", f"{_sum_seconds(folder):.0f}", ""])
-                next((folder / "shards").glob("*.nc")).unlink()
-                cells = _late_cells(in_fresh_process(late, path, "plan"))
-                rows.append(["plan, a shard left", f"{n_row}", *cells])
+    rows = [row for size in sizes for row in _late_rows(size)]
     return markdown_table("command | simulations | CPU s | MB", rows)
+
+
+def _late_rows(n_simulation: int) -> Iterator[list[str]]:
+    """Rows of a table for a stored sweep of a size."""
+    with_curves = n_simulation <= _MOST_WITH_CURVES
+    size = f"{n_simulation}"
+    with tempfile.TemporaryDirectory() as above:
+        folder = Path(above, "results", "test")
+        folder.mkdir(parents=True)
+        path = synthetic(folder, n_simulation, curves=with_curves)
+        yield ["snakemake -n", size, *_late_cells(in_fresh_process(planned, path))]
+        for name in LATE_COMMANDS:
+            yield [name, size, *_late_cells(in_fresh_process(late, path, name))]
+        if with_curves:
+            for name in ("checksums", "verify"):
+                yield [name, size, *_late_cells(in_fresh_process(late, path, name))]
+            yield ["sha256sum", size, f"{_sum_seconds(folder):.0f}", ""]
+            next((folder / "shards").glob("*.nc")).unlink()
+            cells = _late_cells(in_fresh_process(late, path, "plan"))
+            yield ["plan, a shard left", size, *cells]
 
 
 def _sum_seconds(folder: Path) -> float:
     """Processor time of `sha256sum --check` in a folder, in seconds."""
-    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    before = _seconds_of_children()
     checked = ["sha256sum", "--quiet", "--check", "SHA256SUMS"]
     subprocess.run(checked, check=True, cwd=folder)
-    after = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+    return _seconds_of_children() - before
 
 
 def _late_cells(measured: tuple[float, float]) -> list[str]:
@@ -306,20 +316,30 @@ def _late_cells(measured: tuple[float, float]) -> list[str]:
 def parts() -> dict[str, str]:
     """Parts of the page, measured and played."""
     losses, slower = Losses(hand_out_seconds(), start_seconds()), slowness()
-    sweeps = [(million(slower, n_shard=n_shard), job_ranks) for n_shard, job_ranks in JOBS]
-    useful = sum(float(np.sum(shard)) for shard in sweeps[0][0]) / 3600
-    heads = [f"hours, {n_shard} shards of {job_ranks} ranks" for n_shard, job_ranks in JOBS]
-    header = " | ".join(["cores", *(f"{head} | efficiency" for head in heads)])
-    cells = [
-        [f"{rows[0].n_rank}"]
-        + [text for row in rows for text in (f"{row.hours:.3g}", f"{row.efficiency:.1%}")]
-        for rows in zip(*(played(shards, losses, size) for shards, size in sweeps), strict=True)
-    ]
     return {
         "late": late_table((10**4, 10**5, 10**6)),
-        "efficiency": "The times are simulated event by event; no sweep of this size was run. "
-        f"{sum(map(len, sweeps[0][0]))} simulations of {useful:.0f} core hours; "
+        "efficiency": efficiency_part(losses, slower),
+    }
+
+
+def efficiency_part(losses: Losses, slower: float) -> str:
+    """Hours and efficiency of a million simulations, by the size of their shards."""
+    sweeps = [million(slower, n_shard=n_shard) for n_shard, _ in JOBS]
+    columns = [
+        played(shards, losses, job_ranks)
+        for shards, (_, job_ranks) in zip(sweeps, JOBS, strict=True)
+    ]
+    header, rows = "cores", [[f"{n_rank}"] for n_rank in RANKS]
+    for (n_shard, job_ranks), column in zip(JOBS, columns, strict=True):
+        header += f" | hours, {n_shard} shards of {job_ranks} ranks | efficiency"
+        for row, result in zip(rows, column, strict=True):
+            row += [f"{result.hours:.3g}", f"{result.efficiency:.1%}"]
+    n_simulation = sum(shard.size for shard in sweeps[0])
+    useful = sum(float(np.sum(shard)) for shard in sweeps[0]) / 3600
+    return (
+        "The times are simulated event by event; no sweep of this size was run. "
+        f"{n_simulation} simulations of {useful:.0f} core hours; "
         f"{1e3 * losses.hand_out:.2f} ms to hand out and store one, {losses.start:.1f} s to start "
         f"a job. A simulation takes {slower:.2f} times what is expected."
-        f"\n\n{markdown_table(header, cells)}",
-    }
+        f"\n\n{markdown_table(header, rows)}"
+    )
