@@ -57,7 +57,7 @@ _REFERENCE = Path("docs/reference")
 @_output
 def compute_figure(configuration: Path, scale: str, output: Path) -> None:
     """Compute the data of one figure, named as its file in config/figures."""
-    started = time.perf_counter(), time.process_time()
+    started, started_cpu = time.perf_counter(), time.process_time()
     parameters = load_figure(configuration, scale)
     shown = figure(configuration.stem)
     path = output / scale / f"{configuration.stem}.nc"
@@ -70,8 +70,10 @@ def compute_figure(configuration: Path, scale: str, output: Path) -> None:
         announce_compilation()
         record = shown.compute(parameters, click.echo)
     origin = provenance(configuration.read_text(encoding="utf-8"))
-    seconds, cpu_seconds = time.perf_counter() - started[0], time.process_time() - started[1]
-    costs = {"seconds": seconds, "cpu_seconds": cpu_seconds}
+    costs = {
+        "seconds": time.perf_counter() - started,
+        "cpu_seconds": time.process_time() - started_cpu,
+    }
     write_record(path, record, origin, title=shown.title, scale=scale, **costs)
     click.echo(f"data: {path}")
 
@@ -96,30 +98,31 @@ def draw_figure(data: Path) -> None:
 @_output
 def check_figures(output: Path) -> None:
     """Compare the data of all figures with the statements of the paper, in checks.md."""
-    lines: list[str] = []
+    sections: list[str] = []
     failed: list[str] = []
-    every: list[Check] = []
+    all_checks: list[Check] = []
     for scale in SCALES:
         for path in _data_of_figures(output / scale):
             shown, record = _figure_and_record(path)
             checks = shown.checks(record)
-            every += checks
-            lines += ["", f"## {shown.title} ({scale})", "", *checks_tables(checks, scale)]
-            failed += [
-                f"FAIL: {shown.title} ({scale}): {check.claim}: {check.expected} expected, "
-                f"{check.computed} found"
-                for check in checks
-                if check.result == "FAIL"
-            ]
-    if not every:
+            title = f"{shown.title} ({scale})"
+            all_checks += checks
+            sections += ["", f"## {title}", "", *checks_tables(checks, scale)]
+            failed += [_failure(title, check) for check in checks if check.result == "FAIL"]
+    if not all_checks:
         raise _no_data(output)
-    counts = [f"- {text}" for text in (*counted(every), *failed)]
-    lines = ["# Checks of the figures", "", *counts, *lines, ""]
+    counts = [f"- {text}" for text in (*counted(all_checks), *failed)]
     forget_sums(output)
+    lines = ["# Checks of the figures", "", *counts, *sections, ""]
     write_text(output / "checks.md", "\n".join(lines))
     click.echo(f"checks: {output / 'checks.md'}")
     for line in counts:
         click.echo(line)
+
+
+def _failure(title: str, check: Check) -> str:
+    """Line about a check that fails, under the title of its figure."""
+    return f"FAIL: {title}: {check.claim}: {check.expected} expected, {check.computed} found"
 
 
 @commands.command(epilog=examples("python -m studies paper gallery"))
@@ -137,28 +140,36 @@ def gallery(output: Path, pictures: Path) -> None:
     if not paths:
         raise _no_data(output)
     pictures.mkdir(parents=True, exist_ok=True)
-    every: list[Check] = []
-    for name in filter(paths.__contains__, FIGURES):
-        shown, record = _figure_and_record(paths[name])
-        picture = pictures / f"{name}.{'gif' if shown.animate else 'png'}"
-        if shown.animate:
-            shutil.copyfile(paths[name].with_suffix(".gif"), picture)
-        else:
-            save_picture(shown.draw(record), picture)
-        data, checks = read_attributes(paths[name]), shown.checks(record)
-        every += checks
-        stored_figure = StoredFigure(
-            title=shown.title,
-            picture=picture.name,
-            scale=data["scale"],
-            cpu_seconds=round(float(data["cpu_seconds"])),
-            checks="\n".join(checks_tables(checks, data["scale"])),
-        )
-        data["command"] = f"make figures SCALE={data['scale']}"
-        store("paper", figures={name: stored_figure}, data=data)
-        click.echo(f"figure: {picture}")
+    all_checks: list[Check] = []
+    for name in FIGURES:
+        if name in paths:
+            all_checks += _store_figure(name, paths[name], pictures)
     if len(paths) == len(FIGURES):
-        store("paper", tables={"counts": "\n".join(f"- {text}" for text in counted(every))})
+        counts = "\n".join(f"- {text}" for text in counted(all_checks))
+        store("paper", tables={"counts": counts})
+
+
+def _store_figure(name: str, path: Path, pictures: Path) -> tuple[Check, ...]:
+    """Store a figure with its picture, or its animation, and its checks; these checks."""
+    shown, record = _figure_and_record(path)
+    if shown.animate:
+        picture = pictures / f"{name}.gif"
+        shutil.copyfile(path.with_suffix(".gif"), picture)
+    else:
+        picture = pictures / f"{name}.png"
+        save_picture(shown.draw(record), picture)
+    data, checks = read_attributes(path), shown.checks(record)
+    stored_figure = StoredFigure(
+        title=shown.title,
+        picture=picture.name,
+        scale=data["scale"],
+        cpu_seconds=round(float(data["cpu_seconds"])),
+        checks="\n".join(checks_tables(checks, data["scale"])),
+    )
+    data["command"] = f"make figures SCALE={data['scale']}"
+    store("paper", figures={name: stored_figure}, data=data)
+    click.echo(f"figure: {picture}")
+    return checks
 
 
 @commands.command(epilog=examples("python -m studies paper experiment --keep"))
@@ -184,7 +195,9 @@ def _data_of_figures(folder: Path) -> list[Path]:
 
 def _no_data(output: Path) -> ValueError:
     """Error about a folder without data of figures."""
-    return ValueError(f"{output} contains no data of figures; run python -m studies paper figure")
+    return ValueError(
+        f"{output} does not contain data of figures; run python -m studies paper figure"
+    )
 
 
 def _figure_and_record(path: Path) -> tuple[Figure, Any]:
