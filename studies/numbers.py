@@ -21,7 +21,7 @@ STORED = Path("docs/reference/numbers")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Origin:
-    """Where something was measured; empty until it is stored."""
+    """Command, commit, machine and date of a measurement; empty until it is stored."""
 
     command: str = ""
     commit: str = ""

@@ -57,8 +57,8 @@ _ABOUT_TABLES = {
     "[measured loops](../../loops.md).",
     "boundary-elements": "The crack front against boundary elements on the same rough spheres "
     "([explanation](../boundary-elements.md)). Lengths are in reduced units, and e_el is in units "
-    "of w_int. Where the last line says `crackfront validate`, the command is now `python -m "
-    "studies boundary-elements validate`.",
+    "of w_int. The command `crackfront validate` of the last line is now `python -m studies "
+    "boundary-elements validate`.",
     "law": "[The law of k](../../law.md): its coefficients, and its differences from straight "
     "fronts and [spheres](../spheres.md).",
     "paper": "Every check of the [gallery](../gallery.md), and the hysteresis on nanodiamond, "

@@ -14,7 +14,7 @@ from crackfront.core.variables import ADHESION, AREA, ENERGY, LATERAL, VERTICAL,
 from crackfront.surfaces.instabilities import resolved_motion, swept_clusters
 from crackfront.validation import Count, Positive
 from studies.paper.events import EventParameters, EventRecord, event_record
-from studies.paper.figure import Integers, Progress, values_of
+from studies.paper.figure import Integers, values_of
 from studies.paper.rough import (
     STRONG,
     WEAK,
@@ -24,6 +24,7 @@ from studies.paper.rough import (
     surface_means,
 )
 from studies.paper.straight import Springs
+from studies.progress import Progress
 
 _DISORDER, _AVALANCHE = "disorder", "avalanche"
 
@@ -38,7 +39,7 @@ class AvalancheParameters(RetractionParameters):
     load_step: Positive  # penetrations that are visited in any case (reduced vertical length)
     travel: Positive  # largest motion of a site in a smooth step, over the short cutoff
     precision: Positive  # penetration to which an avalanche is located; closer ones come out as one
-    # Where the power law begins, over the Larkin length times the correlation length of the force.
+    # Start of the power law, over the Larkin length times the correlation length of the force.
     smallest_area: Positive
     line: EventParameters  # straight fronts, and how their events are told apart
     springs: Springs

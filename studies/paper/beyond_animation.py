@@ -22,8 +22,9 @@ from crackfront.simulate.sphere.full_cycle import FullCycle
 from studies.paper.checks import Check, close_to
 from studies.paper.cycle_animation import LAST_FRAMES, GrowingLoop, shown_state
 from studies.paper.drawing import Animation
-from studies.paper.figure import Figure, Integers, Progress, values_of
+from studies.paper.figure import Figure, Integers, values_of
 from studies.paper.rough import RoughCycleParameters, patch_of, whole_cycle
+from studies.progress import Progress
 
 _STATE, _ANGLE, _X, _Y = "state", "angle", "x", "y"
 

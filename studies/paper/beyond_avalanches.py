@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -19,10 +19,7 @@ from studies.paper.checks import Check
 from studies.paper.drawing import DASHED, THEORY, name_panels
 from studies.paper.figure import Figure
 from studies.paper.power_law import PowerLaw, exponent_and_cutoff, truncated_power_law
-from studies.paper.rough import (
-    STRONG,
-    WEAK,
-)
+from studies.paper.rough import STRONG, WEAK
 
 _TOLERANCE = 0.1
 """Largest deviation of the exponent of a sphere."""
@@ -34,7 +31,7 @@ _EXPECTATION = (
     "Rev. B 80, 144204), so that a fit over few decades finds a smaller exponent. The same fit to "
     "straight fronts, whose exponent is found by a joint fit, says whether the decades are enough."
 )
-"""Where the expectations of the sphere come from, and why its exponents may differ."""
+"""Source of the expectations of the sphere, and why its exponents may differ."""
 
 
 def size_law(record: AvalancheRecord, index: int) -> PowerLaw:
@@ -70,12 +67,13 @@ def _checks(record: AvalancheRecord, index: int, name: str) -> Iterator[Check]:
     chosen = record.disorder_index == index
     energy, extent = record.energy[chosen], record.extent[chosen]
     law, expected = size_law(record, index), event_laws.SIZE_EXPONENT
-    line, decades = _same_fit_of_the_line(record, law.decades)
+    line_exponent, decades = _straight_front_exponent(record, law.decades)
     undecided = ""
-    if abs(line - expected) > _TOLERANCE:
+    if abs(line_exponent - expected) > _TOLERANCE:
+        joint = event_laws.event_law(record).exponent
         undecided = (
-            f"over {decades:.1f} decades the same fit gives {line:.2f} for straight fronts, whose "
-            f"exponent by the joint fit is {event_laws.event_law(record).exponent:.2f}"
+            f"over {decades:.1f} decades the same fit gives {line_exponent:.2f} for straight "
+            f"fronts, whose exponent by the joint fit is {joint:.2f}"
         )
     contained = "contains it" if law.low <= expected <= law.high else "leaves it out"
     yield Check(
@@ -108,7 +106,7 @@ def _checks(record: AvalancheRecord, index: int, name: str) -> Iterator[Check]:
     )
 
 
-def _same_fit_of_the_line(record: AvalancheRecord, decades: float) -> tuple[float, float]:
+def _straight_front_exponent(record: AvalancheRecord, decades: float) -> tuple[float, float]:
     """Exponent that the fit of the sphere finds for straight fronts, and over how many decades.
 
     Their spring is the one whose cut-off leaves about as many decades.
@@ -130,30 +128,15 @@ def avalanche_figure(record: AvalancheRecord) -> Drawing:
         figure = blank_figure(PAGE, 0.82 * PAGE)
         grid = figure.add_gridspec(2, 1)
         above, below = (figure.add_subfigure(grid[row]) for row in range(2))
-        lines, panels = above.subplots(1, 3), below.subplots(1, 3)
-        event_laws.draw_events(lines[0], record)
-        event_laws.draw_cutoffs(lines[1], record)
-        event_laws.draw_depths(lines[2], record)
-        _draw_areas(panels[0], record)
-        _draw_extents(panels[1], record)
-        # The reduced unit of energy is pi times w_int times the lateral unit squared.
-        energies = record.energy / (record.short_cutoff**2 / np.pi)
-        label = r"dissipated energy $/\,w_\mathrm{int}\lambda_\mathrm{s}^2$"
-        _draw_densities(panels[2], record, energies, label)
-        for axes in (*lines, *panels):
-            axes.set(xscale="log", yscale="log")
-        name_panels((*lines, *panels), "abcdef")
-        # Room for the legend below the points.
-        panels[0].set_ylim(panels[0].get_ylim()[0] / 50)
-        # Less than two decades: powers of ten alone would be too few.
-        label_decimals(lines[1].xaxis, FixedLocator(record.spring.tolist()))
-        for axes in lines[1:]:
-            label_decimals(axes.yaxis)
-        # The last one is the law of the theory, which the panel names.
-        handles, labels = (part[:-1] for part in lines[0].get_legend_handles_labels())
+        lines, spheres = above.subplots(1, 3), below.subplots(1, 3)
+        _draw_lines(lines, record)
+        _draw_spheres(spheres, record)
+        name_panels((*lines, *spheres), "abcdef")
+        # The last entry is the law of the theory, which the panel names.
+        handles, labels = (entries[:-1] for entries in lines[0].get_legend_handles_labels())
         title = "straight front on springs"
         above.legend(handles, labels, title=title, loc="outside upper center", ncols=len(labels))
-        handles, labels = panels[2].get_legend_handles_labels()
+        handles, labels = spheres[2].get_legend_handles_labels()
         below.legend(handles, labels, title="sphere", loc="outside upper center", ncols=2)
         explain(
             figure,
@@ -165,6 +148,33 @@ def avalanche_figure(record: AvalancheRecord) -> Drawing:
             "Larkin lengths, grey: correlation length of $w_\\mathrm{loc}$",
         )
         return figure
+
+
+def _draw_lines(panels: Sequence[Axes], record: AvalancheRecord) -> None:
+    """Areas, cut-offs and depths of whole events of straight fronts."""
+    event_laws.draw_events(panels[0], record)
+    event_laws.draw_cutoffs(panels[1], record)
+    event_laws.draw_depths(panels[2], record)
+    for axes in panels:
+        axes.set(xscale="log", yscale="log")
+    # Less than two decades: powers of ten alone would be too few.
+    label_decimals(panels[1].xaxis, FixedLocator(record.spring.tolist()))
+    for axes in panels[1:]:
+        label_decimals(axes.yaxis)
+
+
+def _draw_spheres(panels: Sequence[Axes], record: AvalancheRecord) -> None:
+    """Areas, extents and energies of avalanches of the sphere."""
+    _draw_areas(panels[0], record)
+    _draw_extents(panels[1], record)
+    # The reduced unit of energy is pi times w_int times the lateral unit squared.
+    energies = record.energy / (record.short_cutoff**2 / np.pi)
+    label = r"dissipated energy $/\,w_\mathrm{int}\lambda_\mathrm{s}^2$"
+    _draw_densities(panels[2], record, energies, label)
+    for axes in panels:
+        axes.set(xscale="log", yscale="log")
+    # Room for the legend below the points.
+    panels[0].set_ylim(panels[0].get_ylim()[0] / 50)
 
 
 def _draw_densities(axes: Axes, record: AvalancheRecord, values: Array, label: str) -> None:

@@ -33,8 +33,9 @@ from crackfront.simulate.sphere.full_cycle import FullCycle
 from crackfront.validation import Count, Fraction, Positive
 from studies.paper.checks import Check
 from studies.paper.drawing import DASHED, name_panels
-from studies.paper.figure import Figure, Progress
+from studies.paper.figure import Figure
 from studies.paper.rough import RoughParameters, rough_spectrum
+from studies.progress import Progress
 
 _KIND = "hurst_exponent", "cutoff", "height"
 
@@ -133,7 +134,7 @@ _EXPECTATION = (
     "than for H < 0.5. The pull-off force need not follow: shorter waves also raise k, since the "
     "contact is larger compared with their Larkin length (docs/law.md)."
 )
-"""Where the expectation comes from."""
+"""Source of the expectation."""
 
 
 def pull_off_checks(record: PullOff) -> tuple[Check, ...]:

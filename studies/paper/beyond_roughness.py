@@ -27,7 +27,7 @@ from crackfront.plots.style import (
     house_style,
 )
 from studies.paper.checks import Check
-from studies.paper.drawing import THEORY, name_panels, write_beside
+from studies.paper.drawing import THEORY, name_panels, write_next_to
 from studies.paper.figure import Figure
 from studies.paper.front_spectra import (
     RoughnessFit,
@@ -47,7 +47,7 @@ _EXPECTATION = (
     "exponent 0.388 of its depinning threshold (Rosso and Krauth, Phys. Rev. E 65, 025101), below "
     "it 0.5, where disorder is a perturbation. The range of a fit may contain the crossover."
 )
-"""Where the expectations come from, and why exponents may differ."""
+"""Source of the expectations, and why exponents may differ."""
 
 _TOLERANCE = 0.05
 """Largest deviation of an exponent, about as large as by a crossover in the range of the fit."""
@@ -86,7 +86,7 @@ def _exponent_check(record: RoughnessRecord, index: int, fit: RoughnessFit, clai
         for part in (replace(record, longest=middle), replace(record, shortest=middle))
     ]
     contained = "contains it" if abs(fit.exponent - expected) <= fit.reach else "leaves it out"
-    held = "sphere's circle" if index in SPHERE else "springs"
+    restoring = "sphere's circle" if index in SPHERE else "springs"
     return Check(
         claim,
         with_error(expected, _TOLERANCE),
@@ -95,15 +95,17 @@ def _exponent_check(record: RoughnessRecord, index: int, fit: RoughnessFit, clai
         f"the 95% interval of {record.power.shape[1]} tiles {contained}; wavelengths "
         f"{low:.3g} to {high:.3g} ({np.log10(high / low):.2f} decades), their shorter half "
         f"{halves[0]:.3f}, longer half {halves[1]:.3f}; Larkin length "
-        f"{record.larkin_length[index]:.3g}; the stiffness of the {held}, "
+        f"{record.larkin_length[index]:.3g}; the stiffness of the {restoring}, "
         f"{record.ring_stiffness[index]:.2g} next to n, is in the abscissa",
         expectation=_EXPECTATION,
     )
 
 
 _COLOURS = (BLUE, VERMILION, GREEN, PURPLE)
+"""Colours of the fronts in the order of their records."""
+
 _MARKERS = ("o", "s", "^", "D")
-"""Of the fronts in the order of their records."""
+"""Markers of the fronts in the order of their records."""
 
 _KINDS = ((STRONG, "strong", _COLOURS[STRONG]), (WEAK, "weak", _COLOURS[WEAK]))
 
@@ -150,7 +152,7 @@ def _draw_spectra(axes: Axes, record: RoughnessRecord) -> None:
         middle = np.exp(np.mean(np.log(line), axis=1))
         aside = (8, 6) if index == STRONG else (-8, -6)
         look = {"ha": "left", "va": "bottom"} if index == STRONG else {"ha": "right", "va": "top"}
-        write_beside(axes, text, (middle[0], middle[1]), aside, color=colour, **look)
+        write_next_to(axes, text, (middle[0], middle[1]), aside, color=colour, **look)
     axes.set_xlabel(r"stiffness $\kappa\lambda_\mathrm{s}/2\pi$")
     axes.set_ylabel(r"spectrum of the front $C/\lambda_\mathrm{s}^3$")
 
@@ -180,7 +182,7 @@ def _draw_differences(axes: Axes, record: RoughnessRecord) -> None:
         lag, difference = record.lag / cutoff, record.difference[index] / cutoff
         axes.plot(lag, difference, color=colour)
         end = lag[-1], difference[-1]
-        write_beside(axes, f"{name} disorder", end, (0, -12), color=colour, ha="right")
+        write_next_to(axes, f"{name} disorder", end, (0, -12), color=colour, ha="right")
         part = (lag > 3) & (lag < 60)
         start = np.flatnonzero(part)[0]
         law = 1.25 * difference[start] * (lag[part] / lag[start]) ** _EXPONENTS[index]
@@ -217,7 +219,7 @@ def _mark_length(axes: Axes, index: int | None, place: float, name: str) -> None
     axes.axvline(place, color=colour, linewidth=0.7, linestyle=(0, (1, 1.5)), zorder=0)
     look: dict[str, Any] = {"xycoords": axes.get_xaxis_transform(), "color": colour, "va": "top"}
     side = {"ha": "left"} if place < _MIDDLE else {"ha": "right"}
-    write_beside(axes, name, (place, 1.0), (3 if place < _MIDDLE else -3, -4), **look, **side)
+    write_next_to(axes, name, (place, 1.0), (3 if place < _MIDDLE else -3, -4), **look, **side)
 
 
 def _draw_points(

@@ -20,9 +20,11 @@ from crackfront.validation import Positive
 from studies.paper.checks import Check
 from studies.paper.cycle_animation import LAST_FRAMES, GrowingLoop, shown_state
 from studies.paper.drawing import BRANCHES, Animation
-from studies.paper.figure import Figure, Integers, Progress
+from studies.paper.figure import Figure, Integers
 from studies.paper.nanodiamond import NanodiamondCycle
 from studies.paper.rough import expected_seconds, recorded
+from studies.progress import Progress
+from studies.records import thinned
 
 _STATE, _ANGLE = "state", "angle"
 
@@ -56,8 +58,8 @@ def video(parameters: VideoParameters, progress: Progress) -> Video:
     fronts: list[Array] = []
 
     def observe(recorder: Recorder) -> None:
-        sites = slice(None, None, -(-recorder.front.size // _MOST_SITES))
-        fronts.append(recorder.front[sites] * scales.lateral)
+        front = recorder.front
+        fronts.append(front[thinned(front.size, _MOST_SITES)] * scales.lateral)
 
     recorder = Recorder(observers=[observe])
     loads = parameters.cycle(recorder, progress)

@@ -17,6 +17,7 @@ from studies.paper.figure import figure, load_figure
 from studies.paper.rough import STRONG
 from studies.paper.roughness import STRONG_LINE
 from studies.paper.si_5 import study_fit
+from studies.progress import silent
 from studies.records import read_record
 
 _CLAIM = "tolerance of the claim of the figure"
@@ -28,7 +29,7 @@ def _computed(name: str, changes: Mapping[str, Any], numbers: Callable[[Any], Nu
     """Numbers of a figure at the scale quick, with some parameters changed to make it faster."""
     quick = load_figure(Path(f"config/figures/{name}.yaml"), "quick")
     parameters = type(quick).model_validate(quick.model_dump() | dict(changes))
-    return numbers(figure(name).compute(parameters, lambda line: None))
+    return numbers(figure(name).compute(parameters, silent))
 
 
 def _smooth_loop(loop: Any) -> Numbers:

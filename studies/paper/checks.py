@@ -27,7 +27,7 @@ class Check:
     remark: str = ""  # where the difference comes from, or what the number rests on
     law: str = ""  # number of the law of k, if the computed one agrees with it
     undecided: str = ""  # why data of this size can neither confirm nor contradict the claim
-    # Where an expectation comes from that the paper does not state, and why data may differ.
+    # Source of an expectation that the paper does not state, and why data may differ.
     expectation: str = ""
 
     @property

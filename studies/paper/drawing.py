@@ -22,12 +22,16 @@ BRANCHES = ((1, "approach", "appr", BLUE), (-1, "retraction", "retr", VERMILION)
 """Direction, name, index of the work of adhesion and colour of both branches."""
 
 DASHED: dict[str, Any] = {"linewidth": 0.7, "dashes": (4, 2)}
+"""Style of broken lines."""
+
 DOTTED: dict[str, Any] = {"linewidth": 0.6, "dashes": (1.5, 1.5)}
+"""Style of dotted lines."""
+
 THEORY: dict[str, Any] = {"color": "0.35", **DASHED}
-"""Of lines that a theory gives."""
+"""Style of lines that a theory gives."""
 
 
-def write_beside(
+def write_next_to(
     axes: Axes, text: str, place: tuple[float, float], aside: tuple[float, float], **style: Any
 ) -> None:
     """Text that stands so many points to the right of a place, and above it."""

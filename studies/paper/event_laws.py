@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 
-from crackfront.analysis.estimate import with_error
+from crackfront.analysis.estimate import REACH, with_error
 from crackfront.core.arrays import Array
 from crackfront.plots.style import BLACK, COLOURS, MARKERS
 from studies.paper.checks import Check, close_to
@@ -38,7 +38,7 @@ _EXPECTATION = (
     "largest of them follows the law of the events, so that the exponent of all patches may lie "
     "between tau and 2 tau - 1; longer springs, with more patches an event, were not measured."
 )
-"""Where the expectations come from, and why the exponent of patches may differ."""
+"""Source of the expectations, and why the exponent of patches may differ."""
 
 
 def event_law(record: EventRecord) -> JointPowerLaw:
@@ -91,14 +91,11 @@ def _slope(abscissa: Array, ordinate: Array, error: Array | None = None) -> Slop
     """Line of least squares; without errors they follow from the scatter."""
     weights = {"cov": True} if error is None else {"w": 1 / error, "cov": "unscaled"}
     (slope, level), covariance = np.polyfit(abscissa, ordinate, 1, **weights)
-    return Slope(float(slope), float(_NORMAL * math.sqrt(covariance[0, 0])), float(level))
+    return Slope(float(slope), float(REACH * math.sqrt(covariance[0, 0])), float(level))
 
 
 _N_BOOTSTRAP = 200
 """Samples of a bootstrap, enough for a standard error within 5%."""
-
-_NORMAL = 1.96
-"""Half of the 95% interval of a normal distribution, in standard errors."""
 
 
 def event_checks(record: EventRecord) -> Iterator[Check]:
@@ -155,7 +152,7 @@ def _law_checks(record: EventRecord) -> Iterator[Check]:
         1 + growth * (extent.exponent - 1),
         growth,
         f"{extent.n_value.sum()} events wider than {extent.smallest ** (1 / growth):.2g}; one fit, "
-        f"as that of the areas, to extents to the power {growth:g}",
+        f"as for the areas, to extents to the power {growth:g}",
         growth * extent.scatter,
         growth * extent.shift,
     )

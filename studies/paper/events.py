@@ -16,9 +16,10 @@ from crackfront.core.arrays import Array
 from crackfront.core.variables import variable
 from crackfront.surfaces.instabilities import resolved_motion, swept_areas, swept_clusters
 from crackfront.validation import Positive
-from studies.paper.figure import Integers, Progress
+from studies.paper.figure import Integers
 from studies.paper.rough import surface_means
 from studies.paper.straight import StraightParameters
+from studies.progress import Progress
 
 _SPRING, _EVENT, _PATCH = "spring", "event", "patch"
 

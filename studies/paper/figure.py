@@ -1,4 +1,4 @@
-"""What a figure of the paper is, and where it is found by its name.
+"""What a figure of the paper is, and how its name leads to its module.
 
 To add one, write a file here that ends in `FIGURE = Figure(...)`, named as its configuration in
 config/figures with _ for -: parameters, computation, checks and drawing stand in it, in this order.
@@ -31,9 +31,6 @@ if TYPE_CHECKING:
 
 Integers = NDArray[np.int64]
 
-Progress = Callable[[str], None]
-"""Called with a line when a part of a computation is done."""
-
 
 @dataclass(frozen=True, slots=True)
 class Figure:
@@ -59,7 +56,7 @@ class Figure:
 
 
 def values_of(source: Any, *names: str) -> dict[str, Any]:
-    """Attributes of an object by their names; all fields of a dataclass where none is given."""
+    """Attributes of an object by their names; all fields of a dataclass by default."""
     return {
         name: getattr(source, name) for name in names or [field.name for field in fields(source)]
     }

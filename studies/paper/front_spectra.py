@@ -31,7 +31,7 @@ class RoughnessRecord:
     larkin_length: Array = variable("Larkin length", LATERAL, _DISORDER)
     radius: Array = variable("mean radius of the fronts", LATERAL, _DISORDER)
     ring_stiffness: Array = variable(
-        "stiffness of the circle, a dG/da; that of mode n is larger by n", ADHESION, _DISORDER
+        "stiffness of the circle, a dG/da; mode n is stiffer by n", ADHESION, _DISORDER
     )
     longest: Array = variable("longest wavelength of the fit", LATERAL, _DISORDER)
     shortest: Array = variable("shortest wavelength of the fit", LATERAL, _DISORDER)

@@ -23,9 +23,10 @@ from crackfront.plots.style import COLUMN, VERMILION, blank_figure, house_style
 from crackfront.sweep.section import Section, section_error
 from crackfront.validation import Positive
 from studies.paper.checks import Check, close_to
-from studies.paper.drawing import BRANCHES, DOTTED, draw_jump, write_beside
-from studies.paper.figure import Figure, Integers, Progress, values_of
+from studies.paper.drawing import BRANCHES, DOTTED, draw_jump, write_next_to
+from studies.paper.figure import Figure, Integers, values_of
 from studies.paper.rings import INNERMOST, circle_steps
+from studies.progress import Progress
 
 _STATE = "state"
 
@@ -125,7 +126,7 @@ def smooth_loop_checks(loop: SmoothLoop) -> tuple[Check, ...]:
 
 
 _LOWEST = -0.1
-"""Where the ordinate begins (Units: reduced lateral length)."""
+"""Lower end of the ordinate (Units: reduced lateral length)."""
 
 
 def smooth_loop_figure(loop: SmoothLoop) -> Drawing:
@@ -149,7 +150,7 @@ def smooth_loop_figure(loop: SmoothLoop) -> Drawing:
         axes.plot([loop.force[lowest]] * 2, [_LOWEST, loop.radius[lowest]], color="0.3", **DOTTED)
         axes.plot(loop.force[lowest], loop.radius[lowest], "o", color=VERMILION, ms=3.6, zorder=5)
         label = "pull-off force,\n" r"$-\frac{3}{2}\,\pi w_\mathrm{retr}R$"
-        write_beside(axes, label, (loop.force[lowest], 0.0), (4, 0))
+        write_next_to(axes, label, (loop.force[lowest], 0.0), (4, 0))
         axes.set(xlim=(1.12 * float(np.min(loop.force)), None), ylim=(_LOWEST, None))
         axes.set(xlabel=FORCE_LABEL, ylabel=RADIUS_LABEL)
         figure.legend(loc="outside upper center")
@@ -160,7 +161,7 @@ def _draw_jump(axes: Axes, direction: int, radius: float, force: float, colour: 
     """Thin dashed arrow between no contact and the first or last state."""
     start, end = ((0.0, 0.0), (force, radius))[::direction]
     draw_jump(axes, start, end, colour, linewidth=0.7, mutation_scale=6, linestyle=(0, (4, 2)))
-    write_beside(
+    write_next_to(
         axes,
         "jump into\ncontact" if direction > 0 else "jump out\nof contact",
         (force / 2, radius / 2),

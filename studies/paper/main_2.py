@@ -22,9 +22,10 @@ from crackfront.plots import parts, style
 from crackfront.sweep.section import Section, section_error
 from crackfront.validation import Count, Positive
 from studies.paper.checks import Check, close_to
-from studies.paper.drawing import BRANCHES, write_beside
-from studies.paper.figure import Figure, Integers, Progress, values_of
+from studies.paper.drawing import BRANCHES, write_next_to
+from studies.paper.figure import Figure, Integers, values_of
 from studies.paper.rings import INNERMOST, Rings, first_stops, folds, steady_stiffness
+from studies.progress import Progress
 
 _STATE, _LOOP, _CASE = "state", "loop", "case"
 
@@ -233,7 +234,7 @@ def _case_checks(loops: RingLoops) -> Iterator[Check]:
 
 
 _COLOURS = ({1: style.BLUE, -1: style.VERMILION}, {1: style.SKY, -1: style.ORANGE})
-"""Of both branches, dark for the long and light for the short rings."""
+"""Colours of both branches, dark for the long and light for the short rings."""
 
 _REACH = 2.2
 """Half width of the cross-section (Units: reduced lateral length)."""
@@ -308,7 +309,7 @@ def _draw_release(axes: Axes, loops: RingLoops, index: int, limits: tuple[float,
         level = 1 - direction * loops.amplitude
         axes.axhline(level, color="0.3", linewidth=0.6, dashes=(4, 2), zorder=1)
         label, below = rf"$w_\mathrm{{{short}}}$", "top" if direction > 0 else "bottom"
-        write_beside(axes, label, (limits[1], level), (-3, -3 * direction), ha="right", va=below)
+        write_next_to(axes, label, (limits[1], level), (-3, -3 * direction), ha="right", va=below)
         if index == 0:
             contact = loops.radius_at_zero(0, direction)
             place = contact, float(jkr.apparent_work_of_adhesion(contact, 0.0))
@@ -366,7 +367,7 @@ def _draw_state(
     colour = _COLOURS[0][direction]
     axes.plot(*place, "o", color=colour, markersize=3, zorder=5)
     letter, middle = "A" if direction > 0 else "B", {"ha": "center", "va": "center"}
-    write_beside(axes, letter, place, aside, color=colour, fontweight="bold", **middle)
+    write_next_to(axes, letter, place, aside, color=colour, fontweight="bold", **middle)
 
 
 def _draw_branch(
@@ -385,9 +386,9 @@ def _draw_branch(
     radius, penetration = loops.radius[branch], loops.penetration[branch]
     starts = np.flatnonzero(loops.jump[branch])
     pieces = zip(np.split(radius, starts), np.split(penetration, starts), strict=True)
-    for number, (held, load) in enumerate(piece for piece in pieces if piece[0].size):
+    for number, (pinned, load) in enumerate(piece for piece in pieces if piece[0].size):
         name = label if number == 0 else None
-        axes.plot(*curve(held, load), color=colour, linewidth=1.4, label=name)
+        axes.plot(*curve(pinned, load), color=colour, linewidth=1.4, label=name)
     jumps = list(zip(np.r_[0.0, radius][starts], radius[starts], penetration[starts], strict=True))
     if direction < 0:
         jumps.append((radius[-1], 0.0, penetration[-1]))

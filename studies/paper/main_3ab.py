@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -30,9 +31,10 @@ from crackfront.surfaces.instabilities import (
 from crackfront.sweep.section import section_error
 from crackfront.validation import Count, Positive
 from studies.paper.checks import Check, close_to
-from studies.paper.drawing import BRANCHES, draw_jump, name_panels, write_beside
-from studies.paper.figure import Figure, Integers, Progress
+from studies.paper.drawing import BRANCHES, draw_jump, name_panels, write_next_to
+from studies.paper.figure import Figure, Integers
 from studies.paper.rough import STRONG, WEAK, DisorderParameters, RoughContact, flat_spectrum
+from studies.progress import Progress
 
 _DISORDER, _EVENT, _ANGLE, _STATE = "disorder", "instability", "angle", "state"
 
@@ -133,32 +135,19 @@ def instability_record(parameters: InstabilityParameters, progress: Progress) ->
         progress(f"retraction, {name} disorder: {len(retractions[-1].jumps)} instabilities")
     travel = parameters.travel * parameters.short_cutoff
     correlation = flat_spectrum(parameters.short_cutoff).correlation_length
-    instabilities = [
-        measured_instabilities(branch.jumps, branch.contact.field, travel) for branch in retractions
-    ]
-
-    def retraction_values(name: str) -> Array:
-        return np.concatenate([getattr(instability, name) for instability in instabilities])
-
+    rms = [contact.w_rms for contact in contacts]
     states = [branch.states for branch in (approach, retractions[STRONG])]
     penetration, radius, force = np.concatenate(states, axis=1)
     return InstabilityRecord(
         short_cutoff=parameters.short_cutoff,
         travel=travel,
         elastic_energy=np.array([parameters.strong, parameters.weak]),
-        rms=np.array([contact.w_rms for contact in contacts]),
-        shortest=np.array(
-            [shortest_instability(correlation, contact.w_rms) for contact in contacts]
-        ),
-        **{
-            name: np.array([getattr(branch, name) for branch in retractions])
-            for name in ("work", "energy_change", "smooth_energy")
-        },
-        disorder_index=np.repeat(
-            [STRONG, WEAK], [instability.penetration.size for instability in instabilities]
-        ),
-        energy=retraction_values("dissipated_energy"),
-        **{name: retraction_values(name) for name in ("penetration", "extent", "before", "after")},
+        rms=np.array(rms),
+        shortest=np.array([shortest_instability(correlation, w_rms) for w_rms in rms]),
+        work=np.array([branch.work for branch in retractions]),
+        energy_change=np.array([branch.energy_change for branch in retractions]),
+        smooth_energy=np.array([branch.smooth_energy for branch in retractions]),
+        **_instability_values(retractions, travel),
         state_direction=np.repeat([1, -1], [branch_states.shape[1] for branch_states in states]),
         state_penetration=penetration,
         state_radius=radius,
@@ -166,17 +155,40 @@ def instability_record(parameters: InstabilityParameters, progress: Progress) ->
     )
 
 
+def _instability_values(retractions: Sequence[_Branch], travel: float) -> dict[str, Any]:
+    """Instabilities of both retractions, the stronger disorder first."""
+    instabilities = [
+        measured_instabilities(branch.jumps, branch.contact.field, travel) for branch in retractions
+    ]
+    sizes = [instability.penetration.size for instability in instabilities]
+
+    def values(name: str) -> Array:
+        return np.concatenate([getattr(instability, name) for instability in instabilities])
+
+    return {
+        "disorder_index": np.repeat([STRONG, WEAK], sizes),
+        "penetration": values("penetration"),
+        "energy": values("dissipated_energy"),
+        "extent": values("extent"),
+        "before": values("before"),
+        "after": values("after"),
+    }
+
+
 def _contacts(parameters: InstabilityParameters) -> list[RoughContact]:
     """The two contacts, of one surface and as many sites each."""
-    tolerance, sites = parameters.precision / 10, parameters.least_angles
+    tolerance = parameters.precision / 10
+    energies = parameters.strong, parameters.weak
+    n_site = parameters.least_angles
     while True:
         contacts = [
-            parameters.contact(energy, tolerance, least_angles=sites)
-            for energy in (parameters.strong, parameters.weak)
+            parameters.contact(energy, tolerance, least_angles=n_site) for energy in energies
         ]
-        least, sites = sorted(contact.field.geometry.n_site for contact in contacts)
-        if least == sites:
+        n_sites = [contact.field.geometry.n_site for contact in contacts]
+        if min(n_sites) == max(n_sites):
             return contacts
+        # The contact with fewer sites is made again with as many as the other one has.
+        n_site = max(n_sites)
 
 
 def _branch(
@@ -326,7 +338,7 @@ def _draw_shortest(axes: Axes, record: InstabilityRecord, index: int) -> None:
     bar = side * _GAP + radius * np.cos(angle), radius * np.sin(angle)
     axes.plot(*bar, color=VERMILION, linewidth=2.5, solid_capstyle="butt")
     place = side * _GAP + radius * np.cos(middle), radius * np.sin(middle)
-    write_beside(axes, r"$\ell_0$", place, (6 * side, 4), ha="center", color=VERMILION)
+    write_next_to(axes, r"$\ell_0$", place, (6 * side, 4), ha="center", color=VERMILION)
 
 
 def _finish_quarters(axes: Axes, record: InstabilityRecord) -> None:
@@ -365,7 +377,7 @@ def _draw_cycle(axes: Axes, record: InstabilityRecord) -> None:
     for letter, place, aside in zip("AB", _radii_at_zero(record), ((5, -9), (-10, 4)), strict=True):
         state = float(jkr.force(place, 0.0)), place
         axes.plot(*state, "o", color="black", markersize=2.8, zorder=5)
-        write_beside(axes, letter, state, aside, fontweight="bold")
+        write_next_to(axes, letter, state, aside, fontweight="bold")
     axes.set_xlim(1.25 * record.state_force.min(), 0.1)
     axes.set_ylim(0.0, 1.08 * record.state_radius.max())
     axes.legend(loc="lower left")

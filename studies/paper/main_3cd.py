@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Annotated
+from typing import Annotated, Literal
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -14,7 +14,7 @@ from matplotlib.patches import Rectangle
 from numpy.typing import NDArray
 from pydantic import Field
 
-from crackfront.analysis.estimate import REACH, with_error, with_interval
+from crackfront.analysis.estimate import REACH, Estimate, with_error, with_interval
 from crackfront.analysis.finding import PAPER_FACTOR
 from crackfront.analysis.law_spheres import sphere_factors
 from crackfront.analysis.steady_adhesion import steady_adhesion
@@ -22,6 +22,7 @@ from crackfront.core import jkr
 from crackfront.core.arrays import Array
 from crackfront.core.cycle.record import Recorder
 from crackfront.core.field.rays import front_adhesion
+from crackfront.core.outcome import Direction
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.core.variables import ADHESION, FORCE, LATERAL, VERTICAL, variable
@@ -34,7 +35,7 @@ from crackfront.simulate.simulation import simulation_adhesion, simulation_field
 from crackfront.validation import Positive
 from studies.paper.checks import Check, close_to
 from studies.paper.drawing import name_panels
-from studies.paper.figure import Figure, Integers, Progress, values_of
+from studies.paper.figure import Figure, Integers, values_of
 from studies.paper.rough import (
     ONE_DIGIT,
     RoughCycleParameters,
@@ -44,6 +45,7 @@ from studies.paper.rough import (
     rough_spectrum,
     whole_cycle,
 )
+from studies.progress import Progress
 
 _STATE, _ANGLE, _FRONT, _X, _Y = "state", "angle", "front", "x", "y"
 _BRANCH, _CLOSE_X, _CLOSE_Y = "branch", "close_x_point", "close_y_point"
@@ -166,35 +168,46 @@ def pinned_loop_checks(loop: PinnedLoop) -> tuple[Check, ...]:
 def _loop_checks(loop: PinnedLoop) -> tuple[Check, ...]:
     """Works of adhesion of both branches (main Fig. 3c)."""
     energy = loop.elastic_energy
-    factor = (loop.retraction - loop.approach) / (2 * energy)
-    error = math.hypot(loop.approach_error, loop.retraction_error)
     spectrum = SelfAffineSpectrum(loop.short_cutoff, loop.roll_off, loop.hurst)
     radius = (loop.lowest_radius + loop.highest_radius) / 2
     law = sphere_factors("roughness", spectrum, energy, radius)
-    numbers = (
+    error = math.hypot(loop.approach_error, loop.retraction_error)
+    factor = (loop.retraction - loop.approach) / (2 * energy)
+    remark = (
         f"k of this loop is {with_error(factor, error / (2 * energy))}, by the law at its size "
         f"{with_interval(law.both)}; tolerance: what one digit of k leaves, {ONE_DIGIT:g} e_el, "
         f"with {energy:.4f} w_int on the tile"
     )
+
+    def branch_check(
+        name: str, sign: Direction, work: float, work_error: float, by_law: Estimate[float]
+    ) -> Check:
+        law_error = math.hypot(by_law.standard_error * energy, work_error)
+        return close_to(
+            name,
+            work,
+            1 - energy + sign * PAPER_FACTOR * energy,
+            ONE_DIGIT * energy,
+            units=ADHESION,
+            remark=remark,
+            law=(1 - energy + sign * by_law.value * energy, REACH * law_error),
+        )
+
     return (
         whole_cycle(loop.status),
-        *(
-            close_to(
-                f"{name} = w_int - e_el {sign} 3 e_el (main text)",
-                adhesion,
-                1 - energy + side * PAPER_FACTOR * energy,
-                ONE_DIGIT * energy,
-                units=ADHESION,
-                remark=numbers,
-                law=(
-                    1 - energy + side * branch.factor.value * energy,
-                    REACH * math.hypot(branch.factor.standard_error * energy, numerics_error),
-                ),
-            )
-            for name, sign, side, adhesion, numerics_error, branch in (
-                ("w_appr", "-", -1, loop.approach, loop.approach_error, law.approach),
-                ("w_retr", "+", 1, loop.retraction, loop.retraction_error, law.retraction),
-            )
+        branch_check(
+            "w_appr = w_int - e_el - 3 e_el (main text)",
+            -1,
+            loop.approach,
+            loop.approach_error,
+            law.approach.factor,
+        ),
+        branch_check(
+            "w_retr = w_int - e_el + 3 e_el (main text)",
+            1,
+            loop.retraction,
+            loop.retraction_error,
+            law.retraction.factor,
         ),
         close_to(
             "the branches lie symmetrically about w_int - e_el",
@@ -209,30 +222,12 @@ def _loop_checks(loop: PinnedLoop) -> tuple[Check, ...]:
 
 def _front_checks(loop: PinnedLoop) -> tuple[Check, ...]:
     """What the fronts at b = 0 sample of the field (main Fig. 3d)."""
-    mean = 1 - loop.elastic_energy
     balance = np.mean(loop.front * (loop.front_adhesion - loop.front_release), axis=1)
     imbalance = np.max(np.abs(balance[:2] / np.mean(loop.front[:2], axis=1)))
-    checks = []
-    words = "below", "above", "at"
-    for name, word, sampled in zip(FRONTS, words, loop.front_adhesion, strict=True):
-        arcs = np.array([arc.mean() for arc in np.array_split(sampled, _N_ARC)])
-        sampled_mean, reach = float(sampled.mean()), float(3 * arcs.std(ddof=1) / math.sqrt(_N_ARC))
-        expected, passed = {
-            "below": (f"below {mean - reach:.4f}", sampled_mean < mean - reach),
-            "above": (f"above {mean + reach:.4f}", sampled_mean > mean + reach),
-            "at": (with_error(mean, reach), abs(sampled_mean - mean) <= reach),
-        }[word]
-        checks.append(
-            Check(
-                f"w_loc under the front at b = 0, {name}: {word} the mean of the field",
-                f"{expected} {ADHESION}",
-                f"{sampled_mean:.4f} {ADHESION}",
-                passed,
-                f"the mean is {mean:.4f}; three standard errors, from the means of {_N_ARC} arcs",
-            )
-        )
+    relations: tuple[Relation, ...] = ("below", "above", "at")
+    fronts = zip(FRONTS, relations, loop.front_adhesion, strict=True)
     return (
-        *checks,
+        *(_sample_check(1 - loop.elastic_energy, *front) for front in fronts),
         close_to(
             "means of a w_loc and of a G are equal on both fronts: the line's elasticity cancels",
             float(imbalance),
@@ -241,6 +236,30 @@ def _front_checks(loop: PinnedLoop) -> tuple[Check, ...]:
             units=ADHESION,
             remark="tolerance: the largest force that the numerics may leave",
         ),
+    )
+
+
+Relation = Literal["below", "above", "at"]
+"""How the mean over a front compares with the mean of the field."""
+
+
+def _sample_check(mean: float, name: str, relation: Relation, sampled: Array) -> Check:
+    """Whether a front samples works of adhesion below, above or at the mean of the field."""
+    arcs = [arc.mean() for arc in np.array_split(sampled, _N_ARC)]
+    reach = float(3 * np.std(arcs, ddof=1) / math.sqrt(_N_ARC))
+    sampled_mean = float(sampled.mean())
+    if relation == "below":
+        expected, passed = f"below {mean - reach:.4f}", sampled_mean < mean - reach
+    elif relation == "above":
+        expected, passed = f"above {mean + reach:.4f}", sampled_mean > mean + reach
+    else:
+        expected, passed = with_error(mean, reach), abs(sampled_mean - mean) <= reach
+    return Check(
+        f"w_loc under the front at b = 0, {name}: {relation} the mean of the field",
+        f"{expected} {ADHESION}",
+        f"{sampled_mean:.4f} {ADHESION}",
+        passed,
+        f"the mean is {mean:.4f}; three standard errors, from the means of {_N_ARC} arcs",
     )
 
 

@@ -27,10 +27,11 @@ from crackfront.plots.style import BLUE, PAGE, VERMILION, blank_figure, explain,
 from crackfront.sweep.section import Section, section_error
 from crackfront.validation import Count, Fraction, Positive, Seed
 from studies.paper.checks import Check, close_to
-from studies.paper.drawing import DOTTED, write_beside
-from studies.paper.figure import Figure, Integers, Progress
+from studies.paper.drawing import DOTTED, write_next_to
+from studies.paper.figure import Figure, Integers
 from studies.paper.rough import rough_spectrum
 from studies.paper.tile_sizes import tile_mean_square
+from studies.progress import Progress
 
 _X, _Y, _BAND, _PLACE = "x", "y", "band", "coordinate"
 
@@ -297,7 +298,7 @@ def _draw_map(axes: Axes, record: Mapping, values: Array, colours: str, label: s
         axes.plot([x - reach, x + reach], [y, y], color="white", linewidth=0.8)
         axes.plot(x, y, marker, color="white", markeredgecolor="black", markersize=5)
         box = {"boxstyle": "round,pad=0.15", "facecolor": "white", "linewidth": 0, "alpha": 0.8}
-        write_beside(axes, place, (x, y), (0, 6), ha="center", color="black", bbox=box)
+        write_next_to(axes, place, (x, y), (0, 6), ha="center", color="black", bbox=box)
     axes.figure.colorbar(image, cax=axes.inset_axes((1.03, 0.0, 0.04, 1.0)), label=label)
     for axis in (axes.xaxis, axes.yaxis):
         axis.set_major_locator(MaxNLocator(4))
@@ -321,7 +322,7 @@ def _draw_profile(upper: Axes, lower: Axes, record: Mapping, place: str, colour:
         low, high = float(values.min()), float(values.max())
         axes.set_ylim(low - room * (high - low), high + room * (high - low))
     mean, end = r"$w_\mathrm{int}-e_\mathrm{el}$", (reach, record.mean)
-    write_beside(lower, mean, end, (3, 0), va="center", annotation_clip=False)
+    write_next_to(lower, mean, end, (3, 0), va="center", annotation_clip=False)
     lower.xaxis.set_major_locator(MaxNLocator(5))
     upper.tick_params(labelbottom=False)
     # As high as the axes.

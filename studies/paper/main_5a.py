@@ -6,8 +6,10 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
 from pydantic import model_validator
+from scipy.integrate import cumulative_trapezoid
 
 from crackfront.core.arrays import Array
 from crackfront.core.variables import variable
@@ -15,9 +17,10 @@ from crackfront.plots import density_axes, style
 from crackfront.sweep.section import section_error
 from crackfront.validation import Positive
 from studies.paper.checks import Check, close_to
-from studies.paper.drawing import write_beside
-from studies.paper.figure import Figure, Progress, values_of
+from studies.paper.drawing import write_next_to
+from studies.paper.figure import Figure, values_of
 from studies.paper.film import CONVERTED_LABEL, FilmDensities, FilmParameters, conformity_energy
+from studies.progress import Progress
 
 _ORDER = "order"
 
@@ -118,10 +121,9 @@ def _range_check(record: FilmScales, index: int) -> Check:
     """Share of a mean square in its range, from the density that is drawn."""
     order, q = record.order[index], record.wavevector
     shown = q ** (2 + 2 * order) * record.isotropic / (2 * np.pi)
-    steps = np.diff(np.log(q)) * (shown[1:] + shown[:-1]) / 2
-    until = np.r_[0.0, np.cumsum(steps)]
+    integral = cumulative_trapezoid(shown, np.log(q), initial=0.0)
     ends = 2 * np.pi / np.array([record.longest[index], record.shortest[index]])
-    low, high = np.interp(np.log(ends), np.log(q), until)
+    low, high = np.interp(np.log(ends), np.log(q), integral)
     return close_to(
         f"share of the mean square of order {order:g} in its range, by quadrature",
         float((high - low) / record.mean_square[index]),
@@ -133,33 +135,45 @@ def _range_check(record: FilmScales, index: int) -> Check:
 def film_scales_figure(record: FilmScales) -> Drawing:
     """Isotropic density with the dominating scales, and density of profiles below."""
     with style.house_style():
-        figure, q = style.blank_figure(style.COLUMN, 1.35 * style.COLUMN), record.wavevector
+        figure = style.blank_figure(style.COLUMN, 1.35 * style.COLUMN)
         upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(1.25, 1))
         for axes in (upper, lower):
-            density_axes.set_density_scales(axes, q)
-        upper.plot(q, record.isotropic, color=style.BLACK)
-        density_axes.draw_dominant_scales(
-            upper, record.mean_square, record.shortest, record.longest
-        )
-        place, text = 2 * np.pi / record.roll_off, f"roll-off {1e6 * record.roll_off:.3g} µm"
-        # Up to the density, so that it crosses no bar and no name.
-        ends = upper.get_ylim()[0], record.isotropic[0]
-        upper.vlines(place, *ends, color="0.6", linewidth=0.6, zorder=1)
-        look = {"xycoords": upper.get_xaxis_transform(), "ha": "right", "color": "0.35"}
-        write_beside(upper, text, (place, 0.03), (-3, 0), **look)
-        lower.plot(q, record.profile, color=style.BLACK, label="exact projection")
-        lower.plot(q, record.converted, color=style.BLUE, dashes=(4, 2), label=CONVERTED_LABEL)
-        if record.measured_wavevector.size:
-            points, density = record.measured_wavevector, record.measured_profile
-            upper.plot(points, np.pi / points * density, ".", color=style.VERMILION, markersize=2)
-            lower.plot(points, density, ".", color=style.VERMILION, markersize=2, label="measured")
-        lower.axvline(place, color="0.6", linewidth=0.6, zorder=1)
-        lower.legend(loc="upper right")
-        upper.set_ylabel(density_axes.ISOTROPIC_LABEL)
-        lower.set(xlabel=density_axes.WAVEVECTOR_LABEL, ylabel=density_axes.PROFILE_LABEL)
+            density_axes.set_density_scales(axes, record.wavevector)
+        _draw_isotropic(upper, record)
+        _draw_profiles(lower, record)
         density_axes.add_wavelengths(upper)
         style.explain(figure, "bars: scales of 80% of a mean square; grey: the roll-off")
         return figure
+
+
+def _draw_isotropic(axes: Axes, record: FilmScales) -> None:
+    """Isotropic density, the scales that dominate its mean squares, and the roll-off."""
+    axes.plot(record.wavevector, record.isotropic, color=style.BLACK)
+    scales = record.mean_square, record.shortest, record.longest
+    density_axes.draw_dominant_scales(axes, *scales)
+    place, text = 2 * np.pi / record.roll_off, f"roll-off {1e6 * record.roll_off:.3g} µm"
+    # Up to the density, so that it crosses no bar and no name.
+    ends = axes.get_ylim()[0], record.isotropic[0]
+    axes.vlines(place, *ends, color="0.6", linewidth=0.6, zorder=1)
+    look = {"xycoords": axes.get_xaxis_transform(), "ha": "right", "color": "0.35"}
+    write_next_to(axes, text, (place, 0.03), (-3, 0), **look)
+    if record.measured_wavevector.size:
+        density = np.pi / record.measured_wavevector * record.measured_profile
+        axes.plot(record.measured_wavevector, density, ".", color=style.VERMILION, markersize=2)
+    axes.set_ylabel(density_axes.ISOTROPIC_LABEL)
+
+
+def _draw_profiles(axes: Axes, record: FilmScales) -> None:
+    """Density of profiles, exact, by the paper's conversion, and measured."""
+    q = record.wavevector
+    axes.plot(q, record.profile, color=style.BLACK, label="exact projection")
+    axes.plot(q, record.converted, color=style.BLUE, dashes=(4, 2), label=CONVERTED_LABEL)
+    if record.measured_wavevector.size:
+        measured = record.measured_wavevector, record.measured_profile
+        axes.plot(*measured, ".", color=style.VERMILION, markersize=2, label="measured")
+    axes.axvline(2 * np.pi / record.roll_off, color="0.6", linewidth=0.6, zorder=1)
+    axes.legend(loc="upper right")
+    axes.set(xlabel=density_axes.WAVEVECTOR_LABEL, ylabel=density_axes.PROFILE_LABEL)
 
 
 FIGURE = Figure(

@@ -26,11 +26,12 @@ from crackfront.plots.style import BLACK, ORANGE, PAGE, blank_figure, explain, h
 from crackfront.simulate.simulation import simulation_adhesion, simulation_field
 from studies.paper.checks import Check, close_to
 from studies.paper.drawing import BRANCHES, name_panels
-from studies.paper.figure import Figure, Progress, values_of
+from studies.paper.figure import Figure, values_of
 from studies.paper.measured import ForceRadius, fitted_adhesion
 from studies.paper.nanodiamond import EVERY_WAVELENGTH, NanodiamondContact, NanodiamondParameters
 from studies.paper.perimeters import Advance, Perimeters, widest_instability
 from studies.paper.rough import ONE_DIGIT, expected_seconds, recorded
+from studies.progress import Progress
 
 _MICRO = 1e6
 """Micrometres in a metre."""

@@ -25,10 +25,11 @@ from crackfront.simulate.simulation import Simulation
 from crackfront.simulate.sphere.full_cycle import FullCycle
 from crackfront.sweep.section import section_error
 from crackfront.validation import Count, Positive
-from studies.paper.figure import Integers, Progress
+from studies.paper.figure import Integers
 from studies.paper.film import FilmSection
 from studies.paper.measured import ForceRadius, read_force_radius
 from studies.paper.rough import RoughParameters
+from studies.progress import Progress
 
 _STATE, _POINT = "state", "point"
 _LINE, _ANGLE = "line", "angle"
@@ -121,7 +122,7 @@ class NanodiamondParameters(NanodiamondCycle):
     line_step: Positive  # penetration between the shown perimeters (m)
     n_surface: Count  # surfaces whose widest instability is measured
     precision: Positive  # penetration to which it is separated from others (m)
-    factor: Positive = PAPER_FACTOR  # the k with which w_int is found from an approach
+    factor: Positive = PAPER_FACTOR  # the k with which w_int is fitted to an approach
 
     @model_validator(mode="after")
     def _shown(self) -> Self:

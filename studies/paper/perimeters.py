@@ -14,6 +14,7 @@ from crackfront.core.field.fields import Field
 from crackfront.core.geometry.sphere import ContactState
 from crackfront.core.solver.relax import Solver
 from crackfront.surfaces.instabilities import resolved_motion
+from studies.records import thinned
 
 _MOST_SITES = 4096
 """Sites of a perimeter that are kept for drawing."""
@@ -105,7 +106,7 @@ class Perimeters:
         if self._before is not None:
             self._compare(*self._before, state.penetration, front)
         if self._count % self._every == 0:
-            sites = slice(None, None, -(-front.size // _MOST_SITES))
+            sites = thinned(front.size, _MOST_SITES)
             self.angle = (2 * np.pi * np.arange(front.size) / front.size)[sites]
             self.states.append(state)
             self.lines.append(front[sites])

@@ -41,7 +41,7 @@ from crackfront.validation import Count, Fraction, Positive, Seed
 from studies.paper.checks import Check
 
 ONE_DIGIT = 0.5
-"""How far k may be from a value that is given with one digit."""
+"""How far k may be from a value that is stated with one digit."""
 
 STRONG, WEAK = 0, 1
 """Places of the two amplitudes that figures of single fronts compare."""
@@ -182,7 +182,7 @@ class RetractionParameters(DisorderParameters):
 
 @dataclass(frozen=True, slots=True)
 class RoughContact:
-    """A sphere whose roughness has a flat spectrum, and how its fronts are found."""
+    """A sphere whose roughness has a flat spectrum, and the solver of its fronts."""
 
     field: TileField
     solver: Solver

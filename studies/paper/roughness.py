@@ -12,22 +12,29 @@ from scipy.fft import rfft
 from crackfront.core.arrays import Array
 from crackfront.sweep.section import section_error
 from crackfront.validation import Count, Positive
-from studies.paper.figure import Integers, Progress
-from studies.paper.front_spectra import (
-    RoughnessRecord,
-)
+from studies.paper.figure import Integers
+from studies.paper.front_spectra import RoughnessRecord
 from studies.paper.rough import STRONG, WEAK, RetractionParameters, circle_stiffness, surface_means
 from studies.paper.straight import StraightParameters
+from studies.progress import Progress
 
 _N_LAG = 60
+"""Distances at which height differences are computed."""
 
-SPHERE, STRONG_LINE, WEAK_LINE = (STRONG, WEAK), 2, 3
-"""Places of the fronts in a record."""
+SPHERE = (STRONG, WEAK)
+"""Places of the fronts of the sphere in a record."""
+
+STRONG_LINE = 2
+"""Place of the straight front in strong disorder."""
+
+WEAK_LINE = 3
+"""Place of the straight front in weak disorder."""
 
 _PRECISION = 1e-3
-"""Load that the solver may cost a straight front, in correlation lengths of the force."""
+"""Error of the load of a straight front that the solver may leave, in correlation lengths of the
+force."""
 
-_WAY = 0.5
+_TRAVEL = 0.5
 """Share of a tile's period over which its fronts are taken."""
 
 
@@ -88,42 +95,49 @@ class _Surface:
 
 def roughness_record(parameters: RoughnessParameters, progress: Progress) -> RoughnessRecord:
     """Fronts of a retraction, and straight ones, on several surfaces or tiles."""
-    cutoff, surfaces = parameters.short_cutoff, range(parameters.n_surface)
-    spheres, lines = (parameters.strong, parameters.weak), parameters.lines
+    surfaces, lines = range(parameters.n_surface), parameters.lines
+    energies = parameters.strong, parameters.weak
     measured = []
-    for name, energy in zip(("strong", "weak"), spheres, strict=True):
+    for name, energy in zip(("strong", "weak"), energies, strict=True):
         measured.append([_surface(parameters, energy, surface) for surface in surfaces])
         progress(f"{name} disorder: {parameters.n_surface} times {parameters.n_front} fronts")
     for line in lines:
         measured.append([_tile(parameters, line, surface) for surface in surfaces])
         progress(f"straight, spring of {line.spring:g} Larkin lengths: as many fronts")
-    count = min(surface.power.size for kind in measured for surface in kind)
-    power = np.array([[surface.power[:count] for surface in kind] for kind in measured])
+    n_mode = min(surface.power.size for kind in measured for surface in kind)
+    power = np.array([[surface.power[:n_mode] for surface in kind] for kind in measured])
     means = surface_means(measured, "rms", "larkin_length", "radius", "ring_stiffness")
-    mode, circle = np.arange(1, count + 1), 2 * np.pi * means["radius"]
-    lag = np.geomspace(cutoff / 2, np.min(circle) / 2, _N_LAG)
-    units = np.array([cutoff, cutoff, *means["larkin_length"][STRONG_LINE:]])
-    longest = [parameters.strong_to, parameters.weak_to, *(line.fit_to for line in lines)]
-    shortest = [parameters.strong_from, parameters.weak_from, *(line.fit_from for line in lines)]
-    spectra = zip(power.mean(axis=1), circle, strict=True)
+    shortest, longest = _fit_range(parameters, means["larkin_length"][STRONG_LINE:])
+    mode, circumference = np.arange(1, n_mode + 1), 2 * np.pi * means["radius"]
+    lag = np.geomspace(parameters.short_cutoff / 2, np.min(circumference) / 2, _N_LAG)
+    spectra = zip(power.mean(axis=1), circumference, strict=True)
     return RoughnessRecord(
-        short_cutoff=cutoff,
-        elastic_energy=np.array([*spheres, *(line.elastic_energy for line in lines)]),
+        short_cutoff=parameters.short_cutoff,
+        elastic_energy=np.array([*energies, *(line.elastic_energy for line in lines)]),
         **means,
-        longest=units * longest,
-        shortest=units * shortest,
+        longest=longest,
+        shortest=shortest,
         mode=mode,
         power=power,
         lag=lag,
-        difference=np.array([_difference(*pair, mode, lag) for pair in spectra]),
+        difference=np.array([_difference(*spectrum, mode, lag) for spectrum in spectra]),
     )
+
+
+def _fit_range(parameters: RoughnessParameters, larkin_lengths: Array) -> tuple[Array, Array]:
+    """Shortest and longest wavelengths of the fits; Larkin lengths are of the lines."""
+    cutoff, lines = parameters.short_cutoff, parameters.lines
+    unit = np.array([cutoff, cutoff, *larkin_lengths])
+    shortest = [parameters.strong_from, parameters.weak_from, *(line.fit_from for line in lines)]
+    longest = [parameters.strong_to, parameters.weak_to, *(line.fit_to for line in lines)]
+    return unit * shortest, unit * longest
 
 
 def _tile(parameters: RoughnessParameters, line: LineParameters, realisation: int) -> _Surface:
     """Mean power of straight fronts on one tile."""
     pulled = line.front(line.spring, parameters.seed, realisation, _PRECISION)
-    way = _WAY * pulled.period * np.arange(1, parameters.n_front + 1) / parameters.n_front
-    fronts = np.stack([*pulled.moved(pulled.load + way)])
+    travel = _TRAVEL * pulled.period * np.arange(1, parameters.n_front + 1) / parameters.n_front
+    fronts = np.stack([*pulled.moved(pulled.load + travel)])
     radius = parameters.short_cutoff * pulled.field.geometry.length / (2 * np.pi)
     return _Surface(
         power=_power(fronts * parameters.short_cutoff, radius),
@@ -139,11 +153,11 @@ def _surface(parameters: RoughnessParameters, energy: float, realisation: int) -
     contact = parameters.contact(energy, 1e-6, realisation)
     ends = parameters.first_penetration, parameters.last_penetration
     loads = np.linspace(*ends, parameters.n_front)
-    front, taken = contact.touched(parameters.max_penetration), []
+    front, fronts_at_loads = contact.touched(parameters.max_penetration), []
     for load in loads:
         front = contact.moved(front, float(load), -1)
-        taken.append(front)
-    fronts = np.stack(taken)
+        fronts_at_loads.append(front)
+    fronts = np.stack(fronts_at_loads)
     circles = np.mean(fronts, axis=1)
     return _Surface(
         power=_power(fronts, circles[:, None]),

@@ -25,8 +25,9 @@ from crackfront.plots.style import PAGE, blank_figure, explain, house_style
 from crackfront.sweep.section import Section
 from studies.paper.checks import Check
 from studies.paper.drawing import name_panels
-from studies.paper.figure import Figure, Progress, values_of
+from studies.paper.figure import Figure, values_of
 from studies.paper.rough import ONE_DIGIT
+from studies.progress import Progress
 
 _SAME = 0.1
 """Relative spread up to which spectra have one k: ten times the numerical errors of k."""
@@ -179,7 +180,7 @@ def _by_law(fit: SweepFit) -> _ByLaw:
 
 
 def _law_text(measured: float, value: float, reach: float, units: str = "") -> str:
-    """The law's number where what was found agrees with it, else nothing."""
+    """The law's number if the measured one agrees with it, else nothing."""
     return f"{with_error(value, reach)}{units}" if abs(measured - value) <= reach else ""
 
 

@@ -29,10 +29,11 @@ from crackfront.plots.style import (
 from crackfront.sweep.section import section_error
 from crackfront.validation import Count, Positive, Seed
 from studies.paper.checks import Check, close_to
-from studies.paper.drawing import DOTTED, write_beside
-from studies.paper.figure import Figure, Progress, values_of
+from studies.paper.drawing import DOTTED, write_next_to
+from studies.paper.figure import Figure, values_of
 from studies.paper.film import CONVERTED_LABEL, POINTS_PER_DECADE, FilmDensities, FilmParameters
 from studies.paper.tile_sizes import tile_mean_square
+from studies.progress import Progress
 
 _MODE = "mode"
 
@@ -260,7 +261,7 @@ def _draw_end(axes: Axes, name: str, length: float, alignment: Literal["left", "
     place, inside = 2 * np.pi / length, 3 if alignment == "left" else -3
     axes.axvline(place, color=BLUE, **DOTTED)
     style = {"xycoords": axes.get_xaxis_transform(), "ha": alignment, "va": "top", "color": BLUE}
-    write_beside(axes, name, (place, 0.97), (inside, 0), **style)
+    write_next_to(axes, name, (place, 0.97), (inside, 0), **style)
 
 
 FIGURE = Figure(

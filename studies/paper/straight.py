@@ -71,7 +71,7 @@ class StraightParameters(Section):
         )
         adhesion = simulation_adhesion(simulation)
         field = simulation_field(simulation, adhesion)
-        begun = StraightFront(
+        starting = StraightFront(
             field=field,
             solver=simulation.solver,
             front=initial_front(field, adhesion, 0.0),
@@ -82,8 +82,8 @@ class StraightParameters(Section):
             force_length=depth,
         )
         loads = np.linspace(0.0, schedule.lead_in, math.ceil(schedule.lead_in / depth) + 1)
-        *_, front = begun.moved(loads)
-        return replace(begun, front=front)
+        *_, front = starting.moved(loads)
+        return replace(starting, front=front)
 
 
 @dataclass(frozen=True, slots=True)
