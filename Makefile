@@ -33,7 +33,7 @@ endif
 unexport PYTHONDONTWRITEBYTECODE
 export PYTHONNOUSERSITE := 1
 
-# Of a path with spaces or quotes: the name of its results, and itself as a shell reads it.
+# The name of the results of a path, which may have spaces or quotes, and the path for a shell.
 stem     = $(basename $(notdir $(subst $() $(),?,$(1))))
 quoted   = '$(subst ','\'',$(1))'
 
@@ -75,10 +75,10 @@ all: env  ## Run the sweep SWEEP to its fit and figures
 env: $(READY)  ## Create .venv from requirements.lock
 
 # Starts from an empty .venv, so that nothing of an older lock stays behind. The build tools come
-# first: what has no wheel is then built by locked tools, not by whatever is newest.
+# first: a package without a wheel is then built by locked tools, not by whatever is newest.
 $(PACKAGES): requirements.lock
 	@command -v "$(PYTHON)" >/dev/null || { \
-	  echo "There is no interpreter '$(PYTHON)'; install Python 3.11 or newer or name one: make env PYTHON=python3.12" >&2; exit 1; }
+	  echo "The interpreter '$(PYTHON)' is missing; install Python 3.11 or newer or name one: make env PYTHON=python3.12" >&2; exit 1; }
 	@"$(PYTHON)" -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { \
 	  echo "'$(PYTHON)' is $$("$(PYTHON)" -V 2>&1); crackfront needs Python 3.11 or newer: make env PYTHON=python3.12" >&2; exit 1; }
 	@rm -rf .venv
@@ -183,8 +183,7 @@ reproduce: env  ## For a release: numbers and figures of the pages, but for timi
 	  && cp sphx_glr_k_hurst_001.png ../../figures/hurst.png \
 	  && cp sphx_glr_l_any_surface_001.png ../../figures/any-surface.png
 
-# What has no time among its results but that of the processor: simulations on all cores and, beside
-# them, what runs on one.
+# Results without wall times, so that both may run at once: simulations on all cores, and studies on one.
 reproduce-fronts: env
 	$(MAKE) --no-print-directory law
 	$(MAKE) --no-print-directory figures SCALE=paper

@@ -100,7 +100,7 @@ html_static_path = ["_static"]
 html_theme = "pydata_sphinx_theme"
 html_title = "crackfront"
 html_show_sourcelink = False
-# Pages that stand alone have nothing to list beside them.
+# Pages that stand alone lack pages to list in a sidebar.
 html_sidebars = {name: [] for name in ("index", "tutorial")}
 html_theme_options = {
     "navigation_with_keys": False,
@@ -166,29 +166,41 @@ def _visit_displaymath(self: HTML5Translator, node: nodes.math_block) -> None:
 
 
 def _check_network(app: Sphinx, error: Exception | None) -> None:
-    """End the build where a page loads a script, a style or a picture from a network."""
-    loaded = re.compile(r"<(?:script|link|img|iframe)\b[^>]*\s(?:src|href)=\"(?:https?:)?//[^\"]*")
+    """End the build if a page loads a script, a style or a picture from a network."""
+    loading = re.compile(r"<(?:script|link|img|iframe)\b[^>]*\s(?:src|href)=\"(?:https?:)?//[^\"]*")
     for page in Path(app.outdir).rglob("*.html"):
-        if found := loaded.search(page.read_text(encoding="utf-8")):
-            raise ExtensionError(f"{page} needs a network: {found[0]}")
+        if tag := loading.search(page.read_text(encoding="utf-8")):
+            raise ExtensionError(f"{page} needs a network: {tag[0]}")
+
+
+_BOUNDS = {
+    "minimum": "at least",
+    "exclusiveMinimum": "above",
+    "maximum": "at most",
+    "exclusiveMaximum": "below",
+}
+"""Keys of JSON Schema for the range of a number, in words."""
+
+_TYPES = {"number": "number", "integer": "whole number", "string": "text", "boolean": "switch"}
+"""Types of JSON Schema, in words."""
 
 
 def _kind(schema: dict[str, Any]) -> str:
     """What a value of a configuration may be, in words."""
     if "anyOf" in schema:
-        return " or ".join(_kind(one) for one in schema["anyOf"] if one.get("type") != "null")
+        choices = [choice for choice in schema["anyOf"] if choice.get("type") != "null"]
+        return " or ".join(map(_kind, choices))
     if "$ref" in schema:
         return f"section {schema['$ref'].rpartition('/')[2].removesuffix('Section')}"
-    if "enum" in schema or "const" in schema:
-        return " or ".join(f"`{one}`" for one in schema.get("enum", [schema.get("const")]))
+    if "enum" in schema:
+        return " or ".join(f"`{value}`" for value in schema["enum"])
+    if "const" in schema:
+        return f"`{schema['const']}`"
     if schema.get("type") == "array":
         items = [schema["items"]] if "items" in schema else schema.get("prefixItems", [{}])
-        return "list of " + ", ".join(_kind(one) for one in items)
-    signs = {"minimum": "at least", "exclusiveMinimum": "above"}
-    signs |= {"maximum": "at most", "exclusiveMaximum": "below"}
-    bounds = [f"{word} {schema[key]:g}" for key, word in signs.items() if key in schema]
-    names = {"number": "number", "integer": "whole number", "string": "text", "boolean": "switch"}
-    return " ".join([names.get(schema.get("type", ""), "as the reader takes it"), *bounds])
+        return "list of " + ", ".join(map(_kind, items))
+    bounds = [f"{words} {schema[key]:g}" for key, words in _BOUNDS.items() if key in schema]
+    return " ".join([_TYPES.get(schema.get("type", ""), "as the reader takes it"), *bounds])
 
 
 _OPTIONS: dict[str, type[Options]] = {
@@ -204,30 +216,35 @@ def _meanings() -> dict[tuple[str, str], str]:
     text = (Path(__file__).parents[1] / "config/README.md").read_text(encoding="utf-8")
     # A link leads from there to a page, and here from one.
     rows = re.findall(r"^\| (\w+) \| `(\w+)` \| (.*) \|$", text, re.MULTILINE)
-    found = {(section, key): meaning.replace("(../docs/", "(../") for section, key, meaning in rows}
-    return found | {
-        (section, name): " ".join(str(field.description).split())
-        for section, options in _OPTIONS.items()
-        for name, field in options.model_fields.items()
-    }
-
-
-def _write_references(app: Sphinx) -> None:
-    """Write the keys of configurations and the variables of files, as the code has them."""
-    schema = Configuration.model_json_schema()
-    lines = ["# Keys of a configuration", "", "For those who write one."]
-    sections, meanings = {"file": schema} | schema["$defs"], _meanings()
+    meanings = {(section, key): text.replace("(../docs/", "(../") for section, key, text in rows}
     for section, options in _OPTIONS.items():
-        sections[f"{section}Section"]["properties"] |= {
-            name: {"default": field.default} for name, field in options.model_fields.items()
-        }
-    for name, one in sections.items():
+        for name, field in options.model_fields.items():
+            meanings[section, name] = " ".join(str(field.description).split())
+    return meanings
+
+
+def _configuration_page() -> str:
+    """Keys of configurations, as the code has them."""
+    schema = Configuration.model_json_schema()
+    sections = {"file": schema} | schema["$defs"]
+    for section, options in _OPTIONS.items():
+        for name, field in options.model_fields.items():
+            sections[f"{section}Section"]["properties"][name] = {"default": field.default}
+    meanings = _meanings()
+    lines = ["# Keys of a configuration", "", "For those who write one."]
+    for name, section_schema in sections.items():
         section = name.removesuffix("Section")
-        lines += ["", f"## {section.capitalize()}", "", one["description"], ""]
+        lines += ["", f"## {section.capitalize()}", "", section_schema["description"], ""]
         lines += ["| key | meaning and unit | value | default |", "|---|---|---|---|"]
-        for key, value in one["properties"].items():
-            default = "required" if key in one.get("required", ()) else f"`{value.get('default')}`"
+        required = section_schema.get("required", ())
+        for key, value in section_schema["properties"].items():
+            default = "required" if key in required else f"`{value.get('default')}`"
             lines.append(f"| `{key}` | {meanings[section, key]} | {_kind(value)} | {default} |")
+    return "\n".join(lines) + "\n"
+
+
+def _variables_page() -> str:
+    """Variables of files and of JSON, as the code has them."""
     files = {
         "A simulation in `hysteresis.nc`": variables(SweepRow),
         "A curve of a sphere": variables(ContactState),
@@ -236,24 +253,24 @@ def _write_references(app: Sphinx) -> None:
         # Its arrays, which have an entry for each row of the recording, are not printed.
         "`crackfront loop --json`": [item for item in variables(MeasuredLoop) if not item.dims],
     }
-    tables = ["# Variables of files and of JSON", "", "For those who read one of them.", ""]
-    tables += ["What is said of a file's origin stands in `crackfront.simulate.provenance`."]
-    tables += ["In JSON a number with an interval has `value`, `standard_error`, `low` and `high`."]
+    lines = ["# Variables of files and of JSON", "", "For those who read one of them.", ""]
+    lines += ["What is said of a file's origin stands in `crackfront.simulate.provenance`."]
+    lines += ["In JSON a number with an interval has `value`, `standard_error`, `low` and `high`."]
     for name, listed in files.items():
-        tables += [
-            "",
-            f"## {name}",
-            "",
-            "| variable | dimensions | unit | what |",
-            "|---|---|---|---|",
-        ]
+        lines += ["", f"## {name}", ""]
+        lines += ["| variable | dimensions | unit | what |", "|---|---|---|---|"]
         for item in listed:
             dims = ", ".join(item.dims)
-            tables.append(f"| `{item.name}` | {dims} | {item.units} | {item.long_name} |")
+            lines.append(f"| `{item.name}` | {dims} | {item.units} | {item.long_name} |")
+    return "\n".join(lines) + "\n"
+
+
+def _write_references(app: Sphinx) -> None:
+    """Write the pages of the keys of configurations and of the variables of files."""
     folder = Path(app.srcdir) / "api"
     folder.mkdir(exist_ok=True)
-    for name, text in {"configuration": lines, "variables": tables}.items():
-        (folder / f"{name}.md").write_text("\n".join(text) + "\n", encoding="utf-8")
+    (folder / "configuration.md").write_text(_configuration_page(), encoding="utf-8")
+    (folder / "variables.md").write_text(_variables_page(), encoding="utf-8")
 
 
 def setup(app: Sphinx) -> None:

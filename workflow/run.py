@@ -16,11 +16,11 @@ from typing import TextIO
 
 def ensure_cache() -> None:
     """Name a folder for temporary files as the cache if the user's cannot be written."""
-    with contextlib.suppress(RuntimeError):  # of a user that has neither HOME nor a name
+    with contextlib.suppress(RuntimeError):  # a user may have neither HOME nor a name
         home = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
         if _is_writable(Path(home, "snakemake")):
             return
-    # Where `crackfront` keeps its kernels in this case. Nobody else may have made it.
+    # `crackfront` keeps its kernels here in this case. Nobody else may have made the folder.
     folder = Path(tempfile.gettempdir(), f"crackfront-{os.geteuid()}")
     if not _is_writable(folder) or folder.is_symlink() or folder.stat().st_uid != os.geteuid():
         sys.exit("No folder for caches can be written; set XDG_CACHE_HOME to one")

@@ -80,7 +80,7 @@ def coefficients_part(law: Law) -> str:
     exponent, error = law.exponent
     text = (
         f"The measurements have s from {law.disorder[0]:.2g} to {law.disorder[1]:.2g} and g up to "
-        f"{law.size[1]:.3g}; the fit begins at g = {law.size[0]:g}. For g above 1, the "
+        f"{law.size[1]:.3g}; the fit begins at g = {law.size[0]:g}. Where g is above 1, the "
         f"measured k differ from the law by {law.rms:.1%} rms and by {law.worst:.1%} at most. The "
         "part of this that scatter and numerics do not explain is the error of the model: "
         f"{law.model_factor:.1%} of k, and {law.model_length:.1%} of g. If the exponent 1 - zeta "

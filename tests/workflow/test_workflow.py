@@ -479,7 +479,7 @@ def test_a_configuration_that_snakemake_reads_as_no_text_is_refused(tmp_path, na
     ("name", "hurst", "settings", "sentence"),
     [
         ("sweep", 1.8, (), "spectra[1]: hurst is 1.8; it must"),
-        ("sweep", 0.8, ("rank=2",), "--config knows no rank; its keys are sweep (a file)"),
+        ("sweep", 0.8, ("rank=2",), "unknown key of --config: rank; its keys are sweep (a file)"),
         ("a; rm -rf b", 0.8, (), "the results are named after 'a; rm -rf b.yaml'"),
         ("sweep", 0.8, ("scale=coarse",), "scale is 'coarse'; choose one of quick, paper"),
     ],

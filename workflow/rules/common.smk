@@ -37,7 +37,7 @@ from studies.paper.figure import (
 unknown = set(config) - {"sweep", "ranks", "block", "scale", "validation"}
 if unknown:
     raise WorkflowError(
-        f"--config knows no {', '.join(sorted(unknown))}; its keys are sweep "
+        f"unknown key of --config: {', '.join(sorted(unknown))}; its keys are sweep "
         "(a file), ranks, block (realisations of a job), scale (of the paper's figures), and "
         "validation (a file)"
     )
@@ -126,7 +126,7 @@ def importable(path):
 CRACKFRONT = command("crackfront")
 PYTHON = command("python")
 STUDIES = importable(BASE) + PYTHON + " -m studies"
-# Where the output of a command goes: to the log and the user, or only errors to the user as well;
+# Targets of the output of a command: the log and the user, or only errors to the user as well;
 # such a command begins with a new log.
 LOGGED = " > >(trap '' INT TERM HUP; exec tee {log:q}) 2>&1"
 TO_LOG = " >> {log:q} 2> >(trap '' INT TERM HUP; exec tee --append {log:q} >&2)"
