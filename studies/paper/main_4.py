@@ -165,7 +165,7 @@ def _bands(heights: Array, tile: AdhesionMap, spectrum: SelfAffineSpectrum) -> l
         inside = (wavevector > low) & (wavevector <= high * (1 + 1e-12))
         correlation = _correlation(heights_modes[inside], adhesion_modes[inside])
         middle = 2 * np.pi / math.sqrt(low * high)
-        bands.append(_Band(middle, np.count_nonzero(inside), correlation))
+        bands.append(_Band(middle, int(np.count_nonzero(inside)), correlation))
     return bands
 
 
