@@ -1,6 +1,6 @@
 r"""Forces of the crack front's model on the edges of contacts by boundary elements.
 
-Where both models agreed, these would be in equilibrium,
+If both models agreed, these would be in equilibrium,
 
 .. math:: w_{loc} - G_{JKR} = w_{int} (-\Delta_\\theta)^{1/2} a / a .
 """
