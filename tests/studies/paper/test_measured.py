@@ -47,6 +47,30 @@ def test_wrong_points_are_refused_with_their_line(tmp_path, read, rows, sentence
         read(written(tmp_path, "\n".join(rows)))
 
 
+def test_points_may_have_any_separator_and_any_unit_of_their_dimension(tmp_path):
+    expected = read_force_radius(written(tmp_path, "\n".join(GOOD)))
+    rows = ["# rig 1", "radius [nm];force / uN;branch", "70000;-100;approach"]
+    rows += ["90000;100;approach", "110000;500;approach"]
+    points = read_force_radius(written(tmp_path, "\n".join(rows)))
+    np.testing.assert_allclose(points.force, expected.force, rtol=1e-12)
+    np.testing.assert_allclose(points.radius, expected.radius, rtol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("header", "key"),
+    [
+        ("force,radius (um),branch", "force lacks a unit"),
+        ("force (kg),radius (um),branch", "kg"),
+        ("force (mN),branch", "column radius is missing"),
+        ("force (mN),radius (um),radius (nm),branch", "column radius stands twice"),
+    ],
+)
+def test_headers_without_a_column_or_its_unit_are_named(tmp_path, header, key):
+    cells = ["1"] * header.count(",")
+    with pytest.raises(PydanticCustomError, match=key):
+        read_force_radius(written(tmp_path, f"{header}\n{','.join(cells)},approach"))
+
+
 def synthetic(rng, noise):
     """An approach of k = 3 on a film of e_el = 11.1 mJ/m2 in SI units."""
     radius = np.linspace(60e-6, 130e-6, 30)
