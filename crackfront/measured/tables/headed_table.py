@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import itertools
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -18,7 +18,10 @@ from crackfront.measured.tables.headings import (
     headings_with_units,
 )
 from crackfront.measured.tables.number_cells import (
+    COMMENT,
     cells_between,
+    commented_row_error,
+    is_commented_row,
     is_number,
     is_without_value,
     without_quoted,
@@ -30,8 +33,6 @@ _SEPARATORS = ("\t", ";", ",", None)
 
 _BLANKS = (r"\s{2,}", r"\s+")
 """Blanks between headings, which may have single blanks in them."""
-
-_COMMENT = "#"
 
 _SEPARATOR_LINE = re.compile(r'"?sep=([\t;,])"?\s*', re.IGNORECASE)
 """First line by which a file tells Excel its separator."""
@@ -58,8 +59,8 @@ def table_of_numbers(path: Path) -> Table:
     Raises
     ------
     ValueError
-        If the file is not a text or lacks such a row, a row has more cells than headings, or a
-        quote is not closed.
+        If the file is not a text or lacks such a row, a row has more cells than headings or alone
+        fewer, a comment is a row of numbers, or a quote is not closed.
     OSError
         If the file cannot be opened.
     """
@@ -74,7 +75,9 @@ def table_of_numbers(path: Path) -> Table:
         named = _names(lines[filled[place - 2]], separator, len(names))
         if len(named) == len(names):
             headings = headings_with_units(named, names)
-    return _table(path, _rows(path, lines, first, separator), separator, headings)
+    rows = list(_rows(path, lines, first, separator))
+    _check_rows(path, rows, separator, len(headings))
+    return _table(path, rows, separator, headings)
 
 
 def table_of_texts(path: Path) -> Table:
@@ -104,7 +107,7 @@ def table_of_texts(path: Path) -> Table:
     stated = _SEPARATOR_LINE.fullmatch(lines[0])
     start = 1 if stated else 0
     comments = itertools.takewhile(
-        lambda line: not line.strip() or line[0] == _COMMENT, lines[start:]
+        lambda line: not line.strip() or line[0] == COMMENT, lines[start:]
     )
     above = (*lines[:start], *comments)
     first = len(above)
@@ -125,7 +128,7 @@ def _text_lines(path: Path) -> list[str]:
 
 def _table(
     path: Path,
-    numbered_rows: Iterator[tuple[int, list[str]]],
+    numbered_rows: Iterable[tuple[int, list[str]]],
     separator: str | None,
     headings: tuple[Heading, ...],
 ) -> Table:
@@ -135,7 +138,7 @@ def _table(
     width = len(headings)
     rows, numbers = [], []
     for number, cells in numbered_rows:
-        if not any(cells) or cells[0].startswith(_COMMENT):
+        if not any(cells) or cells[0].startswith(COMMENT):
             continue
         if any(cells[width:]):
             sign = "blanks" if separator is None else repr(separator)
@@ -148,6 +151,30 @@ def _table(
         numbers.append(number)
     frame = pandas.DataFrame(rows, columns=range(width), dtype=object)
     return Table(path, (), (), headings, frame, tuple(numbers), separator)
+
+
+def _check_rows(
+    path: Path, rows: Iterable[tuple[int, list[str]]], separator: str | None, width: int
+) -> None:
+    """Raise at a comment that is a row of numbers, and at a single row with too few cells.
+
+    Several such rows, and the last one, have empty cells at their end.
+    """
+    width_above, short_row = width, None
+    for number, cells in rows:
+        if cells and cells[0].startswith(COMMENT) and is_commented_row(cells, width, separator):
+            raise commented_row_error(path, number, cells)
+        if not any(map(is_number, cells)):
+            continue
+        if short_row is not None and len(cells) >= width:
+            line, n_cell = short_row
+            raise ValueError(
+                f"{path}, line {line}: the row has {n_cell} cells and there are {width} headings; "
+                "write nan where a value is missing"
+            )
+        is_short = len(cells) < width <= width_above
+        short_row = (number, len(cells)) if is_short else None
+        width_above = len(cells)
 
 
 def _rows(

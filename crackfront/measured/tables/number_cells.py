@@ -9,6 +9,9 @@ import re
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 
+COMMENT = "#"
+"""What a comment begins with."""
+
 Splitter = Callable[[str], list[str]]
 """Splits a line into its cells."""
 
@@ -40,6 +43,49 @@ def is_number(cell: str) -> bool:
 def is_without_value(cell: str) -> bool:
     """Whether a cell is empty, or says that the value is missing, as nan or -."""
     return _WITHOUT_VALUE.fullmatch(cell) is not None
+
+
+def commented_cells(cells: Sequence[str]) -> list[str]:
+    """Cells of a comment without its sign.
+
+    Examples
+    --------
+    >>> commented_cells(["#", "1.5", "2"]), commented_cells(["#1.5", "2"])
+    (['1.5', '2'], ['1.5', '2'])
+    """
+    first = cells[0].lstrip(f"{COMMENT} ")
+    return [first, *cells[1:]] if first else list(cells[1:])
+
+
+def is_commented_row(cells: Sequence[str], width: int, separator: str | None) -> bool:
+    """Whether a comment amid rows is a row, of whose numbers the sign may replace the first.
+
+    Parameters
+    ----------
+    cells : sequence of str
+        Cells of the comment.
+    width : int
+        Cells of a row.
+    separator : str or None
+        What stands between cells; None for blanks, behind which a single number is a comment, as
+        the number of a series.
+    """
+    numbers = commented_cells(cells)
+    if not all(is_number(cell) or is_without_value(cell) for cell in numbers):
+        return False
+    if len(numbers) < 2:
+        is_row = separator is not None and len(cells) == width
+    else:
+        is_row = width - 1 <= len(numbers) <= width
+    return is_row and any(map(is_number, numbers))
+
+
+def commented_row_error(path: Path, line: int, cells: Sequence[str]) -> ValueError:
+    """Error at a row of numbers that begins as a comment."""
+    return ValueError(
+        f"{path}, line {line}: {' '.join(cells)[:40]!r} begins as a comment and continues as a row "
+        f"of numbers; write the number or nan in place of {COMMENT}, or remove the line"
+    )
 
 
 def cells_between(line: str, separator: str | None) -> list[str]:

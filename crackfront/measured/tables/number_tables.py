@@ -11,10 +11,16 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
+import numpy as np
+
 from crackfront.measured.tables.encodings import decoded
 from crackfront.measured.tables.headings import headings_above
 from crackfront.measured.tables.number_cells import (
+    COMMENT,
+    commented_cells,
+    commented_row_error,
     decimal_sign,
+    is_commented_row,
     is_number,
     is_without_value,
     splitter,
@@ -42,6 +48,9 @@ _MOST_COLUMNS = 8
 """Columns of the widest table whose headings are read; wider ones are maps."""
 
 _ADVICE = "export the scan again, or write nan where a value is missing"
+
+_UNEVEN = 0.1
+"""Departure of steps from their mean, over it, that positions above a matrix may have."""
 
 _RULE = re.compile(r"-*|n/?a|null", re.IGNORECASE)
 """Missing values that alone may be a rule below headings, or a word."""
@@ -121,8 +130,8 @@ def number_tables(path: Path) -> NumberTables | None:
     Raises
     ------
     ValueError
-        If a row is damaged, or numbers have two decimal signs; it names the line. Or if a quote is
-        not closed.
+        If a row is damaged or begins as a comment, or numbers have two decimal signs; it names the
+        line. Or if a quote is not closed.
     OSError
         If the file cannot be opened.
     """
@@ -165,8 +174,8 @@ def _kinds(table: Sequence[Sequence[str]]) -> list[_Kind]:
             kind = "numbers" if cells else "text"
         elif all(not cell or _is_value(cell) for cell in cells):
             is_below_row = place > 0 and kinds[-1] != "text"
-            is_as_wide = is_below_row and 1 < len(cells) == len(table[place - 1])
-            if is_as_wide or not all(map(_RULE.fullmatch, cells)):
+            is_as_wide = 1 < len(cells) == len(table[place - 1]) or len(cells) > _MOST_COLUMNS
+            if (is_below_row and is_as_wide) or not all(map(_RULE.fullmatch, cells)):
                 kind = "written numbers"
         kinds.append(kind)
     return kinds
@@ -261,36 +270,69 @@ def _check_rows(
     widths = [len(cells) for cells, kind in zip(table, kinds, strict=True) if kind != "text"]
     width = statistics.mode(widths)
     first = next(place for place, kind in enumerate(kinds) if kind != "text")
-    before = 0
+    width_above = 0
     for place, kind in enumerate(kinds):
         cells = table[place]
         if kind != "text":
-            if before > 1 and len(cells) != before:
+            if width_above > 1 and len(cells) != width_above:
                 raise ValueError(
                     f"{path}, line {place + 1}: the row has {len(cells)} numbers and the row above "
-                    f"has {before}; {_ADVICE}"
+                    f"has {width_above}; {_ADVICE}"
                 )
-            before = len(cells)
+            width_above = len(cells)
         elif lines[place].strip():
-            before = 0
-            wrong = _wrong_cell(cells, width if place < first else None)
-            if wrong is not None:
+            width_above = 0
+            is_head = place < first
+            if cells[0].startswith(COMMENT):
+                _check_comment(path, place, cells, width, is_head=is_head)
+            elif (wrong := _wrong_cell(cells, width, is_head=is_head)) is not None:
                 raise ValueError(
                     f"{path}, line {place + 1}: number {wrong + 1} of the row is {cells[wrong]!r}, "
                     f"which is not a number; {_ADVICE}"
                 )
 
 
-def _wrong_cell(cells: Sequence[str], width: int | None) -> int | None:
-    """Place of what is not a number in a row; None if the line is a text, comment or heading."""
+def _wrong_cell(cells: Sequence[str], width: int, *, is_head: bool) -> int | None:
+    """Place of what is not a number in a row; None if the line is a text or a heading."""
     wrong = [place for place, cell in enumerate(cells) if cell and not _is_value(cell)]
-    if not wrong or cells[0].startswith("#") or 2 * len(wrong) > len(cells):
+    if not wrong:
         return None
-    if width is not None:
-        has_words = any(any(map(str.isalpha, cells[place])) for place in wrong)
-        if len(cells) != width or (has_words and 4 * len(wrong) > len(cells)):
-            return None
+    has_words = any(_has_letter(cells[place]) for place in wrong)
+    if 2 * len(wrong) > len(cells):
+        has_numbers = any(map(is_number, cells))
+        is_row = has_numbers and not has_words if is_head else has_numbers or not has_words
+        return wrong[0] if is_row and len(cells) == width > _MOST_COLUMNS else None
+    if is_head and (len(cells) != width or (has_words and 4 * len(wrong) > len(cells))):
+        return None
     return wrong[0]
+
+
+def _check_comment(
+    path: Path, place: int, cells: Sequence[str], width: int, *, is_head: bool
+) -> None:
+    """Raise if a comment is a row of numbers; above a matrix it may be one of equal steps."""
+    numbers = commented_cells(cells)
+    if width <= _MOST_COLUMNS:
+        is_row = not is_head and is_commented_row(cells, width, None)
+    else:
+        is_row = width - 1 <= len(numbers) <= width
+        is_row = is_row and all(_is_value(cell) or not _has_letter(cell) for cell in numbers)
+        if is_head:
+            is_row = is_row and any(map(is_number, numbers)) and not _has_equal_steps(numbers)
+    if is_row:
+        raise commented_row_error(path, place + 1, cells)
+
+
+def _has_letter(cell: str) -> bool:
+    return any(map(str.isalpha, cell))
+
+
+def _has_equal_steps(cells: Sequence[str]) -> bool:
+    """Whether numbers ascend or descend by about equal steps, as positions do."""
+    if not all(map(_is_float, cells)):
+        return False
+    steps = np.diff(np.array(cells, dtype=float))
+    return bool(np.all(np.abs(steps - np.mean(steps)) < _UNEVEN * np.abs(np.mean(steps))))
 
 
 def _without_counts(cells: DataFrame) -> DataFrame:

@@ -184,3 +184,40 @@ def test_a_compressed_table_is_named_with_the_remedy(tmp_path):
     path.write_bytes(gzip.compress(b"Force (uN),Radius (um)\n1,2\n"))
     with pytest.raises(ValueError, match=r"compressed; unpack it.*rig\.csv\.gz"):
         read_recording(path, {}, {})
+
+
+@pytest.mark.parametrize("separator", [" ", ",", ";", "\t"])
+@pytest.mark.parametrize("place", [1, 3, 5])
+@pytest.mark.parametrize(
+    "damage",
+    [
+        lambda row: ["#", *row[1:]],
+        lambda row: [f"#{row[0]}", *row[1:]],
+        lambda row: ["%", *row[1:]],
+        lambda row: [";;", *row[1:]],
+    ],
+    ids=["comment for a number", "comment", "%", ";"],
+)
+def test_a_row_of_a_loop_is_never_dropped_as_a_comment(read, separator, place, damage):
+    rows = [["Force_uN", "Radius_um", "Displacement_nm"], *([f"{n}.5"] * 3 for n in range(5))]
+    rows[place] = damage(rows[place])
+    with pytest.raises(ValueError, match=rf"rig\.csv, line {place + 1}: .*(nan|row|heading)"):
+        read("".join(f"{separator.join(row)}\n" for row in rows))
+
+
+def test_a_sign_for_the_first_of_two_numbers_is_an_error(read):
+    with pytest.raises(ValueError, match=r"rig\.csv, line 3: .*nan"):
+        read("Force_uN,Radius_um\n1,2\n#,3\n3,4\n")
+
+
+@pytest.mark.parametrize("separator", [" ", ",", ";", "\t"])
+def test_a_number_that_a_single_row_lacks_never_shifts_its_columns(read, separator):
+    rows = [["Force_uN", "Radius_um", "Displacement_nm"], *([f"{n}.5"] * 3 for n in range(5))]
+    del rows[3][0]
+    with pytest.raises(ValueError, match=r"rig\.csv, line 4: .*2 cells.*write nan"):
+        read("".join(f"{separator.join(row)}\n" for row in rows))
+
+
+def test_rows_out_of_contact_may_end_before_their_last_column(read):
+    recording = read("Force_uN,Displacement_nm,Radius_um\n1,2,3\n2,3\n3,4\n4,5,6\n5,6\n")
+    assert np.isnan(recording.radius).tolist() == [False, True, True, False, True]
