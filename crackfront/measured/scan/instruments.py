@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import zipfile
 from dataclasses import dataclass
 from pathlib import Path
@@ -36,6 +37,9 @@ from crackfront.validation import PathName, checked_call
 
 _BEGIN = 512
 """Bytes at the beginning of a file that have its signature."""
+
+_NPY = b"\x93NUMPY"
+"""First bytes of an array that NumPy has saved."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -117,7 +121,19 @@ def _reader(path: Path) -> Any:
         return text_reader(path, text)
     if grids := netcdf_grids(path):
         return GridsReader("nc", grids)
-    return _library_reader(path)
+    with path.open("rb") as file:
+        is_array = file.read(len(_NPY)) == _NPY
+    return _array_reader(path) if is_array else _library_reader(path)
+
+
+def _array_reader(path: Path) -> Any:
+    """The library's reader of a .npy that is complete, of its content in memory.
+
+    The library leaves a file open, and takes what is missing at its end from unused memory.
+    """
+    with errors_as_sentences(path, "npy"):
+        np.load(path, mmap_mode="r", allow_pickle=False)
+        return library_part("IO.NPY").NPYReader(io.BytesIO(path.read_bytes()))
 
 
 def _library_reader(path: Path) -> Any:

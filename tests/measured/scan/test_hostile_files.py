@@ -1,9 +1,11 @@
 """Files that claim too much, or contain something else than heights."""
 
 import bz2
+import gc
 import gzip
 import lzma
 import struct
+import warnings
 import zipfile
 
 import netCDF4
@@ -171,3 +173,26 @@ def test_a_wyko_file_with_two_blocks_of_heights_says_which_is_read_and_how_to_ch
     assert second.channel.startswith("'OPD', 1 of 2")
     assert all("--channel" in scan.channel for scan in (default, second))
     np.testing.assert_allclose(second.topography.heights(), 2 * default.topography.heights())
+
+
+@pytest.mark.parametrize("n_byte", [100, 130, 20_000, 30_000])
+def test_an_array_that_ends_early_is_an_error_and_not_unused_memory(tmp_path, rng, n_byte):
+    path = tmp_path / "scan.npy"
+    np.save(path, rng.standard_normal((64, 64)))
+    path.write_bytes(path.read_bytes()[:n_byte])
+    message = refusal(path, unit="um", size="20")
+    assert "scan.npy" in message
+    assert "ends before its last number; export it" in message
+
+
+@pytest.mark.parametrize(
+    "array",
+    [np.zeros((2, 2, 2)), np.eye(8, dtype=complex), np.array([[None]]), np.zeros((0, 3))],
+)
+def test_an_array_that_is_an_error_is_closed(tmp_path, array):
+    path = tmp_path / "scan.npy"
+    np.save(path, array)
+    with warnings.catch_warnings(record=True, action="always") as caught:
+        assert "scan.npy" in refusal(path, unit="um", size="20")
+        gc.collect()
+    assert not [warning for warning in caught if warning.category is ResourceWarning]
