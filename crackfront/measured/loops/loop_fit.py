@@ -42,15 +42,17 @@ def fitted_modulus(recording: Recording, rig: Rig, rows: Branches) -> float:
 
 def best_modulus(recording: Recording, rig: Rig, rows: Branches) -> float:
     """Contact modulus as :func:`fitted_modulus` has it, of any sign."""
-    chosen = np.concatenate(rows)
-    a, force = np.asarray(recording.radius)[chosen], np.asarray(recording.force)[chosen]
-    in_contact = np.isfinite(force) & (a > 0)
-    is_approach = np.arange(chosen.size) < rows[0].size
+    radius, force = np.asarray(recording.radius), np.asarray(recording.force)
+    in_contact = np.isfinite(force) & (radius > 0)
+    approach, retraction = (branch[in_contact[branch]] for branch in rows)
+    used = np.concatenate([approach, retraction])
+    a = radius[used]
+    is_approach = np.arange(used.size) < approach.size
     adhesion = -(a**1.5)
     branches = (adhesion * is_branch for is_branch in (is_approach, ~is_approach) if any(is_branch))
-    columns = np.stack([a**3, *branches], axis=1)[in_contact]
+    columns = np.stack([a**3, *branches], axis=1)
     scale = np.max(np.abs(columns), axis=0)
-    coefficients, *_ = np.linalg.lstsq(columns / scale, force[in_contact], rcond=None)
+    coefficients, *_ = np.linalg.lstsq(columns / scale, force[used], rcond=None)
     return 0.75 * rig.radius * float(coefficients[0] / scale[0])
 
 
@@ -116,15 +118,17 @@ def _zero_by_radius(loop: CalibratedLoop, rows: Sequence[Rows]) -> float:
     with what bends in the machine: b = a^2 - sqrt(8 w a / 3) and F = a^3 - sqrt(6 w a^3).
     """
     scales, compliance = loop.scales, loop.compliance
-    chosen = np.concatenate(rows)
-    a = np.asarray(loop.recording.radius)[chosen] / scales.lateral
-    moved = np.asarray(loop.recording.displacement)[chosen] / scales.vertical
-    branch = np.repeat(np.arange(len(rows)), [part.size for part in rows])
+    recording = loop.recording
+    radius, displacement = np.asarray(recording.radius), np.asarray(recording.displacement)
+    in_contact = np.isfinite(displacement) & (radius > 0)
+    branches = [branch[in_contact[branch]] for branch in rows]
+    used = np.concatenate(branches)
+    a, moved = radius[used] / scales.lateral, displacement[used] / scales.vertical
+    number_of_branch = np.repeat(np.arange(len(branches)), [branch.size for branch in branches])
     pulled = np.sqrt(8 * a / 3) + compliance * np.sqrt(6 * a**3)
-    columns = [np.ones(a.size), *(-pulled * (branch == number) for number in range(len(rows)))]
-    in_contact = np.isfinite(moved) & (a > 0)
+    columns = [-pulled * (number_of_branch == number) for number in range(len(branches))]
     without_adhesion = moved - a**2 - compliance * a**3
     coefficients, *_ = np.linalg.lstsq(
-        np.stack(columns, axis=1)[in_contact], without_adhesion[in_contact], rcond=None
+        np.stack([np.ones(a.size), *columns], axis=1), without_adhesion, rcond=None
     )
     return float(coefficients[0]) * scales.vertical

@@ -79,3 +79,15 @@ def test_a_stray_radius_far_from_the_contact_is_not_a_contact():
 def test_energy_is_lost_also_in_rows_without_a_radius():
     result = analyse_loop(replace(WHOLE, radius=radii(seen=ROWS % 8 == 0)), RIG)
     assert result.lost_energy == pytest.approx(analyse_loop(WHOLE, RIG).lost_energy, rel=0.05)
+
+
+@pytest.mark.parametrize("noise", [-1e-6, 0.0])
+@pytest.mark.parametrize(
+    ("without", "modulus"), [("displacement", MODULUS), ("displacement", None), ("force", MODULUS)]
+)
+def test_radii_below_zero_are_rows_out_of_contact(without, modulus, noise):
+    rig, recording = Rig(RADIUS, modulus), replace(WHOLE, **{without: None})
+    absent = (WHOLE.radius == 0) | (TOUCHING[60] == ROWS)
+    noisy = replace(recording, radius=np.where(absent, noise, WHOLE.radius))
+    missing = replace(recording, radius=np.where(absent, np.nan, WHOLE.radius))
+    assert analyse_loop(noisy, rig).w_appr == analyse_loop(missing, rig).w_appr
