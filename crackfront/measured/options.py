@@ -105,8 +105,8 @@ def reading_options(
             )
     records = []
     for scan in range(n_scan):
-        of_scan = {name: values[scan % len(values)] for name, values in lists.items()}
-        records.append(checked_options(ReadingOptions, {**options, **of_scan}, prefix))
+        scan_values = {name: values[scan % len(values)] for name, values in lists.items()}
+        records.append(checked_options(ReadingOptions, {**options, **scan_values}, prefix))
     return records
 
 

@@ -15,10 +15,10 @@ from crackfront.measured.density.densities import (
     Periodogram,
     anisotropy,
     energy_share,
+    gap_weight,
     periodic_part,
     stripes,
     unevenness,
-    weight_of_gaps,
 )
 from crackfront.measured.density.gaps import Pairs, restored_periodogram, surrogate_pairs
 from crackfront.measured.density.self_affine import GAUSSIAN, Instrument, fitted_instrument
@@ -182,7 +182,7 @@ def analysed_scan(
     shortest: float | None = None,
     longest: float | None = None,
     *,
-    among_others: bool = False,
+    has_common_band: bool = False,
 ) -> Scan:
     """A measurement with its density and its trusted band.
 
@@ -192,7 +192,7 @@ def analysed_scan(
         Heights of a map or a line.
     shortest, longest : float, optional
         Ends of the band, in place of those that the density shows. (Units: m)
-    among_others : bool, optional
+    has_common_band : bool, optional
         Whether the ends are for several scans; then points and levelling may narrow the band.
 
     Returns
@@ -207,7 +207,7 @@ def analysed_scan(
         two values of the density.
     """
     pixel = max(measurement.pixels)
-    if shortest is not None and not among_others and shortest < NYQUIST * pixel * (1 - 1e-9):
+    if shortest is not None and not has_common_band and shortest < NYQUIST * pixel * (1 - 1e-9):
         raise ValueError(
             f"{measurement.path}: --shortest is {prefixed('m', shortest)}, and points at a "
             f"distance of {prefixed('m', pixel)} resolve waves from "
@@ -229,9 +229,9 @@ def analysed_scan(
     upper = list(_upper_limits(measurement, density, alternatives))
     # Points and levelling, the first limits, also narrow a band that is named for several scans.
     if shortest is not None:
-        lower = [BandLimit("shortest", "named", shortest), *(lower[:1] if among_others else ())]
+        lower = [BandLimit("shortest", "named", shortest), *(lower[:1] if has_common_band else ())]
     if longest is not None:
-        upper = [BandLimit("longest", "named", longest), *(upper[:1] if among_others else ())]
+        upper = [BandLimit("longest", "named", longest), *(upper[:1] if has_common_band else ())]
     low, high = _ends(measurement, density, lower, upper)
     stripes_share = 0.0
     if striped is not None:
@@ -262,7 +262,7 @@ def analysed_scan(
         unevenness=unevenness(measurement),
         band=band,
         profile=profiles.density().within(*band.wavelengths),
-        missing_weight=weight_of_gaps(measurement),
+        missing_weight=gap_weight(measurement),
     )
 
 

@@ -191,7 +191,7 @@ def frequencies(shape: Sequence[int], pixels: Sequence[float]) -> tuple[Array, .
     return np.ix_(*axes[:-1], rfftfreq(shape[-1], pixels[-1]))
 
 
-def weight_of_gaps(measurement: Measurement) -> float:
+def gap_weight(measurement: Measurement) -> float:
     """Part of the window's weight that lies on missing points."""
     if measurement.gaps is None:
         return 0.0
@@ -295,7 +295,8 @@ def unevenness(measurement: Measurement) -> float:
     waves = frequencies(shape, measurement.pixels)
     root = np.sqrt(np.sqrt(sum(frequency**2 for frequency in waves)))
     transform = root * rfftn(measurement.heights)
-    energy, same, every = irfftn(transform, shape) ** 2, np.ones(1), np.ones(1)
+    energy = irfftn(transform, shape) ** 2
+    within_part = within_any = np.ones(1)
     if measurement.gaps is not None:
         energy[measurement.gaps] = np.mean(energy[~measurement.gaps])
     for axis, count in enumerate(shape):
@@ -303,11 +304,11 @@ def unevenness(measurement: Measurement) -> float:
         parts = np.array_split(inner, _PARTS)
         energy = np.stack([np.mean(np.take(energy, part, axis), axis) for part in parts], axis)
         same_part, any_part = _distance_probabilities(parts, count)
-        same = np.multiply.outer(same, same_part)
-        every = np.multiply.outer(every, any_part)
+        within_part = np.multiply.outer(within_part, same_part)
+        within_any = np.multiply.outer(within_any, any_part)
     measured = float(np.var(energy, ddof=1) / np.mean(energy) ** 2 / energy.size)
     covariance = irfftn(np.abs(transform) ** 2, shape)
-    excess = np.sum((covariance / covariance.flat[0]) ** 2 * (same - every)[0])
+    excess = np.sum((covariance / covariance.flat[0]) ** 2 * (within_part - within_any)[0])
     gaussian = 2 * float(excess) / (energy.size - 1)
     counted = np.interp(measured / gaussian, _UNEVEN, (0.0, 1.0))
     return math.sqrt(counted * max(0.0, measured - gaussian))

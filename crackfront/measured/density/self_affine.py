@@ -203,8 +203,10 @@ def _minima(models: DensityModels, starts: Sequence[Array], limits: Array) -> tu
 
     def slopes(parameters: Array) -> Array:
         step = np.where(parameters + 1e-5 < limits[:, 1], 1e-5, -1e-5)
-        every = residuals(np.concatenate([parameters[None], parameters + np.diag(step)]))
-        return np.asarray(((every[1:] - every[0]) / step[:, None]).T)
+        shifted = np.concatenate([parameters[None], parameters + np.diag(step)])
+        values = residuals(shifted)
+        change = values[1:] - values[0]
+        return np.asarray((change / step[:, None]).T)
 
     def fitted(start: Array, evaluations: int) -> scipy.optimize.OptimizeResult:
         return scipy.optimize.least_squares(

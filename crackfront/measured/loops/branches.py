@@ -96,8 +96,9 @@ def branches(recording: Recording, touches: NDArray[np.bool_]) -> Branches:
     for direction, branch in ((1, approach), (-1, retraction)):
         recorded = path[branch][np.isfinite(path[branch])]
         # The median of five rows is free of their noise.
-        way = direction * scipy.ndimage.median_filter(recorded, 5, mode="nearest")
-        if way.size and float(np.max(np.maximum.accumulate(way) - way)) > _RETURN * span:
+        smooth = direction * scipy.ndimage.median_filter(recorded, 5, mode="nearest")
+        returns = np.maximum.accumulate(smooth) - smooth
+        if smooth.size and float(np.max(returns)) > _RETURN * span:
             raise ValueError(
                 "the loop turns more than once, or a column has the wrong sign; displacement and "
                 "force are positive where they press. Cut the table to one approach and one "
@@ -164,12 +165,12 @@ def steady_part(loop: CalibratedLoop, contact: Contact, touching: Branches) -> S
     counts = [rows.size for rows, touched in zip(averaged, touching, strict=True) if touched.size]
     if min(counts) < _FEWEST_ROWS:
         numbers = " and ".join(map(str, counts)) if any(counts) else "no"
-        verb, each = ("have", " each") if len(present) == 2 else ("has", "")
+        verb, per_branch = ("have", " each") if len(present) == 2 else ("has", "")
         if max(counts) >= _FEWEST_ROWS:
             advice += ", or evaluate the other branch alone by --segment"
         raise ValueError(
             f"{' and '.join(present)} {verb} {numbers} rows at contact radii {where}; "
-            f"{_FEWEST_ROWS}{each} are needed, so {advice}"
+            f"{_FEWEST_ROWS}{per_branch} are needed, so {advice}"
         )
     return SteadyPart((approach, retraction), averaged, window)
 

@@ -117,13 +117,13 @@ def _changes(
         # A true trend of either branch moves the zero; a zero by one branch alone says how far.
         for branch in filter(len, averaged):
             yield _by_zero_of_branch(loop, averaged, branch) - value
-    rig, more = loop.rig, 1 + _RIG_STEP
+    rig, raised = loop.rig, 1 + _RIG_STEP
     if rig.contact_modulus is not None and rig.modulus_error > 0:
-        stiffer = replace(rig, contact_modulus=rig.contact_modulus * more)
+        stiffer = replace(rig, contact_modulus=rig.contact_modulus * raised)
         change = _numbers(replace(loop, rig=stiffer), averaged) - value
         yield rig.modulus_error * change / _RIG_STEP
     if rig.radius_error > 0:
-        larger = replace(rig, radius=rig.radius * more)
+        larger = replace(rig, radius=rig.radius * raised)
         change = _numbers(replace(loop, rig=larger), averaged) - value
         yield rig.radius_error * change / _RIG_STEP
 

@@ -35,9 +35,13 @@ def chosen_loop(recording: Recording, number: int | None) -> Recording:
     if rows.size == 0:
         return recording
     # The median of five rows is free of their noise.
-    way = scipy.ndimage.median_filter(path[rows], 5, mode="nearest")
-    turns = _turns(way)
-    if turns.size == 2 and turns[0] < _AT_END * way.size and turns[1] > (1 - _AT_END) * way.size:
+    smooth_path = scipy.ndimage.median_filter(path[rows], 5, mode="nearest")
+    turns = _turns(smooth_path)
+    if (
+        turns.size == 2
+        and turns[0] < _AT_END * smooth_path.size
+        and turns[1] > (1 - _AT_END) * smooth_path.size
+    ):
         raise ValueError(
             "the displacement is largest at the beginning and the end, where the sphere should be "
             "away from the surface; give --invert displacement (invert='displacement')"
@@ -52,26 +56,26 @@ def chosen_loop(recording: Recording, number: int | None) -> Recording:
             f"the recording contains {loops}{chosen}; choose one, 1 to {n_loop}, by --loop "
             "(loop_number)"
         )
-    between = [_row_between(way, rows, *pair) for pair in itertools.pairwise(turns)]
+    between = [_row_between(smooth_path, rows, *pair) for pair in itertools.pairwise(turns)]
     ends = [0, *between, path.size]
     return recording.rows(slice(ends[number - 1], ends[number]))
 
 
-def _turns(way: Array) -> Rows:
+def _turns(smooth_path: Array) -> Rows:
     """Places where the mount turns, or the contact is largest; they may be the ends."""
-    lowest, span = float(np.min(way)), float(np.ptp(way))
-    padded = np.pad(way, 1, constant_values=lowest - span)
+    lowest, span = float(np.min(smooth_path)), float(np.ptp(smooth_path))
+    padded = np.pad(smooth_path, 1, constant_values=lowest - span)
     turns, _ = scipy.signal.find_peaks(padded, prominence=_PROMINENCE * span)
     return np.asarray(turns - 1)
 
 
-def _row_between(way: Array, rows: Rows, first: int, last: int) -> int:
+def _row_between(smooth_path: Array, rows: Rows, first: int, last: int) -> int:
     """Row in the middle of the time away from the surface between two turns."""
     steps = np.diff(rows[first : last + 1])
     longest = int(np.argmax(steps))
     if steps[longest] > 1:
         # Radii were recorded in contact alone, so that rows are missing between two loops.
         return int(rows[first + longest] + steps[longest] // 2)
-    low = np.min(way[first:last]) + _LOW * np.ptp(way)
-    away = first + np.flatnonzero(way[first:last] <= low)
+    low = np.min(smooth_path[first:last]) + _LOW * np.ptp(smooth_path)
+    away = first + np.flatnonzero(smooth_path[first:last] <= low)
     return int(rows[away[away.size // 2]])

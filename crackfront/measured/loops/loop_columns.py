@@ -60,14 +60,15 @@ def column_places(table: Table, named: Mapping[str, str]) -> tuple[Places, ...]:
     for name, places in candidates.items():
         if len(places) > 1:
             option = "contact-radius" if name == "radius" else name
-            both = ", ".join(repr(table.headings[place].text) for place in places)
+            headings = ", ".join(repr(table.headings[place].text) for place in places)
             raise ValueError(
-                f"{table.path} has {len(places)} columns of {name}: {both}; name one by --{option}"
+                f"{table.path} has {len(places)} columns of {name}: {headings}; name "
+                f"one by --{option}"
             )
     return ({name: place for name, [place] in candidates.items()},)
 
 
-def other_displacement(table: Table, places: Places) -> str:
+def unused_displacement(table: Table, places: Places) -> str:
     """Heading of a column that may be the displacement too, next to the one that is used."""
     for place, heading in enumerate(table.headings):
         if place not in places.values() and _is_named(

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from crackfront.core.arrays import Array
-from crackfront.measured.loops.loop_columns import Places, column_places, other_displacement
+from crackfront.measured.loops.loop_columns import Places, column_places, unused_displacement
 from crackfront.measured.loops.recording import UNITS, Recording
 from crackfront.measured.tables.headed_table import table_of_numbers
 from crackfront.measured.tables.headings import Heading, listed
@@ -131,11 +131,11 @@ def _remarks(table: Table, places: Places, n_block: int) -> tuple[str, ...]:
             "Approach and retraction stand side by side in the table and were put one below the "
             "other."
         )
-    other = other_displacement(table, places) if "displacement" in places else ""
-    if other:
+    unused = unused_displacement(table, places) if "displacement" in places else ""
+    if unused:
         used = table.headings[places["displacement"]].text
         remarks.append(
-            f"The displacement is the column {used!r}, not {other!r}; --displacement {other!r} "
+            f"The displacement is the column {used!r}, not {unused!r}; --displacement {unused!r} "
             "chooses that one."
         )
     return tuple(remarks)

@@ -79,12 +79,12 @@ def _rows_before_turn(recording: Recording, name: str, touching: Rows) -> Rows:
 
     After it an edge is pinned, and a rig may rest: a column is constant without a limit.
     """
-    other = next(
+    driving_column = next(
         column
         for column in (recording.displacement, recording.force, recording.radius)
         if column is not None and column is not getattr(recording, name)
     )
-    turn = touching[np.nanargmax(other[touching])]
+    turn = touching[np.nanargmax(driving_column[touching])]
     return touching[touching < int(turn)]
 
 

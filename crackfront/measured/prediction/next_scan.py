@@ -80,7 +80,7 @@ def measure_next(surface: Surface) -> Remark:
 
 def _larger_scans(joint: JointSpectrum) -> Iterator[_Advice]:
     """Advice on waves that are longer than the measured ones, if they matter."""
-    factor, (remaining, _) = joint.draws.factor, joint.draws.factors_with
+    factor, (remaining, _) = joint.draws.factor, joint.draws.factors_if_known
     longer = joint.shares.continued_long.value
     is_modelled = _is_modelled(joint) and longer >= joint.shares.continued / 2
     if factor <= _NARROWER * remaining and not is_modelled:
@@ -97,7 +97,7 @@ def _larger_scans(joint: JointSpectrum) -> Iterator[_Advice]:
 def _finer_scans(surface: MeasuredSurface) -> Iterator[_Advice]:
     """Advice on waves that are shorter than the measured ones, if they matter."""
     joint = surface.joint
-    factor, (_, remaining) = joint.draws.factor, joint.draws.factors_with
+    factor, (_, remaining) = joint.draws.factor, joint.draws.factors_if_known
     missing = joint.shares.missing_short
     shorter = joint.shares.continued - joint.shares.continued_long.value
     is_modelled = _is_modelled(joint) and shorter > joint.shares.continued / 2

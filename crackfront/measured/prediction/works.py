@@ -159,31 +159,35 @@ def _branch(
     def work(factor: float, at_energy: _FactorsAtEnergy) -> float:
         return at_energy.work_of_adhesion + (sign * factor - 1) * at_energy.energy
 
-    def factor_of(at_energy: _FactorsAtEnergy) -> Estimate[float]:
+    def corrected_factor(at_energy: _FactorsAtEnergy) -> Estimate[float]:
         return at_energy.corrected(getattr(at_energy.factors, name).factor)
 
-    factor = factor_of(central)
+    factor = corrected_factor(central)
     return _in_quadrature(
         work(factor.value, central),
         [work(end, central) for end in (factor.low, factor.high)],
-        *([work(factor_of(other).value, other) for other in cause] for cause in varied if cause),
+        *(
+            [work(corrected_factor(point).value, point) for point in points]
+            for points in varied
+            if points
+        ),
     )
 
 
 def _hysteresis(
-    factor_of: Callable[[_FactorsAtEnergy], Estimate[float]],
+    corrected_factor: Callable[[_FactorsAtEnergy], Estimate[float]],
     central: _FactorsAtEnergy,
     *varied: Sequence[_FactorsAtEnergy],
 ) -> Estimate[float]:
     """Hysteresis 2 k e_el, with relative errors of independent causes in quadrature."""
-    factor = factor_of(central)
+    factor = corrected_factor(central)
     return _in_quadrature(
         math.log(2 * factor.value * central.energy),
         [_log(2 * end * central.energy) for end in (factor.low, factor.high)],
         *(
-            [_log(2 * factor_of(other).value * other.energy) for other in cause]
-            for cause in varied
-            if cause
+            [_log(2 * corrected_factor(point).value * point.energy) for point in points]
+            for points in varied
+            if points
         ),
     ).each(math.exp)
 

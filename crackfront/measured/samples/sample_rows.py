@@ -76,7 +76,7 @@ def _table_rows(path: Path, names: Collection[str]) -> Iterator[SampleRow]:
     """Line and content of every row of a text with headings."""
     table = table_of_texts(path)
     where = f"{path}, line {len(table.above) + 1}"
-    columns = [_name_and_unit(each, names, where) for each in table.headings]
+    columns = [_name_and_unit(column, names, where) for column in table.headings]
     counts = Counter(name for name, _ in columns if name)
     for name, count in counts.items():
         if count > 1:
@@ -135,20 +135,20 @@ def _numbers(table: Table, rows: Sequence[dict[str, str]]) -> Iterator[tuple[int
                 yield line, name, cell
 
 
-def _name_and_unit(each: Heading, names: Collection[str], where: str) -> tuple[str, str]:
+def _name_and_unit(column: Heading, names: Collection[str], where: str) -> tuple[str, str]:
     """Name of an option and unit in a heading, or any other heading as it is.
 
     The unit must not begin with a number.
     """
-    name = re.sub(r"[\s-]+", "_", each.name.lower())
+    name = re.sub(r"[\s-]+", "_", column.name.lower())
     if name not in names:
-        return each.text, ""
-    if re.match(r"[-+.,]?\d", each.unit):
+        return column.text, ""
+    if re.match(r"[-+.,]?\d", column.unit):
         raise ValueError(
-            f"{where}: the unit of the column {each.name!r} is {each.unit!r}, which begins with a "
-            "number; write a unit alone, as in mJ/m2, and the cells in it"
+            f"{where}: the unit of the column {column.name!r} is {column.unit!r}, which begins "
+            "with a number; write a unit alone, as in mJ/m2, and the cells in it"
         )
-    return name, each.unit
+    return name, column.unit
 
 
 def _yaml_rows(path: Path, names: Collection[str]) -> Iterator[SampleRow]:
@@ -169,9 +169,11 @@ def _yaml_rows(path: Path, names: Collection[str]) -> Iterator[SampleRow]:
         # A sign that YAML does not allow, or a date or a number that cannot be read.
         raise ValueError(f"{path} is not YAML: {str(error).splitlines()[0]}; correct it") from error
     rows = content.get("samples") if isinstance(content, dict) else content
-    others = [name for name in content if name != "samples"] if isinstance(content, dict) else []
-    if rows is not None and others:
-        raise ValueError(f"{path} has {str(others[0])!r} next to samples; remove it")
+    further_keys = (
+        [name for name in content if name != "samples"] if isinstance(content, dict) else []
+    )
+    if rows is not None and further_keys:
+        raise ValueError(f"{path} has {str(further_keys[0])!r} next to samples; remove it")
     if not isinstance(rows, list) or not all(isinstance(row, dict) for row in rows):
         raise ValueError(
             f"{path} lacks a list of samples; write 'samples:' with '- sample: A' below"

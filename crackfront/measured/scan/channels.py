@@ -61,9 +61,13 @@ def channels_of(path: Path, reader: Any) -> tuple[Channel, ...]:
         default = _default(reader)
         return tuple(
             Channel(
-                each.index, each.name, _kind(each), each.nb_grid_pts or (), each.index == default
+                channel.index,
+                channel.name,
+                _kind(channel),
+                channel.nb_grid_pts or (),
+                channel.index == default,
             )
-            for each in reader.channels
+            for channel in reader.channels
         )
 
 
@@ -72,10 +76,14 @@ def _default(reader: Any) -> int | None:
     channels = reader.channels
     if reader.format() not in _BARE_ARRAYS or len(channels) < 2:
         return int(reader.default_channel.index) if channels else None
-    lengths = [each for each in channels if _kind(each) == "height"]
-    named = [each for each in lengths if _HEIGHTS.search(each.name) and not is_doubtful(each.name)]
-    of_heights = named or (lengths if reader.format() == "nc" else [])
-    return int(of_heights[0].index) if len(of_heights) == 1 else None
+    lengths = [channel for channel in channels if _kind(channel) == "height"]
+    named = [
+        channel
+        for channel in lengths
+        if _HEIGHTS.search(channel.name) and not is_doubtful(channel.name)
+    ]
+    height_channels = named or (lengths if reader.format() == "nc" else [])
+    return int(height_channels[0].index) if len(height_channels) == 1 else None
 
 
 def chosen_channel(path: Path, reader: Any, requested: str | None) -> tuple[Any, str]:
@@ -93,15 +101,15 @@ def chosen_channel(path: Path, reader: Any, requested: str | None) -> tuple[Any,
         )
     chosen = _requested(path, channels, requested)
     if chosen.quantity != "height":
-        of_heights = [each for each in channels if each.quantity == "height"]
+        height_channels = [channel for channel in channels if channel.quantity == "height"]
         raise ValueError(
             f"{path}: channel {chosen.name!r} contains {chosen.quantity}, not heights; "
-            + (_choice(of_heights) if of_heights else "export the channel of the heights")
+            + (_choice(height_channels) if height_channels else "export the channel of the heights")
         )
     several = f", {chosen.number} of {len(channels)}" if len(channels) > 1 else ""
-    [channel] = [each for each in reader.channels if each.index == chosen.number]
+    [channel] = [channel for channel in reader.channels if channel.index == chosen.number]
     n_object = _stated_by_sur(channel, "nb_objects")
-    n_heights = sum(each.quantity == "height" for each in channels)
+    n_heights = sum(channel.quantity == "height" for channel in channels)
     if n_heights > 1 and reader.format() not in _BARE_ARRAYS:
         several += f" ({n_heights} of heights; --channel chooses)"
     if n_object > 1:
@@ -112,15 +120,15 @@ def chosen_channel(path: Path, reader: Any, requested: str | None) -> tuple[Any,
 def _requested(path: Path, channels: Sequence[Channel], requested: str | None) -> Channel:
     """The channel of a name or number, or the one that is read where none is named."""
     if requested is None:
-        default = next((each for each in channels if each.is_default), None)
+        default = next((channel for channel in channels if channel.is_default), None)
         if default is None:
             raise ValueError(
                 f"{path} contains {len(channels)} arrays, and their names do not say which one has "
                 f"the heights; {_choice(channels)}"
             )
         return default
-    named = [each for each in channels if each.name == requested]
-    named = named or [each for each in channels if str(each.number) == requested]
+    named = [channel for channel in channels if channel.name == requested]
+    named = named or [channel for channel in channels if str(channel.number) == requested]
     if len(named) != 1:
         raise ValueError(
             f"{path} has {'several channels' if named else 'no channel'} {requested!r}; "
@@ -137,9 +145,9 @@ def _is_tiff(path: Path) -> bool:
 
 def _kind(channel: Any) -> str:
     """Quantity of a channel: height, phase and others."""
-    other = _OTHER_OBJECTS.get(_stated_by_sur(channel, "type"))
-    if other is not None:
-        return other
+    object_name = _OTHER_OBJECTS.get(_stated_by_sur(channel, "type"))
+    if object_name is not None:
+        return object_name
     # A reader takes any quantity over lengths for heights, and has two units for it.
     return "another quantity" if isinstance(channel.unit, tuple) else str(channel.data_kind.value)
 

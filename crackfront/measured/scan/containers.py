@@ -150,7 +150,7 @@ def contained_surfaces(path: Path) -> tuple[ContainedSurface, ...]:
         ) from error
 
 
-def surface_of(
+def chosen_surface(
     path: Path, surfaces: Sequence[ContainedSurface], requested: str | None
 ) -> ContainedSurface:
     """The surface of a name or number, or the only one of a container."""

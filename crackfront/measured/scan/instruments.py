@@ -104,7 +104,7 @@ def is_stated(path: Path, channel: str | None) -> tuple[bool, bool]:
 
 
 @silenced()
-def array_of(path: Path) -> np.ndarray[Any, Any]:
+def unscaled_array(path: Path) -> np.ndarray[Any, Any]:
     """Numbers of a file without units, as of a mask."""
     reader = _reader(path)
     channel, _ = chosen_channel(path, reader, None)
@@ -171,12 +171,12 @@ def _reader_by_suffix(path: Path) -> tuple[Any, bool]:
         begin = file.read(_BEGIN)
     module = library_part(f"IO.{name}")
     matches = {
-        each: each.can_read(begin)
-        for each in vars(module).values()
-        if getattr(each, "__module__", "") == module.__name__ and hasattr(each, "can_read")
+        reader: reader.can_read(begin)
+        for reader in vars(module).values()
+        if getattr(reader, "__module__", "") == module.__name__ and hasattr(reader, "can_read")
     }
     for match in (base.MagicMatch.YES, base.MagicMatch.MAYBE):
-        readers = [each for each in matches if matches[each] == match]
+        readers = [reader for reader in matches if matches[reader] == match]
         if len(readers) == 1:
             return readers[0], match == base.MagicMatch.YES
     return None, False

@@ -21,14 +21,14 @@ _ROUND_OFF = 1e-6
 _SHAPES = ("the mean", "the plane", "the paraboloid")
 
 
-def order_of(detrend: Detrend) -> int:
+def trend_order(detrend: Detrend) -> int:
     """Order of the polynomial that is taken off."""
     return detrend if isinstance(detrend, int) else _ORDERS[detrend]
 
 
-def taken_off(detrend: Detrend) -> str:
+def trend_name(detrend: Detrend) -> str:
     """Name of the trend, as in 'the paraboloid'."""
-    order = order_of(detrend)
+    order = trend_order(detrend)
     if detrend == "slope":
         return "the plane of least slope"
     return _SHAPES[order] if order < len(_SHAPES) else f"the polynomial of order {order}"
@@ -40,21 +40,21 @@ def levelled(heights: Array, fitted: PointMask, detrend: Detrend) -> Array:
     ValueError if these points do not determine the trend, or the heights are the trend but for
     round-off.
     """
-    n_term = math.comb(order_of(detrend) + heights.ndim, heights.ndim)
+    n_term = math.comb(trend_order(detrend) + heights.ndim, heights.ndim)
     if np.count_nonzero(fitted) < 2 * n_term:
         raise ValueError(
-            f"{np.count_nonzero(fitted)} points are left to fit {taken_off(detrend)}; mask fewer "
+            f"{np.count_nonzero(fitted)} points are left to fit {trend_name(detrend)}; mask fewer "
             "of them"
         )
     level = heights - np.mean(heights[fitted])
     if detrend == "slope":
         level -= _plane_of_least_slope(level, fitted)
     else:
-        level -= polynomial(level, fitted, order_of(detrend))
+        level -= polynomial(level, fitted, trend_order(detrend))
     level -= np.mean(level[fitted])
     if np.ptp(level[fitted]) <= _ROUND_OFF * np.ptp(heights[fitted]):
         raise ValueError(
-            f"the heights are nothing but {taken_off(detrend)} that was taken off; a smooth "
+            f"the heights are nothing but {trend_name(detrend)} that was taken off; a smooth "
             "surface lacks a spectrum"
         )
     return level

@@ -16,8 +16,8 @@ Heights = np.ma.MaskedArray[Any, Any]
 _FEWEST_MARKS = 2
 """Points of exactly one height that are marks; a single one may be a spike."""
 
-_APART = 0.5
-"""Distance of a mark from all other heights, in the span of those."""
+_GAP = 0.5
+"""Distance of a mark from the heights of the surface, over their span."""
 
 _WORTH_A_FIT = 0.02
 """The same before a tilt is subtracted; below it no tilt is fitted and nothing is a mark."""
@@ -74,7 +74,7 @@ def _marks(heights: Heights) -> list[tuple[float, PointMask]]:
             data.max(where=is_present, initial=-np.inf),
         ):
             places = is_present & (data == value)
-            if np.count_nonzero(places) >= _FEWEST_MARKS and _is_apart(
+            if np.count_nonzero(places) >= _FEWEST_MARKS and _is_mark(
                 data, is_present, places, value
             ):
                 marks.append((float(value), places))
@@ -83,22 +83,22 @@ def _marks(heights: Heights) -> list[tuple[float, PointMask]]:
     return marks
 
 
-def _is_apart(data: NDArray[Any], is_present: PointMask, places: PointMask, value: float) -> bool:
-    """Whether points of one height lie apart from all others, which are a surface."""
+def _is_mark(data: NDArray[Any], is_present: PointMask, places: PointMask, value: float) -> bool:
+    """Whether the points of one height lie far from all others, which are a surface."""
     is_rest = is_present & ~places
     low, high = data.min(where=is_rest, initial=np.inf), data.max(where=is_rest, initial=-np.inf)
     if not max(low - value, value - high) > _WORTH_A_FIT * (high - low) > 0:
         return False
     # A tilt of the sample is not roughness.
-    at = [np.nonzero(chosen) for chosen in (is_rest, places)]
-    columns = [np.column_stack([np.ones(indices[0].size), *indices]) for indices in at]
-    every = max(1, len(columns[0]) // _MOST_SAMPLES)
-    plane = np.linalg.lstsq(columns[0][::every], data[is_rest][::every])[0]
+    pixels = [np.nonzero(is_chosen) for is_chosen in (is_rest, places)]
+    columns = [np.column_stack([np.ones(indices[0].size), *indices]) for indices in pixels]
+    stride = max(1, len(columns[0]) // _MOST_SAMPLES)
+    plane = np.linalg.lstsq(columns[0][::stride], data[is_rest][::stride])[0]
     rest, marks = (
-        data[indices] - column @ plane for indices, column in zip(at, columns, strict=True)
+        data[indices] - column @ plane for indices, column in zip(pixels, columns, strict=True)
     )
     gap = max(rest.min() - marks.max(), marks.min() - rest.max())
-    return bool(gap > _APART * np.ptp(rest) and len(np.unique(data[is_rest])) >= _FEWEST_LEVELS)
+    return bool(gap > _GAP * np.ptp(rest) and len(np.unique(data[is_rest])) >= _FEWEST_LEVELS)
 
 
 def _spikes(heights: Heights) -> PointMask:
@@ -129,9 +129,9 @@ def _spikes(heights: Heights) -> PointMask:
 
 
 def _usual_step(steps: NDArray[Any], is_pair: PointMask) -> float:
-    """Rms difference of neighbours that are `both` present, or the least if most are equal."""
-    every = max(1, steps.size // _MOST_SAMPLES)
-    sample = steps[::every][is_pair[::every]]
+    """Rms difference of neighbours that are both present, or the least if most are equal."""
+    stride = max(1, steps.size // _MOST_SAMPLES)
+    sample = steps[::stride][is_pair[::stride]]
     usual = _RMS_OF_QUANTILE * float(np.quantile(sample, 0.9)) if sample.size else 0.0
     return usual or float(np.min(steps[is_pair & (steps > 0)], initial=np.inf))
 
@@ -143,7 +143,7 @@ def _neighbours(data: NDArray[Any], places: tuple[NDArray[np.int64], ...]) -> ND
     shifts = itertools.product(range(2 * reach + 1), repeat=data.ndim)
     return np.array(
         [
-            around[tuple(at + step for at, step in zip(places, shift, strict=True))]
+            around[tuple(index + step for index, step in zip(places, shift, strict=True))]
             for shift in shifts
             if any(step != reach for step in shift)
         ]

@@ -17,17 +17,17 @@ from crackfront.measured.options import ReadingOptions, Region
 from crackfront.measured.scan.containers import (
     ContainedMeasurement,
     InstrumentLength,
+    chosen_surface,
     contained_surfaces,
     stated_length,
-    surface_of,
     unpacked,
 )
-from crackfront.measured.scan.instruments import RawScan, array_of, is_stated, raw_scan
+from crackfront.measured.scan.instruments import RawScan, is_stated, raw_scan, unscaled_array
 from crackfront.measured.scan.levelling import (
     PointMask,
     levelled,
-    order_of,
-    taken_off,
+    trend_name,
+    trend_order,
 )
 from crackfront.measured.scan.library import (
     in_metres,
@@ -174,7 +174,7 @@ def _measurements(path: Path, options: ReadingOptions) -> Iterator[Measurement]:
             raise ValueError(f"{path} is not a container of surfaces; leave --surface out")
         yield _measurement(path, options)
         return
-    members = surface_of(path, surfaces, options.surface).topographies
+    members = chosen_surface(path, surfaces, options.surface).topographies
     usable: list[Measurement] = []
     unusable: list[str] = []
     with unpacked(path, members) as files:
@@ -224,13 +224,13 @@ def _measurement(
         values = levelled(np.ma.getdata(heights), fitted, options.detrend)
     except ValueError as error:
         raise ValueError(f"{path}: {error}") from error
-    periodic = raw.is_periodic and options.crop is None and not order_of(options.detrend)
+    periodic = raw.is_periodic and options.crop is None and not trend_order(options.detrend)
     level = library_scan(
         np.ma.array(values, mask=gaps), size, periodic=bool(periodic), info=raw.info
     )
     if gaps.any():
         level = interpolated(level)
-    levelling = taken_off(options.detrend)
+    levelling = trend_name(options.detrend)
     if options.mask:
         left_out = 1 - np.count_nonzero(fitted) / np.ma.count(heights)
         levelling += f" of all but {left_out:.2%} of the points"
@@ -290,9 +290,9 @@ def _used_part(
     fitted = fitted & ~impossible
     missing = float(np.mean(np.ma.getmaskarray(heights)))
     if missing > _MOST_MISSING:
-        of_them = f" ({'; '.join(sentences)})" if sentences else ""
+        reasons = f" ({'; '.join(sentences)})" if sentences else ""
         raise ValueError(
-            f"{path}: {missing:.0%} of the points are missing{of_them}; more than "
+            f"{path}: {missing:.0%} of the points are missing{reasons}; more than "
             f"{_MOST_MISSING:.0%} are too many to interpolate, so use a part with "
             "--crop, or measure again"
         )
@@ -357,7 +357,7 @@ def _masked(
         if not isinstance(mask, Path):
             is_masked[_slices(path, "mask", mask, counts, size)] = True
             continue
-        numbers = array_of(mask)
+        numbers = unscaled_array(mask)
         if numbers.shape != counts:
             mask_points, needed = (" x ".join(map(str, shape)) for shape in (numbers.shape, counts))
             raise ValueError(

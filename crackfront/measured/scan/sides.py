@@ -39,7 +39,7 @@ def units_and_sides(
     unit = _unit(path, name, channel.unit, options.unit)
     added: dict[str, Any] = {"unit": unit} if channel.unit is None else {}
     if not has_sides and size is not None and None not in size:
-        return added, _sides_with_one(path, channel, options, unit)
+        return added, _completed_sides(path, channel, options, unit)
     if not has_sides:
         if options.size is None:
             raise ValueError(f"{path} states no size of the scan; name it, as in --size 50,50")
@@ -83,10 +83,10 @@ def is_sized(channel: Any) -> bool:
     return size is not None and None not in size and len(size) == channel.dim
 
 
-def _sides_with_one(
+def _completed_sides(
     path: Path, channel: Any, options: ReadingOptions, unit: str
 ) -> tuple[float, ...]:
-    """Sides that options name of a map of which the file states one alone (Units: m).
+    """Sides of a map, named by options, whose file states a single one (Units: m).
 
     ValueError, of one sentence, where no sides are named, or others than the one that is stated.
     """

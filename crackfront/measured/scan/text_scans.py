@@ -61,8 +61,8 @@ def text_reader(path: Path, text: NumberTables) -> Any:
             points = read_points(table, kind)
             grid = Grid("default", Points(points.heights * (factor or 1.0), points.size))
             return GridsReader("xyz", [grid], unit, info)
-    for each in text.tables:
-        check_no_positions(each)
+    for matrix in text.tables:
+        check_no_positions(matrix)
     with errors_as_sentences(path, "text"):
         return library_part("IO").AscReader(io.StringIO(text.plain_text))
 

@@ -23,7 +23,7 @@ from crackfront.measured.spectrum.joint_fit import (
     INTERVAL,
     Continuation,
     Fit,
-    fit_of,
+    fit_to_states,
 )
 from crackfront.measured.spectrum.quadrature import Quadrature
 
@@ -106,11 +106,11 @@ class Draws:
         return _factor(self.mean_square(0.5))
 
     @property
-    def factors_with(self) -> tuple[float, float]:
+    def factors_if_known(self) -> tuple[float, float]:
         """As :attr:`factor`, if waves longer or shorter than the measured ones were known."""
-        return self._factor_with(self.outside[0]), self._factor_with(self.outside[1])
+        return self._factor_if_known(self.outside[0]), self._factor_if_known(self.outside[1])
 
-    def _factor_with(self, part: Array) -> float:
+    def _factor_if_known(self, part: Array) -> float:
         """As :attr:`factor`, if a part of the mean square of half-derivatives were known."""
         exact = float(quantiles(part, self.weight, 0.5))
         return _factor(self.estimate(self.estimated[ORDERS.index(0.5)] - part + exact))
@@ -278,7 +278,7 @@ def batches(model: Continuation, quadrature: Quadrature, seed: int | None) -> It
         sequence, rng = map(np.random.default_rng, seeds.spawn(2))
         uniform = scipy.stats.qmc.Sobol(quadrature.n_dimension, rng=sequence).random(BATCH)
         states = quadrature.states(uniform)
-        yield Batch(fit_of(model, quadrature, states), states.logarithm, rng)
+        yield Batch(fit_to_states(model, quadrature, states), states.logarithm, rng)
 
 
 def drawn(sampler: SpectrumSampler, states: Iterator[Batch], numbers: Sequence[int]) -> Draws:

@@ -22,7 +22,7 @@ from crackfront.measured.spectrum.draws import (
     batches,
     drawn,
 )
-from crackfront.measured.spectrum.joint_fit import INTERVAL, Fit, quadrature_of
+from crackfront.measured.spectrum.joint_fit import INTERVAL, Fit, likelihood_with_quadrature
 
 _CONTINUED_BINS = 6
 """Points of a continuation in a decade."""
@@ -153,7 +153,9 @@ def joint_spectrum(
     `BATCHES` of :mod:`crackfront.measured.spectrum.draws`; intervals hardly depend on either.
     ValueError if the densities do not determine a spectrum.
     """
-    model, quadrature = quadrature_of([(scan.fitted, scan.band.instrument) for scan in scans])
+    model, quadrature = likelihood_with_quadrature(
+        [(scan.fitted, scan.band.instrument) for scan in scans]
+    )
     states = batches(model, quadrature, seed)
     first = next(states)
     fit = first.fit

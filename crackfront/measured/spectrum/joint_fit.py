@@ -200,7 +200,7 @@ class Continuation:
         slopes, information = np.zeros((len(inner), size)), np.zeros((len(inner), size, size))
         for index, density in enumerate(self.models.densities):
             model, derivatives = self._derivatives(trials, index)
-            derivatives = self._by_coordinates(derivatives, outer)
+            derivatives = self._by_inner_and_outer(derivatives, outer)
             modes, residuals = weighted_residuals(density, model, self.departure)
             total += np.sum(modes * (np.expm1(residuals) - residuals), axis=1)
             slopes -= np.einsum("nw,nwp->np", modes * np.expm1(residuals), derivatives)
@@ -232,7 +232,7 @@ class Continuation:
         beyond = np.maximum(self.limits[3, 0] - outer[:, 0], 0.0)
         return ((inner[:, 1] - inner[:, 0]) / BEND) ** 2 / 2 + beyond / _ROLL_OFF_DECAY
 
-    def _by_coordinates(self, derivatives: Array, outer: Array) -> Array:
+    def _by_inner_and_outer(self, derivatives: Array, outer: Array) -> Array:
         """Derivatives by inner and outer parameters, from those by the parameters of trials."""
         moves_with_roll_off = outer[:, 0] > self.limits[3, 0]
         by_bend = derivatives[..., 3].copy()
@@ -271,7 +271,7 @@ class Continuation:
         return model, derivatives
 
 
-def quadrature_of(
+def likelihood_with_quadrature(
     densities: Sequence[tuple[Density, Instrument]],
 ) -> tuple[Continuation, Quadrature]:
     """Likelihood of models of one surface and its instruments, and its quadrature.
@@ -326,7 +326,7 @@ def _continuation(
     return Continuation(models, departure, limits, np.clip(begin[varied], *limits[N_SHAPE:].T))
 
 
-def fit_of(model: Continuation, quadrature: Quadrature, states: States) -> Fit:
+def fit_to_states(model: Continuation, quadrature: Quadrature, states: States) -> Fit:
     """Models of the states of a quadrature."""
     trials = model.trials(states.inner, states.outer)
     best = quadrature.likeliest

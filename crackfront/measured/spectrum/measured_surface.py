@@ -105,7 +105,7 @@ def measured_surface(
     """
     several = len(measurements) > 1
     scans = tuple(
-        analysed_scan(measurement, shortest, longest, among_others=several)
+        analysed_scan(measurement, shortest, longest, has_common_band=several)
         for measurement in measurements
     )
     try:

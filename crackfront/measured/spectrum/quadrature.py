@@ -225,7 +225,11 @@ def _fine_cells(likelihood: Likelihood) -> _Cells:
 def _expanded(likelihood: Likelihood, edges: Sequence[Array], before: _Cells | None) -> _Cells:
     """Cells with the approximation about their likeliest inner parameters."""
     centres = _centres(edges)
-    start = likelihood.start(centres) if before is None else _moved(before, likelihood, centres)
+    start = (
+        likelihood.start(centres)
+        if before is None
+        else _interpolated_inner(before, likelihood, centres)
+    )
     inner = _likeliest(likelihood, start, centres)
     _, slopes, information = likelihood.expansion(inner, centres)
     n_inner = inner.shape[1]
@@ -250,7 +254,7 @@ def _expanded(likelihood: Likelihood, edges: Sequence[Array], before: _Cells | N
     return _Cells(tuple(edges), inner, mean, slope, order, root, logarithm)
 
 
-def _moved(before: _Cells, likelihood: Likelihood, centres: Array) -> Array:
+def _interpolated_inner(before: _Cells, likelihood: Likelihood, centres: Array) -> Array:
     """First inner parameters at new centres, from the earlier cells around them."""
     index = [
         np.searchsorted(edges[1:-1], centre)

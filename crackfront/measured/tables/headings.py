@@ -157,11 +157,11 @@ def matching(headings: Sequence[Heading], pattern: str) -> list[int]:
     """Places of the columns whose whole name matches a regular expression, in any case."""
     return [
         place
-        for place, each in enumerate(headings)
-        if re.fullmatch(pattern, each.plain_name, re.IGNORECASE)
+        for place, column in enumerate(headings)
+        if re.fullmatch(pattern, column.plain_name, re.IGNORECASE)
     ]
 
 
 def listed(headings: Sequence[Heading]) -> str:
     """Headings for a message."""
-    return ", ".join(repr(each.text) for each in headings) or "none"
+    return ", ".join(repr(column.text) for column in headings) or "none"

@@ -7,7 +7,7 @@ import pytest
 
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.synthesis import gaussian_field
-from crackfront.measured.density.densities import periodogram, weight_of_gaps
+from crackfront.measured.density.densities import gap_weight, periodogram
 from crackfront.measured.density.gaps import restored_periodogram, surrogate_pairs
 from crackfront.measured.scan.reading import read_measurements
 from crackfront.measured.spectrum.draws import RESTORATION_ERROR
@@ -83,7 +83,7 @@ def test_the_density_of_a_map_with_gaps_is_that_of_the_whole_map(gaps_of, rng, t
         given_back.append(np.log(energy(restored, whole) / expected))
     error = np.std(given_back, ddof=1) / np.sqrt(len(given_back))
     # By as much as intervals allow for.
-    allowed = RESTORATION_ERROR * weight_of_gaps(measurement)
+    allowed = RESTORATION_ERROR * gap_weight(measurement)
     assert abs(np.mean(given_back)) < allowed + 4 * error
     if gaps_of is not corner:  # Where the window has no weight nothing is lost.
         assert abs(np.mean(given_back)) < 0.5 * abs(np.mean(filled))

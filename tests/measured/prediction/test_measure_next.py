@@ -31,6 +31,6 @@ def test_a_detail_needs_a_larger_scan_and_an_overview_a_finer_one():
 
 def test_the_scan_that_is_asked_for_narrows_the_interval_as_much_as_was_said(surface):
     detail, joined = shipped_surface(DETAIL).joint.draws, surface.joint.draws
-    longer, shorter = detail.factors_with
+    longer, shorter = detail.factors_if_known
     assert joined.factor < 1.5 * longer < shorter < detail.factor
     assert "would hardly narrow it" in measure_next(surface).sentence
