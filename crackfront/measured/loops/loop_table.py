@@ -19,9 +19,6 @@ from crackfront.measured.tables.number_cells import is_number, is_without_value
 from crackfront.measured.tables.parsed_table import Table
 from crackfront.surfaces.written_units import is_unit, unit_value
 
-_GZIP = b"\x1f\x8b"
-"""First bytes of a file that gzip has compressed."""
-
 
 def read_recording(path: Path, named: Mapping[str, str], units: Mapping[str, str]) -> Recording:
     """Read the columns of a loop from a table.
@@ -89,9 +86,6 @@ def _example(table: Table, places: Places) -> str:
 
 def _table(path: Path) -> Table:
     """The table of a file, without lines between its rows that are words, as headings again."""
-    with path.open("rb") as file:
-        if file.read(2) == _GZIP:
-            raise ValueError(f"{path} is compressed; unpack it, as in gunzip {path.name}")
     table = table_of_numbers(path)
     is_row = table.cells.map(is_number).any(axis="columns")
     is_row = (is_row | table.cells.map(is_without_value).all(axis="columns")).to_numpy(bool)

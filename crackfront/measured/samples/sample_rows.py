@@ -168,10 +168,11 @@ def _yaml_rows(path: Path, names: Collection[str]) -> Iterator[SampleRow]:
     except (YAMLError, ValueError) as error:
         # A sign that YAML does not allow, or a date or a number that cannot be read.
         raise ValueError(f"{path} is not YAML: {str(error).splitlines()[0]}; correct it") from error
-    rows = content.get("samples") if isinstance(content, dict) else content
-    further_keys = (
-        [name for name in content if name != "samples"] if isinstance(content, dict) else []
-    )
+    rows = content
+    further_keys: list[Any] = []
+    if isinstance(content, dict):
+        rows = content.get("samples")
+        further_keys = [key for key in content if key != "samples"]
     if rows is not None and further_keys:
         raise ValueError(f"{path} has {str(further_keys[0])!r} next to samples; remove it")
     if not isinstance(rows, list) or not all(isinstance(row, dict) for row in rows):

@@ -174,8 +174,9 @@ def _kinds(table: Sequence[Sequence[str]]) -> list[_Kind]:
             kind = "numbers" if cells else "text"
         elif all(not cell or _is_value(cell) for cell in cells):
             is_below_row = place > 0 and kinds[-1] != "text"
-            is_as_wide = 1 < len(cells) == len(table[place - 1]) or len(cells) > _MOST_COLUMNS
-            if (is_below_row and is_as_wide) or not all(map(_RULE.fullmatch, cells)):
+            is_as_wide = is_below_row and 1 < len(cells) == len(table[place - 1])
+            is_in_map = is_below_row and len(cells) > _MOST_COLUMNS
+            if is_as_wide or is_in_map or not all(map(_RULE.fullmatch, cells)):
                 kind = "written numbers"
         kinds.append(kind)
     return kinds

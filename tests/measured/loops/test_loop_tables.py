@@ -182,7 +182,7 @@ def test_a_unit_of_a_missing_column_is_an_error(read):
 def test_a_compressed_table_is_named_with_the_remedy(tmp_path):
     path = tmp_path / "rig.csv.gz"
     path.write_bytes(gzip.compress(b"Force (uN),Radius (um)\n1,2\n"))
-    with pytest.raises(ValueError, match=r"compressed; unpack it.*rig\.csv\.gz"):
+    with pytest.raises(ValueError, match=r"rig\.csv\.gz is compressed.*gunzip"):
         read_recording(path, {}, {})
 
 
