@@ -151,8 +151,8 @@ def _name_and_unit(column: Heading, names: Collection[str], where: str) -> tuple
     return name, column.unit
 
 
-def _yaml_rows(path: Path, names: Collection[str]) -> Iterator[SampleRow]:
-    """Line and content of every sample of a YAML file."""
+def _yaml_samples(path: Path) -> list[Any]:
+    """Mappings of a YAML file with their lines; ValueError if it is not a list of samples."""
     try:
         content = YAML(typ="rt").load(path.read_text(encoding="utf-8"))
     except RecursionError as error:
@@ -179,7 +179,12 @@ def _yaml_rows(path: Path, names: Collection[str]) -> Iterator[SampleRow]:
         raise ValueError(
             f"{path} lacks a list of samples; write 'samples:' with '- sample: A' below"
         )
-    for row in rows:
+    return rows
+
+
+def _yaml_rows(path: Path, names: Collection[str]) -> Iterator[SampleRow]:
+    """Line and content of every sample of a YAML file."""
+    for row in _yaml_samples(path):
         line = row.lc.line + 1
         where = f"{path}, line {line}"
         options: dict[str, Any] = {}

@@ -90,15 +90,18 @@ def _is_mark(data: NDArray[Any], is_present: PointMask, places: PointMask, value
     if not max(low - value, value - high) > _WORTH_A_FIT * (high - low) > 0:
         return False
     # A tilt of the sample is not roughness.
-    pixels = [np.nonzero(is_chosen) for is_chosen in (is_rest, places)]
-    columns = [np.column_stack([np.ones(indices[0].size), *indices]) for indices in pixels]
-    stride = max(1, len(columns[0]) // _MOST_SAMPLES)
-    plane = np.linalg.lstsq(columns[0][::stride], data[is_rest][::stride])[0]
-    rest, marks = (
-        data[indices] - column @ plane for indices, column in zip(pixels, columns, strict=True)
-    )
+    pixels_of_rest = _with_ones(np.nonzero(is_rest))
+    stride = max(1, len(pixels_of_rest) // _MOST_SAMPLES)
+    plane = np.linalg.lstsq(pixels_of_rest[::stride], data[is_rest][::stride])[0]
+    rest = data[is_rest] - pixels_of_rest @ plane
+    marks = data[places] - _with_ones(np.nonzero(places)) @ plane
     gap = max(rest.min() - marks.max(), marks.min() - rest.max())
     return bool(gap > _GAP * np.ptp(rest) and len(np.unique(data[is_rest])) >= _FEWEST_LEVELS)
+
+
+def _with_ones(indices: tuple[NDArray[np.int64], ...]) -> NDArray[Any]:
+    """Columns of a plane: ones, and the indices of pixels in each direction."""
+    return np.column_stack([np.ones(indices[0].size), *indices])
 
 
 def _spikes(heights: Heights) -> PointMask:
