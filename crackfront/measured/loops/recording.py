@@ -5,10 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 
+import numpy as np
+
 from crackfront.core.arrays import Array
 
 UNITS = {"force": "N", "radius": "m", "displacement": "m"}
 """The columns of a loop and their SI units."""
+
+_NEGATIVE_RADII = 0.1
+"""Largest ratio of a negative contact radius to the largest one that noise may cause."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,6 +51,19 @@ class Recording:
         if len({column.shape for column in columns}) > 1 or columns[0].ndim != 1:
             raise ValueError(
                 "the columns of a loop are not of one length; give a value for each row"
+            )
+        self._check_radii()
+
+    def _check_radii(self) -> None:
+        """Raise ValueError if contact radii are more negative than noise out of contact."""
+        if self.radius is None or not np.any(self.radius > 0):
+            return
+        lowest = float(np.nanmin(self.radius))
+        if -lowest > _NEGATIVE_RADII * float(np.nanmax(self.radius)):
+            name = self.headings.get("radius", "radius")
+            raise ValueError(
+                f"the contact radius, column {name!r}, falls to {lowest:.3g} m; it must not be "
+                "negative, so check whether two headings are exchanged"
             )
 
     def rows(self, chosen: slice) -> Recording:

@@ -33,6 +33,10 @@ def test_arrays_and_their_table_are_the_same_loop(tmp_path):
         ({"force": np.full(50, np.nan), "radius": np.ones(50)}, "force lacks finite values"),
         ({"force": np.zeros(50)}, "needs two of"),
         ({"force": np.zeros(50), "radius": np.ones(49)}, "not of one length"),
+        (
+            {"force": np.ones(50), "radius": np.linspace(-1e-4, 1e-4, 50)},
+            "radius.* must not be negative",
+        ),
         ({"force": _LOST_IN_CONTACT, "radius": _TOUCHING}, "force has no value in contact"),
         (
             {"displacement": _LOST_IN_CONTACT, "radius": _TOUCHING},
