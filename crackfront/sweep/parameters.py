@@ -100,14 +100,15 @@ def _check_lengths(
 ) -> None:
     """Raise ConfigurationError if a length in metres is not below the radius of the sphere."""
     max_penetration = configuration.load.max_penetration or 0.0
-    lengths = [("load.max_penetration", abs(max_penetration))]
+    lengths = [("load.max_penetration", abs(max_penetration), scales.vertical)]
     lengths += [
-        (f"short_cutoff of {item.name}", scales.lateral * item.spectrum.short_cutoff)
+        (f"short_cutoff of {item.name}", scales.lateral * item.spectrum.short_cutoff, scales.lateral)
         for item in spectra
     ]
-    for name, length in lengths:
+    for name, length, unit in lengths:
         if length >= scales.radius:
             raise ConfigurationError(
                 f"{name} is {length:g} m, and the radius of the sphere {scales.radius:g} m; "
-                "with a section scales all lengths are in metres"
+                "with a section scales all lengths are in metres; "
+                f"{length:g} in reduced units is {length * unit:.4g} m"
             )

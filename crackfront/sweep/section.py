@@ -181,8 +181,10 @@ def _sentence(error: ErrorDetails, schema: type[Section]) -> str:
     if error["type"] == "extra_forbidden":
         return f"unknown key {place}; {_nearest_key(error['loc'], schema)}"
     if error["type"] == "missing":
-        return f"key {place} is missing; add it"
+        return f"key {place} is missing; add it, as in config/default.yaml"
     key = next((part for part in reversed(error["loc"]) if isinstance(part, str)), "")
+    if error["type"] == "float_type" and isinstance(error["input"], str):
+        return f"{sentence(error, place)} without a unit; section scales is in m, J/m^2 and Pa"
     return f"{sentence(error, place)}{_MEANING.get(key, '')}"
 
 

@@ -127,20 +127,22 @@ def test_lengths_in_metres_are_those_of_the_reduced_sweep(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("deepest", "cutoff", "sentence"),
+    ("deepest", "cutoff", "key", "remedy"),
     [
-        (1.5, 1e-6, "load.max_penetration is 1.5 m, and the radius of the sphere 0.00125 m;"),
-        (1e-6, 0.005, "short_cutoff of flat is 0.005 m, and the radius of the sphere 0.00125 m;"),
+        (1.5, 1e-6, "load.max_penetration", "1.5 in reduced units is 4.755e-06 m"),
+        (1e-6, 0.005, "short_cutoff of flat", "0.005 in reduced units is 3.147e-07 m"),
     ],
 )
-def test_reduced_lengths_beside_a_sphere_in_metres_are_refused(tmp_path, deepest, cutoff, sentence):
+def test_reduced_lengths_in_a_sweep_in_metres_are_errors_that_convert_them(
+    tmp_path, deepest, cutoff, key, remedy
+):
     content = from_yaml(GOOD)
     content["scales"] = {"radius": 1.25e-3, "work_of_adhesion": 63e-3, "contact_modulus": 0.93e6}
     content["spectra"] = [{"name": "flat", "short_cutoff": cutoff}]
     content["load"] = {"max_penetration": deepest, "step": 0.1 * deepest}
-    assert f"{sentence} with a section scales all lengths are in metres" in refusal(
-        tmp_path, to_yaml(content)
-    )
+    message = refusal(tmp_path, to_yaml(content))
+    assert key in message
+    assert remedy in message
 
 
 def asking(error):
@@ -233,6 +235,10 @@ BAD = {
         "unknown key numerics.tile.sides; the keys here are roll_offs, cutoffs",
     ),
     "missing key": (("seed: 1\n", ""), "key seed is missing; add it"),
+    "length with a unit": (
+        ("roll_off: 0.2", "roll_off: 0.2um"),
+        "spectra[1].roll_off is '0.2um'; it must be a number without a unit",
+    ),
     "key twice": (
         ("seed: 1", "seed: 1\nseed: 2"),
         "is not valid YAML in line 3: key 'seed' stands",
