@@ -67,9 +67,9 @@ locked   = awk '/^[^ ]/ { kept = $(2)/^($(1))==/ } kept' requirements.lock
 all: env  ## Run the sweep SWEEP to its fit and figures
 	@$(START) --plan $(call quoted,$(SWEEP)) $(PROFILED) --quiet all --config sweep=$(call quoted,$(SWEEP))
 	@echo "Dataset: $(RESULTS)hysteresis.nc"
-	@sed -n 's/^- //p; /^## /q' $(RESULTS)fit.md
+	@sed -n 's/^- //p; /^  /p; /^## /q' $(RESULTS)fit.md
 	@echo "Fit:     $(RESULTS)fit.md"
-	@echo "Figures: $(addprefix $(RESULTS)figures/,hysteresis.png factor.png loop.png)"
+	@echo "Figures: $(RESULTS)figures/{hysteresis,factor,loop}.png"
 	@echo "Page:    $(RESULTS)summary.html"
 
 env: $(READY)  ## Create .venv from requirements.lock

@@ -55,7 +55,8 @@ def plan(sweep: str) -> None:
     except SystemExit as ended:
         if ended.code:
             raise
-    sys.stdout.write(f"{text.getvalue().splitlines()[0]}\n")
+    sizes, _, _ = text.getvalue().partition("\n\n")
+    sys.stdout.write(f"{sizes}\n")
     sys.stdout.flush()
 
 

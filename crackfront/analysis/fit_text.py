@@ -18,7 +18,7 @@ from crackfront.analysis.finding import (
 from crackfront.analysis.law import LEAST_SIZE
 from crackfront.analysis.result import HALF_WIDTHS, LawEstimates, SweepFit
 from crackfront.core.arrays import Array
-from crackfront.core.words import counted
+from crackfront.core.words import counted, wrapped
 
 ONSET = 0.5
 """Ratio of k to the largest k of its spectrum below which hysteresis has not set in."""
@@ -80,7 +80,7 @@ def fit_result(fit: SweepFit) -> str:
     mean = float(finite_mean(law))
     pooled = f"{mean:.2f}" if np.isfinite(mean) else MISSING
     by_law = "; ".join([pooled + _covered_words(fit), *_range_of(law)])
-    return (
+    return wrapped(
         f"# Hysteresis: w_retr, w_appr = {_mean_adhesion(fit)} ± k e_el\n\n"
         f"- k of this sweep ({_used_simulations(fit)}): {_pooled_entry(fit, 'factor')}\n"
         f"{_needed_line(fit)}"

@@ -21,6 +21,7 @@ from crackfront.cli.option_types import (
 from crackfront.cli.output_files import check_overwriting, check_replaced_page, check_writable
 from crackfront.core.bounds import Range
 from crackfront.core.units import plane_strain_modulus
+from crackfront.core.words import wrapped
 from crackfront.measured.options import (
     PredictionOptions,
     ReadingOptions,
@@ -281,4 +282,4 @@ def _print(loop: MeasuredLoop, prediction: Prediction | None, *, as_json: bool) 
         echo_json(machine_readable(loop, prediction))
         return
     lines = [] if prediction is None else ["", *comparison_lines(loop, prediction)]
-    click.echo("\n".join([repr(loop), *lines]))
+    click.echo(wrapped("\n".join([repr(loop), *lines])))

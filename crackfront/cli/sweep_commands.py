@@ -23,7 +23,7 @@ from crackfront.cli.option_types import (
 )
 from crackfront.core.bounds import COUNT, Range
 from crackfront.core.resources import check_memory
-from crackfront.core.words import counted, in_bytes, in_time
+from crackfront.core.words import counted, in_bytes, in_time, wrapped
 
 # The rest is imported where it is used, so that --help does not wait for it.
 if TYPE_CHECKING:
@@ -147,13 +147,13 @@ def _plan_lines(
     from crackfront.sweep.inventory import Inventory, mixture_sentence
 
     everything = sum(progress.values(), Inventory())
-    yield f"{_size_sentence(sweep, everything)}\n"
+    yield f"{wrapped(_size_sentence(sweep, everything))}\n"
     yield from _spectra_table(sweep, progress, expected)
     yield "s is w_rms/w_int, g the size, and k what the law expects at the largest load"
     uncovered = [item for item in sweep.spectra if not sweep.one_per_amplitude(item)[0].is_covered]
     if uncovered:
         listed = ", ".join(item.name for item in uncovered)
-        yield f"the law of k does not cover {listed}: {MEASURED_ON}"
+        yield wrapped(f"the law of k does not cover {listed}: {MEASURED_ON}")
     yield from filter(None, (*everything.sentences(), mixture_sentence(everything.arithmetic)))
     yield ""
     to_run = []

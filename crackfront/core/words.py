@@ -1,8 +1,16 @@
-"""Numbers of things, bytes and seconds in words."""
+"""Numbers of things, bytes and seconds in words, and lines of a readable width."""
 
 from __future__ import annotations
 
 import math
+import re
+import textwrap
+
+_WIDTH = 100
+"""Columns of a line of text that a command prints."""
+
+_LABEL = re.compile(r" *\S+( \S+)*  +(?=\S)")
+"""Label of a row, which two spaces or more separate from its text."""
 
 
 def counted(number: int, noun: str) -> str:
@@ -44,3 +52,30 @@ def in_time(seconds: float) -> str:
         if seconds >= 2 * unit:
             return f"{seconds / unit:.3g} {name}"
     return f"{seconds:.0f} s" if seconds >= 10 else f"{seconds:.2g} s"
+
+
+def wrapped(text: str) -> str:
+    """Text without lines of more than 100 columns.
+
+    Continued lines begin under the text of a row that has a label, and else two columns further.
+
+    Examples
+    --------
+    >>> print(wrapped("e_el    " + " ".join(10 * ["conformity"])))
+    e_el    conformity conformity conformity conformity conformity conformity conformity conformity
+            conformity conformity
+    """
+    return "\n".join(map(_wrapped_line, text.split("\n")))
+
+
+def _wrapped_line(line: str) -> str:
+    """One line, or the lines that continue it."""
+    label = _LABEL.match(line)
+    indent = len(label[0]) if label else len(line) - len(line.lstrip()) + 2
+    return textwrap.fill(
+        line,
+        _WIDTH,
+        subsequent_indent=" " * indent,
+        break_long_words=False,
+        break_on_hyphens=False,
+    )

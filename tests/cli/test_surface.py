@@ -120,9 +120,10 @@ def test_each_outcome_has_its_exit_code(predict, smooth):
 
 def test_a_theory_that_does_not_apply_is_a_short_page_of_reasons_and_remedies(predict):
     page = predict(modulus="3MPa").output.splitlines()
-    assert len(page) < 8
+    assert len(page) < 12
+    assert all(len(line) <= 100 for line in page)
     assert "THE THEORY DOES NOT APPLY" in page[0]
-    assert "It would be met with a contact modulus" in page[1]
+    assert "It would be met with a contact modulus" in " ".join(" ".join(page).split())
     everything = predict("--long", modulus="3MPa").output
     assert everything.splitlines()[: len(page)] == page
     assert "rms of slopes" in everything

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from crackfront.analysis.estimate import Estimate
 from crackfront.core.arrays import Array
 from crackfront.core.variables import variable
+from crackfront.core.words import wrapped
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -73,4 +74,4 @@ class MeasuredLoop:
         """The page that the command `crackfront loop` prints."""
         from crackfront.measured.loops.loop_page import loop_lines
 
-        return "\n".join(loop_lines(self))
+        return wrapped("\n".join(loop_lines(self)))

@@ -14,6 +14,7 @@ from crackfront.core import jkr
 from crackfront.core.adhesion import overlap_share
 from crackfront.core.units import Scales
 from crackfront.core.variables import variable, variables
+from crackfront.core.words import wrapped
 from crackfront.measured.options import PredictionOptions
 from crackfront.measured.prediction.conditions import theory_verdict, zero_load_radius
 from crackfront.measured.prediction.prediction_page import prediction_page
@@ -171,7 +172,7 @@ class Prediction:
 
     def __repr__(self) -> str:
         """The page that the command `crackfront predict` prints."""
-        return prediction_page(self)
+        return wrapped(prediction_page(self))
 
 
 def check_and_predict(
