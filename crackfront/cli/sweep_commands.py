@@ -115,7 +115,7 @@ def plan(
         content["errors"] = prices
     lines = [*_plan_lines(sweep, store, shards, progress, expected)]
     lines += [changed] if changed else []
-    echo_answer(content, [*lines, *_price_lines(prices), *warnings], as_json=as_json)
+    echo_answer(content, [*lines, *_price_lines(prices), *map(wrapped, warnings)], as_json=as_json)
 
 
 def _size_sentence(sweep: Sweep, inventory: Inventory) -> str:

@@ -101,10 +101,9 @@ def _check_lengths(
     """Raise ConfigurationError if a length in metres is not below the radius of the sphere."""
     max_penetration = configuration.load.max_penetration or 0.0
     lengths = [("load.max_penetration", abs(max_penetration), scales.vertical)]
-    lengths += [
-        (f"short_cutoff of {item.name}", scales.lateral * item.spectrum.short_cutoff, scales.lateral)
-        for item in spectra
-    ]
+    for item in spectra:
+        short_cutoff = scales.lateral * item.spectrum.short_cutoff
+        lengths.append((f"short_cutoff of {item.name}", short_cutoff, scales.lateral))
     for name, length, unit in lengths:
         if length >= scales.radius:
             raise ConfigurationError(
