@@ -407,7 +407,7 @@ class SphereOptions(Options):
     """Radius of the sphere, as in 1.25mm."""
 
     work_of_adhesion: Energy | None = None
-    """w_int, as in 63mJ/m2."""
+    """Work of adhesion of the smooth surface (w_int), as in 63mJ/m2."""
 
 
 def sphere_scales(options: SphereOptions, prefix: str = "") -> Scales:

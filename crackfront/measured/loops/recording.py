@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from crackfront.core.arrays import Array
+from crackfront.surfaces.written_units import prefixed
 
 UNITS = {"force": "N", "radius": "m", "displacement": "m"}
 """The columns of a loop and their SI units."""
@@ -62,8 +63,8 @@ class Recording:
         if -lowest > _NEGATIVE_RADII * float(np.nanmax(self.radius)):
             name = self.headings.get("radius", "radius")
             raise ValueError(
-                f"the contact radius, column {name!r}, falls to {lowest:.3g} m; it must not be "
-                "negative, so check whether two headings are exchanged"
+                f"the contact radius, column {name!r}, falls to {prefixed('m', lowest)}; it must "
+                "not be negative, so check whether two headings are exchanged"
             )
 
     def rows(self, chosen: slice) -> Recording:
