@@ -219,11 +219,11 @@ def spectrum_label(table: SweepTable, index: int) -> str:
     """Name of a spectrum in the configuration with its parameters, for a legend."""
     name = str(table.spectrum[index])
     name = name_without_spring(name) if table.on_springs else name
-    label = rf"{name}: $\lambda_\mathrm{{s}}={table.short_cutoff[index]:g}$"
+    label = rf"{name}: $\lambda_\mathrm{{s}}={table.short_cutoff[index]:.4g}$"
     is_flat = table.roll_off[index] == table.short_cutoff[index]
     if is_flat or np.isnan(table.hurst[index]) or not table.is_covered(index):
         return label
-    roll_off = rf"$\lambda_\mathrm{{r}}={table.roll_off[index]:g}$"
+    roll_off = rf"$\lambda_\mathrm{{r}}={table.roll_off[index]:.4g}$"
     return f"{label}, {roll_off}, $H={table.hurst[index]:g}$"
 
 
