@@ -17,6 +17,7 @@ from crackfront import __all__
 from crackfront.cli import main
 from crackfront.simulate.checksums import digest_path, file_digest, sums_text
 from crackfront.sweep.configuration import Configuration, load_configuration
+from crackfront.sweep.section import ConfigurationError
 from studies.__main__ import STUDIES
 from studies.numbers import stored
 from studies.quotes import read_quotes
@@ -130,6 +131,29 @@ def test_the_page_of_sweeps_shows_spectra_that_a_configuration_may_have(tmp_path
     (tmp_path / "sweep.yaml").write_text(to_yaml(content))
     configuration = load_configuration(tmp_path / "sweep.yaml")
     assert len(configuration.spectra) == 5
+
+
+def test_the_page_of_sweeps_converts_the_penetrations_of_its_sweep_in_metres(tmp_path):
+    section = (DOCS / "sweeps.md").read_text().partition("### In metres")[2]
+    shown = from_yaml(re.search(r"```yaml\n(.*?)```", section, re.DOTALL)[1])
+    (tmp_path / "sweep.yaml").write_text(to_yaml(from_yaml(TEST.read_text()) | shown))
+    configuration = load_configuration(tmp_path / "sweep.yaml")
+    unit = cf.Scales(**dict(configuration.scales)).vertical
+    load = configuration.load
+    assert load.max_penetration / unit == pytest.approx(1.5, rel=0.01)
+    assert load.steady.start / unit == pytest.approx(1.0, rel=0.01)
+
+
+def test_the_shortest_configuration_of_its_page_needs_each_of_its_keys(tmp_path):
+    page = (ROOT / "config/README.md").read_text()
+    shown = from_yaml(re.search(r"```yaml\n(.*?)```", page, re.DOTALL)[1])
+    path = tmp_path / "shortest.yaml"
+    path.write_text(to_yaml(shown))
+    assert load_configuration(path).fit.lowest_elastic_energy is None
+    for key in shown:
+        path.write_text(to_yaml({name: shown[name] for name in shown if name != key}))
+        with pytest.raises(ConfigurationError, match=f"key {key} is missing"):
+            load_configuration(path)
 
 
 @pytest.mark.usefixtures("_elsewhere")
