@@ -154,7 +154,8 @@ def _plan_lines(
     if uncovered:
         listed = ", ".join(item.name for item in uncovered)
         yield wrapped(f"the law of k does not cover {listed}: {MEASURED_ON}")
-    yield from filter(None, (*everything.sentences(), mixture_sentence(everything.arithmetic)))
+    remarks = filter(None, (*everything.sentences(), mixture_sentence(everything.arithmetic)))
+    yield from map(wrapped, remarks)
     yield ""
     to_run = []
     for item in sweep.spectra:

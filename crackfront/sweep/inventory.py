@@ -218,7 +218,7 @@ def _unused(
             continue
         for series, parameters in stored.parameters.items():
             if series not in requested and missing.any():
-                names = min((_differences(first, parameters) for first in firsts), key=len)
+                names = min((_differences(first, parameters) for first in firsts), key=_distance)
                 count = int(np.count_nonzero(within & (stored.series == series)))
                 changed[" and ".join(names)] += count
     return older, +changed  # without counts of 0
@@ -230,6 +230,11 @@ def _differences(simulation: Simulation, parameters: dict[str, Any]) -> list[str
     now = json.loads(json.dumps(simulation.parameters))
     names = sorted(now.keys() | parameters.keys())
     return [name for name in names if now.get(name) != parameters.get(name)]
+
+
+def _distance(names: list[str]) -> tuple[bool, int]:
+    """Sort key of differences: simulations of one amplitude are compared if there are some."""
+    return "elastic_energy" in names, len(names)
 
 
 def mixture_sentence(arithmetic: Collection[str]) -> str:
