@@ -6,12 +6,14 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import xarray as xr
 from numpy.typing import NDArray
 
 from crackfront.analysis.table import SweepRow
 from crackfront.core.variables import variables
 from crackfront.core.versions import PHYSICS_VERSION
 from crackfront.simulate.checksums import MERGED, forget_sums
+from crackfront.simulate.labels import labelled
 from crackfront.simulate.provenance import Provenance
 from crackfront.simulate.storage import read_dataset
 from crackfront.sweep.curves import (
@@ -103,7 +105,7 @@ def _merge(
     parts, order = [], []
     for number in used:
         chosen = located.place[located.file == number]
-        parts.append(selected(read_dataset(located.files[number].path), chosen))
+        parts.append(selected(_with_all_columns(located.files[number].path), chosen))
         order.append(np.flatnonzero(located.file.ravel() == number))
     merged = selected(concatenated(parts), np.argsort(np.concatenate(order)))
     merged = merged.assign(
@@ -116,6 +118,18 @@ def _merge(
         is_replaced = rows.physics_version < PHYSICS_VERSION or rows.identities <= in_merged
         if is_replaced and path != merged_path:
             path.unlink()
+
+
+def _with_all_columns(path: Path) -> xr.Dataset:
+    """Dataset of a file of curves; columns that its older version lacks are NaN."""
+    dataset = read_dataset(path)
+    unknown = np.full(dataset.sizes[SIMULATION], np.nan)
+    lacking = {
+        item.name: labelled(item, unknown)
+        for item in variables(SweepRow, SIMULATION)
+        if item.name not in dataset
+    }
+    return dataset.assign(lacking)
 
 
 def _is_merged(rows: StoredRows, located: LocatedRows) -> bool:

@@ -19,6 +19,7 @@ from crackfront.core.resources import TooLargeError
 from crackfront.core.versions import PHYSICS_VERSION, ROWS_VERSION
 from crackfront.simulate.checksums import (
     DIGITS_IN_NAME,
+    MERGED,
     digest_path,
     file_digest,
     is_whole,
@@ -35,7 +36,7 @@ from crackfront.simulate.storage import (
     write_named_by_digest,
 )
 from crackfront.sweep import batches, tasks
-from crackfront.sweep.curves import curve_files
+from crackfront.sweep.curves import curve_files, write_curves
 from crackfront.sweep.parameters import load_sweep
 from crackfront.sweep.rows import sweep_row
 from crackfront.sweep.run_sweep import run_sweep
@@ -226,6 +227,20 @@ def test_a_new_version_of_rows_remakes_them_from_states_and_runs_nothing(
     assert simulate(configuration, folder) == set()
     assert stored(folder) == before
     assert np.all(aggregated(configuration, folder)["w_appr"] == 0)
+
+
+def test_a_column_that_stored_rows_lack_is_made_from_their_states(
+    configuration, folder, monkeypatch
+):
+    first = table(folder / "hysteresis.nc")
+    for path in (folder / "curves").glob("*/*.nc"):
+        lacking = read_dataset(path).drop_vars("pull_off_force")
+        path.unlink()
+        write_curves(path.parent, MERGED, path.parent.name, lacking, provenance("text"))
+    raise_version(monkeypatch, "ROWS_VERSION")
+    assert simulate(configuration, folder) == set()
+    made_anew = aggregated(configuration, folder)["pull_off_force"]
+    assert made_anew.identical(first["pull_off_force"])
 
 
 def test_a_simulation_that_fails_is_a_row_is_not_tried_again_and_costs_no_other(
