@@ -14,6 +14,9 @@ from sphinx.util.nodes import make_refnode
 from sphinx.writers.html5 import HTML5Translator
 
 import crackfront
+from crackfront.analysis.jump_measures import JumpMeasures
+from crackfront.analysis.table import SweepRow
+from crackfront.core.cycle.jumps import Jumps
 from crackfront.core.geometry.line import LineState
 from crackfront.core.geometry.sphere import ContactState
 from crackfront.core.variables import variables
@@ -21,7 +24,6 @@ from crackfront.measured.loops.loop_result import MeasuredLoop
 from crackfront.measured.options import Options, PsdOptions, ReadingOptions
 from crackfront.measured.prediction.prediction import Prediction
 from crackfront.sweep.configuration import Configuration
-from crackfront.sweep.table_file import SweepRow
 
 project = "crackfront"
 author = "crackfront developers"
@@ -247,6 +249,8 @@ def _variables_page() -> str:
     """Variables of files and of JSON, as the code has them."""
     files = {
         "A simulation in `hysteresis.nc`": variables(SweepRow),
+        "The same with `record: [jumps]`": variables(JumpMeasures),
+        "A jump in `curves/`, with `record: [jumps]`": variables(Jumps),
         "A curve of a sphere": variables(ContactState),
         "A curve of a straight front": variables(LineState),
         "`prediction` in `crackfront predict --json`": variables(Prediction),

@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, field, fields, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -76,6 +76,8 @@ class SteadyAdhesion(SteadyMeasures):
     """The measures of one record, and a sentence that says why they are NaN, else empty."""
 
     sentence: str = ""
+    averaged: Branches | None = field(default=None, compare=False)
+    """States that they average; None without a value."""
 
 
 DEEPER = "penetrate deeper or use a smaller load step"
@@ -283,6 +285,7 @@ def _measures(
         lowest_radius=math.nan,
         highest_radius=math.nan,
         front_rms=float(np.mean(roughness[np.concatenate(branches)])),
+        averaged=branches,
     )
 
 

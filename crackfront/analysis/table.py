@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from crackfront.analysis.jump_measures import JumpMeasures
 from crackfront.analysis.run_measures import RunMeasures
 from crackfront.analysis.steady_adhesion import SteadyMeasures
 from crackfront.core.arrays import Array
@@ -43,6 +44,16 @@ class SweepRow(SteadyMeasures, RunMeasures):
     max_sweeps: int = variable("limit of sweeps of a load step", "1")
 
 
+@dataclass(frozen=True)
+class JumpRow(SweepRow, JumpMeasures):
+    """One simulation of a sweep that records jumps."""
+
+
+def row_type(records_jumps: bool) -> type[SweepRow]:
+    """Class of the rows of simulations that record jumps, or do not."""
+    return JumpRow if records_jumps else SweepRow
+
+
 @dataclass(frozen=True, slots=True)
 class SweepAxes:
     """Coordinates of the table of a sweep."""
@@ -69,7 +80,7 @@ class SweepAxes:
     parameters: NDArray[np.str_] | None = variable(_SHAPE_TEXT, "1", SPECTRUM, default=None)
 
 
-COLUMNS = {item.name: item for item in (*variables(SweepAxes), *variables(SweepRow, *PLACE))}
+COLUMNS = {item.name: item for item in (*variables(SweepAxes), *variables(JumpRow, *PLACE))}
 """Variables of the table of a sweep, by their names."""
 
 

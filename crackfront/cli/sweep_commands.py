@@ -164,6 +164,7 @@ def _plan_lines(
     to_run.append(_to_run("all", len(shards), everything.missing))
     header = "to run", "shards", "simulations", "core hours", "longest s", "MB a rank"
     yield from table(header, to_run)
+    yield from _jump_lines(_cost(everything.missing))
     energies = sweep.elastic_energies
     yield f"\n{counted(len(energies), 'amplitude')} e_el/w_int: {_listed(energies)}"
     yield _fit_sentence(sweep)
@@ -220,6 +221,13 @@ def _cost(missing: Sequence[MissingSimulations]) -> SweepCost:
     from crackfront.sweep.sweep_cost import sweep_cost
 
     return sweep_cost((item.first, item.realisations.size) for item in missing)
+
+
+def _jump_lines(cost: SweepCost) -> Iterator[str]:
+    """What recorded jumps add to the cost; nothing where none are to be recorded."""
+    if cost.jump_core_seconds:
+        jumps, rest = cost.jump_core_seconds, cost.core_seconds - cost.jump_core_seconds
+        yield f"record: [jumps] takes {in_time(jumps)} of processor time, all else {in_time(rest)}"
 
 
 def _price_lines(prices: Sequence[ErrorCost]) -> Iterator[str]:

@@ -31,6 +31,14 @@ _STEP_SECONDS = 2.8e-3
 _SITE_POWER, _TRAVEL_POWER, _ENERGY_POWER = 1.46, 0.47, 0.06
 """Powers of that time: a longer front, a longer step and disorder need more sweeps."""
 
+_JUMP_SECONDS = 0.6
+"""Time to separate the jumps of a load step of 1000 sites that sweeps 100 squared correlation
+lengths. (Units: s)"""
+
+_JUMP_SITE_POWER, _JUMP_AREA_POWER = 0.95, 0.62
+"""Powers of that time in the sites and in the area: a larger area has more jumps, and each of them
+moves fewer of the sites."""
+
 _PROCESS_BYTES = 300e6
 """Memory of a rank after imports and compilation. (Units: bytes)"""
 
@@ -53,6 +61,8 @@ class Cost:
 
     seconds: float
     memory: float
+    jump_seconds: float = 0.0
+    """Share of the processor time that separates jumps, if they are recorded. (Units: s)"""
 
 
 def expected_cost(simulation: Simulation) -> Cost:
@@ -78,7 +88,16 @@ def _realisation_cost(simulation: Simulation) -> Cost:
     )
     fronts = 8 * n_site * n_state if simulation.record_fronts else 0.0
     surface = simulation.ensemble.point_seconds * math.prod(simulation.tile[0])
-    return Cost(cost.seconds + surface, cost.memory + fronts)
+    jumps = 0.0
+    if simulation.record_jumps:
+        front = simulation.schedule.front_length / simulation.correlation_length
+        jumps = n_state * _jump_seconds(n_site, area=front * travel)
+    return Cost(cost.seconds + surface + jumps, cost.memory + fronts, jumps)
+
+
+def _jump_seconds(n_site: float, area: float) -> float:
+    """Time to separate the jumps of a load step over an area, in squared correlation lengths."""
+    return _JUMP_SECONDS * (n_site / 1000) ** _JUMP_SITE_POWER * (area / 100) ** _JUMP_AREA_POWER
 
 
 def run_cost(

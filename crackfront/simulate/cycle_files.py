@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
+from crackfront.core.cycle.jumps import Jumps
 from crackfront.core.cycle.record import Checkpoint, CycleRecord
 from crackfront.core.geometry.base import Geometry, State
 from crackfront.core.geometry.line import LineState
@@ -34,8 +35,12 @@ from crackfront.simulate.storage import (
 _FRONTS = {
     "front": ("last_front", "front of the last state"),
     "turn": ("turning_front", "front at which its branch began"),
+    "resolved": ("resolved_front", "last front on which jumps were resolved"),
 }
 """Names and meanings of the fronts of a checkpoint, by their fields."""
+
+_NEEDED_FRONTS = {"last_front", "turning_front"}
+"""Fronts that every checkpoint has."""
 
 _LOOP_STATES: tuple[type[State], ...] = (ContactState, LineState)
 """Records of the states of loops on a user's surface; a file has the load of one of them."""
@@ -114,6 +119,7 @@ def _checkpoint_dataset(checkpoint: Checkpoint, key: str, geometry: Geometry) ->
     fronts = {
         name: labelled(replace(front, name=name, long_name=text), getattr(checkpoint, field))
         for field, (name, text) in _FRONTS.items()
+        if getattr(checkpoint, field) is not None
     }
     return cycle_dataset(checkpoint.record, geometry).assign(fronts).assign_attrs(key=key)
 
@@ -133,16 +139,19 @@ def _matching_checkpoint(
     dataset: xr.Dataset, key: str, states: type[State], place: Path
 ) -> Checkpoint | None:
     """Checkpoint that :func:`_checkpoint_dataset` made a dataset of; None where its key differs."""
-    names = {field: name for field, (name, _) in _FRONTS.items()}
-    if dataset.attrs.get("key") != key or not dataset.variables.keys() >= {*names.values()}:
+    if dataset.attrs.get("key") != key or not dataset.variables.keys() >= _NEEDED_FRONTS:
         return None
-    fronts = {field: np.asarray(dataset[name]) for field, name in names.items()}
+    fronts = {
+        field: np.asarray(dataset[name]) for field, (name, _) in _FRONTS.items() if name in dataset
+    }
     return Checkpoint(cycle_record(dataset, place, states), **fronts)
 
 
 def cycle_dataset(record: CycleRecord, geometry: Geometry) -> xr.Dataset:
     """Labelled curves of a record."""
     curves = labelled_fields(record.states, STEP) | labelled_fields(record)
+    if record.jumps is not None:
+        curves |= labelled_fields(record.jumps)
     curves[STEP] = labelled(_STEP, np.arange(record.states.direction.size))
     if record.fronts is not None:
         front, site = geometry.variables
@@ -181,6 +190,9 @@ def cycle_record(
             "cycle wrote"
         )
     pull_off = dataset.attrs.get("pull_off_energy")
+    jumps = None
+    if "jump_area" in dataset:
+        jumps = Jumps(**{item.name: np.asarray(dataset[item.name]) for item in variables(Jumps)})
     fronts = dataset.get(states.front_name)
     lost = dataset.get("dissipated_energy")
     return CycleRecord(
@@ -190,4 +202,5 @@ def cycle_record(
         dissipated_energy=None if lost is None else np.asarray(lost),
         pull_off_energy=None if pull_off is None else float(pull_off),
         fronts=None if fronts is None else np.asarray(fronts),
+        jumps=jumps,
     )

@@ -86,6 +86,7 @@ def run_simulation(
     recorder = Recorder(
         fronts=simulation.record_fronts,
         energy=simulation.record_energy,
+        jumps=simulation.correlation_length if simulation.record_jumps else None,
         observers=[observe],
         resume=None if resume is None else resume.checkpoint,
     )

@@ -25,6 +25,9 @@ from crackfront.simulate.numerics import Numerics
 from crackfront.simulate.settings import Settings
 from crackfront.simulate.tiles import Fineness, RandomSurface, Resolution
 
+Recorded = Literal["fronts", "energy", "jumps"]
+"""What may be recorded in addition to the curves."""
+
 
 @dataclass(frozen=True, slots=True)
 class Simulation:
@@ -54,6 +57,8 @@ class Simulation:
     """Whether to record the fronts of all states."""
     record_energy: bool = False
     """Whether to record the energy that each step dissipates."""
+    record_jumps: bool = False
+    """Whether to record the jumps of the steady load steps."""
 
     @property
     def parameters(self) -> dict[str, Any]:
@@ -84,7 +89,11 @@ class Simulation:
     @property
     def _recorded(self) -> tuple[tuple[str, bool], ...]:
         """What may be recorded in addition to the curves, and whether it is."""
-        return ("fronts", self.record_fronts), ("energy", self.record_energy)
+        return (
+            ("fronts", self.record_fronts),
+            ("energy", self.record_energy),
+            ("jumps", self.record_jumps),
+        )
 
     @property
     def series(self) -> str:
@@ -210,7 +219,7 @@ def simulation_of(
     seed: int,
     realisation: int = 0,
     name: str = "single",
-    record: Collection[Literal["fronts", "energy"]] = (),
+    record: Collection[Recorded] = (),
     ensemble: Ensemble = GAUSSIAN,
 ) -> Simulation:
     """The simulation of a surface; the largest penetration of the schedule decides its sites.
@@ -240,6 +249,7 @@ def simulation_of(
         ensemble=ensemble,
         record_fronts="fronts" in record,
         record_energy="energy" in record,
+        record_jumps="jumps" in record,
     )
 
 

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import xarray as xr
 
-from crackfront.analysis.table import SweepAxes, SweepRow
+from crackfront.analysis.table import JumpRow, SweepAxes
 from crackfront.core.adhesion import FieldKind
+from crackfront.core.cycle.instabilities import Instabilities
+from crackfront.core.cycle.jumps import Jumps
 from crackfront.core.cycle.record import CycleRecord
 from crackfront.core.geometry.sphere import ContactState, sphere
 from crackfront.core.spectrum import Spectrum
@@ -19,7 +21,6 @@ from crackfront.core.variables import (
     variables,
 )
 from crackfront.simulate.labels import stated_unit
-from crackfront.surfaces.instabilities import Instabilities
 from crackfront.surfaces.scales import CONVERTED_FOR, attributes_sphere
 
 SURFACES: dict[FieldKind, Variable] = {
@@ -28,7 +29,7 @@ SURFACES: dict[FieldKind, Variable] = {
 }
 """Variables of surfaces, by the kind of their values."""
 
-_RECORDS = (ContactState, CycleRecord, Instabilities, SweepAxes, SweepRow)
+_RECORDS = (ContactState, CycleRecord, Instabilities, Jumps, SweepAxes, JumpRow)
 """Records whose fields are variables of what the library returns."""
 
 _UNITS = {

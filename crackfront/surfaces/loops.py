@@ -14,6 +14,7 @@ from crackfront.analysis.estimate import with_error
 from crackfront.analysis.steady_adhesion import SteadyAdhesion, SteadyMeasures
 from crackfront.analysis.table import COLUMNS
 from crackfront.core.cycle.follow import Load, front_at
+from crackfront.core.cycle.instabilities import measured_instabilities, resolved_motion
 from crackfront.core.cycle.load_schedule import LoadSchedule
 from crackfront.core.cycle.record import CycleRecord, Recorder
 from crackfront.core.cycle.touch import first_touch
@@ -25,7 +26,6 @@ from crackfront.core.versions import PHYSICS_VERSION
 from crackfront.simulate.cycle_files import cycle_dataset
 from crackfront.simulate.labels import labelled, labelled_fields
 from crackfront.simulate.provenance import __version__
-from crackfront.surfaces.instabilities import measured_instabilities, resolved_motion
 from crackfront.surfaces.loop_setup import (
     LoopContact,
     LoopNumerics,

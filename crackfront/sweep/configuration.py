@@ -10,11 +10,12 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated
 
 from pydantic import Field, model_validator
 
 from crackfront.core.adhesion import FieldKind
+from crackfront.simulate.simulation import Recorded
 from crackfront.sweep.section import Section, section_error, validated, yaml_mapping
 from crackfront.sweep.section_checks import check_distinct
 from crackfront.sweep.sections import (
@@ -39,7 +40,7 @@ class Configuration(Section):
     realisations: Count
     numerics: NumericsSection
     load: LoadSection
-    record: tuple[Literal["fronts", "energy"], ...] = ()
+    record: tuple[Recorded, ...] = ()
     failed_fraction: Annotated[float, Field(ge=0, le=1)] = 0.1
     fit: FitSection = FitSection()
 

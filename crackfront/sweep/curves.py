@@ -2,8 +2,9 @@
 
 `curves/<shard>/` has the simulations of a shard, in batches while it runs and in one file in the
 end. Rows lie along `simulation`. The states of all simulations follow each other along `state`, the
-numbers of all their fronts along `front_site`: contiguous ragged arrays (CF conventions, 9.3.3),
-whose counts are `n_state` and `n_front_site`. The name of a file ends with its checksum.
+numbers of all their fronts along `front_site`, their jumps along `jump`: contiguous ragged arrays
+(CF conventions, 9.3.3), whose counts are `n_state`, `n_front_site` and `n_jump`. The name of a file
+ends with its checksum.
 """
 
 from __future__ import annotations
@@ -20,8 +21,10 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+from crackfront.analysis.jump_measures import JumpMeasures
 from crackfront.analysis.run_measures import RunMeasures
-from crackfront.analysis.table import SweepRow
+from crackfront.analysis.table import JumpRow, SweepRow
+from crackfront.core.cycle.jumps import JUMP, Jumps
 from crackfront.core.cycle.record import CycleRecord
 from crackfront.core.geometry.base import State
 from crackfront.core.outcome import Status
@@ -41,7 +44,7 @@ from crackfront.sweep.rows import CYCLE_STATUSES, STATUSES, row_columns
 SIMULATION, STATE, FRONT_SITE = "simulation", "state", "front_site"
 """Dimensions of a file: simulations, the states of all, and the sites of the fronts of all."""
 
-_COUNTS = {"n_state": STATE, "n_front_site": FRONT_SITE}
+_COUNTS = {"n_state": STATE, "n_front_site": FRONT_SITE, "n_jump": JUMP}
 """Variables that count the entries of each simulation along a ragged dimension."""
 
 
@@ -68,6 +71,8 @@ _CYCLE = (
     Variable("n_state", (SIMULATION,), "1", "states of the simulation"),
     Variable("n_front_site", (SIMULATION,), "1", "sites of all recorded fronts"),
 )
+
+_N_JUMP = Variable("n_jump", (SIMULATION,), "1", "jumps of the simulation")
 
 _FRONT = Variable("front", (FRONT_SITE,), "1", "fronts of all states, in reduced lateral length")
 
@@ -120,6 +125,8 @@ def curves_dataset(finished: Sequence[FinishedSimulation]) -> xr.Dataset:
         "n_state": [_n_state(record) for record in records],
         "n_front_site": [_fronts(record).size for record in records],
     }
+    if any(simulation.record_jumps for simulation in simulations):
+        columns["n_jump"] = [_n_jump(record) for record in records]
     begun = [record for record in records if record is not None]
     columns |= _state_columns(begun)
     if any(record.fronts is not None for record in begun):
@@ -137,6 +144,11 @@ def parameters_text(simulations: Iterable[Simulation]) -> str:
 def _n_state(record: CycleRecord | None) -> int:
     """Number of recorded states."""
     return 0 if record is None else int(record.states.direction.size)
+
+
+def _n_jump(record: CycleRecord | None) -> int:
+    """Number of recorded jumps."""
+    return 0 if record is None or record.jumps is None else int(record.jumps.jump_area.size)
 
 
 def _cycle_status(record: CycleRecord | None) -> int:
@@ -178,16 +190,24 @@ def _state_columns(records: Sequence[CycleRecord]) -> dict[str, NDArray[Any]]:
     ]
     if energies:
         columns["dissipated_energy"] = np.concatenate(energies)
+    jumps = [record.jumps for record in records if record.jumps is not None]
+    if jumps:
+        columns |= {
+            item.name: np.concatenate([getattr(part, item.name) for part in jumps])
+            for item in variables(Jumps)
+        }
     return columns
 
 
 def _labelled(columns: dict[str, Any], state_types: Iterable[type[State]]) -> xr.Dataset:
     """Dataset of columns with their units and meanings; states are of some types."""
     state_variables: dict[str, Variable] = {}
-    for kind in (*state_types, CycleRecord):
+    for kind in (*state_types, CycleRecord, Jumps):
         state_variables |= {_state_name(item.name): item for item in variables(kind)}
     labelled: dict[str, Any] = {}
-    for item in (*variables(SweepRow, SIMULATION), *IDENTITY, *_CYCLE):
+    for item in (*variables(JumpRow, SIMULATION), *IDENTITY, *_CYCLE, _N_JUMP):
+        if item.name not in columns:
+            continue
         about = label(item, _FLAGS.get(item.name, ()))
         if item.name in _COUNTS:
             about["sample_dimension"] = _COUNTS[item.name]
@@ -196,7 +216,8 @@ def _labelled(columns: dict[str, Any], state_types: Iterable[type[State]]) -> xr
         if name == "front":
             labelled[name] = _FRONT.dims, values, label(_FRONT)
         elif name not in labelled:
-            labelled[name] = (STATE,), values, label(state_variables[name])
+            along = (JUMP,) if state_variables[name].dims == (JUMP,) else (STATE,)
+            labelled[name] = along, values, label(state_variables[name])
     return xr.Dataset(labelled)
 
 
@@ -229,6 +250,7 @@ def stored_rows(path: Path) -> StoredRows:
         file.set_auto_mask(False)
         # Rows of an older version may lack columns, until they are made again.
         unknown = np.full(file.dimensions[SIMULATION].size, np.nan)
+        names += [item.name for item in variables(JumpMeasures) if item.name in file.variables]
         columns = {
             name: np.asarray(file[name][:]) if name in file.variables else unknown for name in names
         }
@@ -298,6 +320,9 @@ def _result(dataset: xr.Dataset, simulation: Simulation) -> SimulationResult | N
     costs = {item.name: float(dataset[item.name].values[0]) for item in variables(RunMeasures)}
     energies, fronts = dataset.get("dissipated_energy"), dataset.get("front")
     n_site, pull_off = int(row["n_site"]), float(row["pull_off_energy"])
+    jumps = None
+    if simulation.record_jumps:
+        jumps = Jumps(**{item.name: dataset[item.name].values for item in variables(Jumps)})
     record = CycleRecord(
         status=list(Status)[int(row["cycle_status"])],
         end_load=float(row["end_load"]),
@@ -305,6 +330,7 @@ def _result(dataset: xr.Dataset, simulation: Simulation) -> SimulationResult | N
         dissipated_energy=None if energies is None else energies.values,
         pull_off_energy=None if math.isnan(pull_off) else pull_off,
         fronts=None if fronts is None or not n_site else fronts.values.reshape(-1, n_site),
+        jumps=jumps,
     )
     return SimulationResult(simulation, record, RunMeasures(**costs))
 

@@ -9,7 +9,6 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from crackfront.analysis.table import SweepRow
 from crackfront.core.variables import variables
 from crackfront.core.versions import PHYSICS_VERSION
 from crackfront.simulate.checksums import MERGED, forget_sums
@@ -52,7 +51,7 @@ def finish_shard(store: Store, sweep: Sweep, shard: Shard, origin: Provenance) -
             f"{n_missing} of {located.missing.size} simulations are not in "
             f"{store.curve_folder(shard)}; run the same command again"
         )
-    columns = {item.name: located.column(item.name) for item in variables(SweepRow)}
+    columns = {item.name: located.column(item.name) for item in variables(sweep.row_type)}
     remade = [number for number, rows in enumerate(located.files) if is_older(rows)]
     for number in remade:
         _remake(sweep, shard, located, number, columns)

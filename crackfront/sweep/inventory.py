@@ -137,11 +137,13 @@ class LocatedRows:
 
     def column(self, name: str) -> NDArray[Any]:
         """Values of a column of the simulations that are there, series by series."""
-        parts = [rows.columns[name] for rows in self.files]
-        # Where each file begins in the columns of all files, one after the other.
-        starts = np.cumsum([0, *map(len, parts)])
         there = ~self.missing
-        return np.asarray(np.concatenate(parts)[starts[self.file[there]] + self.place[there]])
+        # Files of other simulations may lack the column.
+        used, order = np.unique(self.file[there], return_inverse=True)
+        parts = [self.files[number].columns[name] for number in used.tolist()]
+        # Where each file begins in the columns of these files, one after the other.
+        starts = np.cumsum([0, *map(len, parts)])
+        return np.asarray(np.concatenate(parts)[starts[order] + self.place[there]])
 
 
 def located_rows(

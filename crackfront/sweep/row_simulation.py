@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 from xarray import DataArray, Dataset
 
-from crackfront.analysis.table import PLACE, SweepRow
+from crackfront.analysis.table import PLACE
 from crackfront.core.adhesion import FieldKind
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.core.variables import variables
@@ -56,7 +56,7 @@ class RowSimulation:
         return curves.assign(
             {
                 item.name: labelled(item, getattr(row, item.name))
-                for item in variables(SweepRow)
+                for item in variables(type(row))
                 if item.name not in curves and not item.name.startswith("status")
             }
         ).assign_attrs(result=sentence)

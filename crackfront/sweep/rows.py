@@ -11,8 +11,9 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+from crackfront.analysis.jump_measures import JumpMeasures, jump_measures
 from crackfront.analysis.steady_adhesion import SteadyAdhesion, SteadyMeasures
-from crackfront.analysis.table import PLACE, SweepRow
+from crackfront.analysis.table import PLACE, JumpRow, SweepRow, row_type
 from crackfront.core.cycle.record import CycleRecord
 from crackfront.core.outcome import Status
 from crackfront.core.variables import ADHESION, variables
@@ -63,7 +64,11 @@ def sweep_row(result: SimulationResult) -> SweepRow:
         item.name: getattr(steady, item.name) if complete or item.units != ADHESION else np.nan
         for item in variables(SteadyMeasures)
     }
-    return SweepRow(
+    if record.jumps is not None:
+        measures |= _without_jumps()
+        if complete and steady.averaged is not None:
+            measures |= asdict(jump_measures(record.jumps, steady.averaged))
+    return row_type(record.jumps is not None)(
         **measures | asdict(result.measures),
         w_appr_numerical_error=numerical[0],
         w_retr_numerical_error=numerical[1],
@@ -80,11 +85,20 @@ def sweep_row(result: SimulationResult) -> SweepRow:
 
 def failed_row(simulation: Simulation, status: str, sentence: str) -> SweepRow:
     """Row of a simulation that failed, with its status and the reason as a sentence."""
-    values: dict[str, Any] = {item.name: math.nan for item in fields(SweepRow)}
+    kind = row_type(simulation.record_jumps)
+    values: dict[str, Any] = {item.name: math.nan for item in fields(kind)}
+    if simulation.record_jumps:
+        values |= _without_jumps()
     values |= dict.fromkeys(("iterations", "n_step", "n_approach", "n_retraction"), 0)
     values |= {"status": status, "status_sentence": sentence}
     values |= {"seed": simulation.seed, "max_sweeps": simulation.solver.max_sweeps}
-    return SweepRow(**values)
+    return kind(**values)
+
+
+def _without_jumps() -> dict[str, float]:
+    """Measures of the jumps of a simulation without a value."""
+    values = {item.name: math.nan for item in fields(JumpMeasures)}
+    return values | {"n_jump_appr": 0, "n_jump_retr": 0}
 
 
 def _status(record: CycleRecord, steady: SteadyAdhesion) -> tuple[str, str]:
@@ -96,10 +110,10 @@ def _status(record: CycleRecord, steady: SteadyAdhesion) -> tuple[str, str]:
 
 
 def row_columns(rows: Sequence[SweepRow], shape: tuple[int, ...]) -> dict[str, NDArray[np.generic]]:
-    """Values of rows as a file has them: spectra, amplitudes and realisations of a shape."""
+    """Values of rows of one type, as a file has them: over spectra, amplitudes and realisations."""
     columns = {
         item.name: np.array([getattr(row, item.name) for row in rows]).reshape(shape)
-        for item in variables(SweepRow)
+        for item in variables(type(rows[0]))
     }
     places = [STATUSES.index(row.status) for row in rows]
     return columns | {"status": np.array(places, np.int8).reshape(shape)}
@@ -108,7 +122,9 @@ def row_columns(rows: Sequence[SweepRow], shape: tuple[int, ...]) -> dict[str, N
 def labelled_columns(columns: Mapping[str, NDArray[np.generic]]) -> dict[str, xr.Variable]:
     """Variables of a file for columns as of :func:`row_columns`."""
     labelled = {}
-    for item in variables(SweepRow, *PLACE):
+    for item in variables(JumpRow, *PLACE):
+        if item.name not in columns:
+            continue
         values = columns[item.name]
         about = label(item, STATUSES if item.name == "status" else ())
         labelled[item.name] = xr.Variable(item.dims, values, about)

@@ -100,12 +100,12 @@ def write_shard(
 ) -> None:
     """Write the file of a shard and its checksum.
 
-    Columns are the fields of `SweepRow`, over amplitudes and realisations in their order. The
-    layout is the same as in the file of the whole sweep.
+    Columns are the fields of the rows, over amplitudes and realisations in their order. The layout
+    is the same as in the file of the whole sweep.
     """
     alone = replace(sweep, spectra=(shard.item,))
     shape = 1, len(sweep.elastic_energies), len(shard.realisations)
-    shaped = {item.name: columns[item.name].reshape(shape) for item in variables(SweepRow)}
+    shaped = {name: values.reshape(shape) for name, values in columns.items()}
     status = shaped["status"]
     limits = shaped["max_sweeps"][status == STATUSES.index(AT_LIMIT)]
     complete = np.isin(status, [STATUSES.index(word) for word in COMPLETE])
@@ -146,9 +146,9 @@ def shard_summary(path: Path) -> ShardSummary:
 
 
 def shard_columns(
-    shard: ShardSummary, series: Sequence[str], taken: range
+    shard: ShardSummary, series: Sequence[str], taken: range, rows: type[SweepRow]
 ) -> dict[str, NDArray[np.generic]]:
-    """Columns of the rows of some series and realisations of a shard.
+    """Columns of the rows, of a type, of some series and realisations of a shard.
 
     They are read without xarray, which takes 0.1 s to open a file: sweeps have hundreds.
     """
@@ -157,7 +157,7 @@ def shard_columns(
     columns = {}
     with netCDF4.Dataset(shard.path) as file:
         file.set_auto_maskandscale(False)
-        for item in variables(SweepRow):
+        for item in variables(rows):
             stored = file[item.name]
             values = np.asarray(stored[:, :, taken.start - first : taken.stop - first])
             columns[item.name] = np.ascontiguousarray(values[:, amplitudes])

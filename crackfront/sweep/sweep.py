@@ -6,8 +6,8 @@ import functools
 import math
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
-from typing import Literal
 
+from crackfront.analysis.table import SweepRow, row_type
 from crackfront.core.adhesion import FieldKind
 from crackfront.core.arguments import nearest_name
 from crackfront.core.spectrum import Spectrum
@@ -15,7 +15,7 @@ from crackfront.core.units import Scales
 from crackfront.simulate.contact import SurfaceLoads, SweepLoad
 from crackfront.simulate.ensembles import GAUSSIAN, Ensemble
 from crackfront.simulate.numerics import Numerics
-from crackfront.simulate.simulation import Simulation, simulation_of
+from crackfront.simulate.simulation import Recorded, Simulation, simulation_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,11 +85,16 @@ class Sweep:
     """How simulations are resolved and solved."""
     schedule: SweepLoad
     """Loads of all simulations, or the springs of straight fronts."""
-    record: tuple[Literal["fronts", "energy"], ...]
+    record: tuple[Recorded, ...]
     """What to record in addition to the curves."""
     failed_fraction: float
     """Part of the simulations that may end without a value."""
     fit: FitRange
+
+    @property
+    def row_type(self) -> type[SweepRow]:
+        """Class of its rows."""
+        return row_type("jumps" in self.record)
 
     def named(self, name: str) -> NamedSpectrum:
         """Spectrum of a name; a ValueError names the nearest where there is none."""

@@ -21,6 +21,8 @@ class SweepCost:
     """Processor time of the longest one. (Units: s)"""
     bytes_a_rank: float
     """Memory of a process that runs the largest one. (Units: bytes)"""
+    jump_core_seconds: float
+    """Share of the processor time that separates jumps. (Units: s)"""
 
 
 def sweep_cost(counted: Iterable[tuple[Simulation, int]]) -> SweepCost:
@@ -30,6 +32,7 @@ def sweep_cost(counted: Iterable[tuple[Simulation, int]]) -> SweepCost:
         core_seconds=sum(number * cost.seconds for cost, number in costs),
         longest_seconds=max((cost.seconds for cost, _ in costs), default=0.0),
         bytes_a_rank=max((cost.memory for cost, _ in costs), default=0.0),
+        jump_core_seconds=sum(number * cost.jump_seconds for cost, number in costs),
     )
 
 

@@ -17,8 +17,9 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+from crackfront.analysis.jump_measures import JUMP_DEFINITION
 from crackfront.analysis.steady_adhesion import STEADY_DEFINITION
-from crackfront.analysis.table import COLUMNS, SweepAxes, SweepRow, SweepTable
+from crackfront.analysis.table import COLUMNS, SweepAxes, SweepTable
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.units import WORK_OF_ADHESION
 from crackfront.core.variables import variables
@@ -59,7 +60,7 @@ def write_hysteresis(
     they need not be in memory twice.
     """
     columns = {}
-    for variable in variables(SweepRow):
+    for variable in variables(sweep.row_type):
         spectra = [
             np.concatenate([shard.pop(variable.name) for shard in parts], axis=2)
             for parts in shards
@@ -175,6 +176,8 @@ def _attributes(sweep: Sweep) -> dict[str, str | float]:
         "definition": STEADY_DEFINITION,
         "sweep_seed": sweep.seed,
     }
+    if "jumps" in sweep.record:
+        attributes["jump_definition"] = JUMP_DEFINITION
     if sweep.scales is not None:
         attributes |= {f"{CONFIGURED}{name}": value for name, value in asdict(sweep.scales).items()}
         attributes |= {

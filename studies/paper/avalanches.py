@@ -10,8 +10,8 @@ import numpy as np
 from crackfront.core.adhesion import force_correlation_length
 from crackfront.core.arrays import Array
 from crackfront.core.cycle.energy import dissipated_energy
+from crackfront.core.cycle.instabilities import resolved_motion, swept_clusters
 from crackfront.core.variables import ADHESION, AREA, ENERGY, LATERAL, VERTICAL, variable
-from crackfront.surfaces.instabilities import resolved_motion, swept_clusters
 from crackfront.validation import Count, Positive
 from studies.paper.events import EventParameters, EventRecord, event_record
 from studies.paper.figure import Integers, values_of

@@ -13,8 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from crackfront.core.arrays import Array
+from crackfront.core.cycle.instabilities import resolved_motion, swept_areas, swept_clusters
 from crackfront.core.variables import variable
-from crackfront.surfaces.instabilities import resolved_motion, swept_areas, swept_clusters
 from crackfront.validation import Positive
 from studies.paper.figure import Integers
 from studies.paper.rough import surface_means

@@ -16,18 +16,18 @@ from scipy.signal import resample
 from crackfront.core import jkr
 from crackfront.core.arrays import Array
 from crackfront.core.cycle.energy import dissipated_energy
+from crackfront.core.cycle.instabilities import (
+    Motion,
+    measured_instabilities,
+    resolved_motion,
+    shortest_instability,
+)
 from crackfront.core.cycle.load_schedule import LoadSchedule
 from crackfront.core.outcome import Direction
 from crackfront.core.variables import ADHESION, ENERGY, FORCE, LATERAL, VERTICAL, variable
 from crackfront.plots.instability_maps import ENERGY_LABEL, draw_patches, energy_shades
 from crackfront.plots.parts import FORCE_LABEL, RADIUS_LABEL
 from crackfront.plots.style import PAGE, PURPLE, VERMILION, blank_figure, explain, house_style
-from crackfront.surfaces.instabilities import (
-    Motion,
-    measured_instabilities,
-    resolved_motion,
-    shortest_instability,
-)
 from crackfront.sweep.section import section_error
 from crackfront.validation import Count, Positive
 from studies.paper.checks import Check, close_to

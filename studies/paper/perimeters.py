@@ -9,11 +9,11 @@ import numpy as np
 from scipy.ndimage import find_objects, label
 
 from crackfront.core.arrays import Array
+from crackfront.core.cycle.instabilities import resolved_motion
 from crackfront.core.cycle.record import Recorder
 from crackfront.core.field.fields import Field
 from crackfront.core.geometry.sphere import ContactState
 from crackfront.core.solver.relax import Solver
-from crackfront.surfaces.instabilities import resolved_motion
 from studies.records import thinned
 
 _MOST_SITES = 4096

@@ -10,7 +10,7 @@ import numpy as np
 
 from crackfront.analysis.result import fit_columns
 from crackfront.analysis.run_measures import RunMeasures
-from crackfront.analysis.steady_adhesion import passing_adhesion
+from crackfront.analysis.steady_adhesion import SteadyMeasures, passing_adhesion
 from crackfront.analysis.sweep_fit import fit_sweep
 from crackfront.analysis.table import SweepRow, SweepTable
 from crackfront.core.arrays import Array
@@ -181,7 +181,7 @@ def rows_and_fits(inputs: Scenes) -> Scenes:
     rows = {name: sweep_row(result) for name, result in results.items()}
     line = results["line 0"]
     passing = passing_adhesion(line.record, line.simulation.correlation_length, 1.0, 2.0)
-    loop = [value for value in asdict(passing).values() if not isinstance(value, str)]
+    loop = [getattr(passing, item.name) for item in fields(SteadyMeasures)]
     return {
         "rows": _columns(rows),
         "straight front under any loads": {"line 0": np.array(loop, float)},

@@ -12,9 +12,10 @@ import numpy as np
 from crackfront.core.arrays import Array
 from crackfront.core.cycle.energy import contact_energy, dissipated_energy
 from crackfront.core.cycle.follow import Load, Step, follow
+from crackfront.core.cycle.jumps import JumpRecorder, Jumps
 from crackfront.core.field.fields import Field
 from crackfront.core.outcome import Status
-from crackfront.core.solver.relax import Solver
+from crackfront.core.solver.relax import Newton, Solver
 from crackfront.core.variables import ENERGY, STEP, variable
 
 
@@ -39,6 +40,8 @@ class CycleRecord:
     lost. (Units: as dissipated_energy)"""
     fronts: Array | None = None
     """If recorded. Shape (n_step, n_site). (Units: reduced lateral length)"""
+    jumps: Jumps | None = None
+    """If recorded, the jumps of the steady load steps."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,6 +53,8 @@ class Checkpoint:
     """Front of the last state. (Units: reduced lateral length)"""
     turn: Array
     """Front at which its branch began. (Units: reduced lateral length)"""
+    resolved: Array | None = None
+    """Last front on which jumps were resolved, if there is one. (Units: reduced lateral length)"""
 
 
 Observer = Callable[["Recorder"], None]
@@ -63,6 +68,9 @@ class Recorder:
     ----------
     fronts, energy : bool, optional
         Whether to record every front, and the energy that each load step dissipates.
+    jumps : float, optional
+        Correlation length of w_loc, if the jumps of steady load steps are to be recorded. (Units:
+        reduced lateral length)
     observers : sequence of callable, optional
         Called with the recorder at every new state, for progress, checkpoints, pictures.
     resume : Checkpoint, optional
@@ -83,6 +91,7 @@ class Recorder:
         *,
         fronts: bool = False,
         energy: bool = False,
+        jumps: float | None = None,
         observers: Sequence[Observer] = (),
         resume: Checkpoint | None = None,
     ) -> None:
@@ -95,6 +104,11 @@ class Recorder:
         self._dissipated: list[float] | None = [] if energy else None
         if earlier is not None and earlier.dissipated_energy is not None:
             self._dissipated = earlier.dissipated_energy.tolist()
+        self._jumps: JumpRecorder | None = None
+        if jumps is not None and resume is not None:
+            self._jumps = JumpRecorder(jumps, resume.record.jumps, resume.resolved)
+        elif jumps is not None:
+            self._jumps = JumpRecorder(jumps)
 
     def run(
         self, field: Field, front: Array, loads: Iterable[Load], solver: Solver | None = None
@@ -104,6 +118,7 @@ class Recorder:
         Arguments are as of :func:`crackfront.core.cycle.follow.follow`.
         """
         self._field, self.front, self._turn = field, front, front
+        self._solver = solver or Newton()
         coming = iter(loads)
         if self._resume is not None:
             self._recall(self._resume, coming)
@@ -133,6 +148,9 @@ class Recorder:
             self._turn = load.start
         elif self.states and self.states[-1].direction != load.direction:
             self._turn = step.before
+        if self._jumps is not None:
+            before = self._load_before(load, self._jumps.correlation_length)
+            self._jumps.add(self._field, step, before, self._solver)
         state = self._field.geometry.state(step.relaxation, load.value, load.direction, self._turn)
         if self._dissipated is not None:
             if load.start is None and self.states:
@@ -147,6 +165,18 @@ class Recorder:
         for observer in self._observers:
             observer(self)
 
+    def _load_before(self, load: Load, least_travel: float) -> Load | None:
+        """Load of the last state, if it is of the same branch and every site has travelled so far.
+
+        None otherwise.
+        """
+        if load.start is not None or not self.states:
+            return None
+        last = self.states[-1]
+        if last.direction != load.direction or last.least_travel < least_travel:
+            return None
+        return Load(getattr(last, self.load_name), last.direction)
+
     @property
     def load_noun(self) -> str:
         """What messages call the load."""
@@ -160,7 +190,8 @@ class Recorder:
 
     def checkpoint(self) -> Checkpoint:
         """Checkpoint at the last state."""
-        return Checkpoint(self.record(), self.front, self._turn)
+        resolved = None if self._jumps is None else self._jumps.front
+        return Checkpoint(self.record(), self.front, self._turn, resolved)
 
     def record(self, status: Status | None = None) -> CycleRecord:
         """Record of all states so far; by default with the status of the last relaxation."""
@@ -173,6 +204,7 @@ class Recorder:
             dissipated_energy=None if energies is None else np.array(energies),
             pull_off_energy=contact_energy(self.front, self.load, self._field) if lost else None,
             fronts=None if fronts is None else np.array(fronts).reshape(-1, self.front.size),
+            jumps=None if self._jumps is None else self._jumps.jumps(),
         )
 
 

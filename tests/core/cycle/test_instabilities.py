@@ -8,12 +8,16 @@ from scipy.optimize import brentq
 
 from crackfront.core.adhesion import AdhesionMap, correlation_length
 from crackfront.core.cycle.energy import dissipated_energy
+from crackfront.core.cycle.instabilities import (
+    resolved_motion,
+    shortest_instability,
+    swept_clusters,
+)
 from crackfront.core.geometry.line import initial_front, line_field
 from crackfront.core.geometry.sphere import polar_field, sphere
 from crackfront.core.solver.relax import Newton, relax
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.units import WORK_OF_ADHESION
-from crackfront.surfaces.instabilities import resolved_motion, shortest_instability, swept_clusters
 
 TRAVEL = 0.004
 

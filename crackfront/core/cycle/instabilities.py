@@ -99,17 +99,39 @@ class Instabilities:
     after: Array = variable("front after the instability", LATERAL, _JUMP, "angle")
 
 
+@dataclass(frozen=True, slots=True)
+class JumpSize:
+    """What one instability swept and dissipated."""
+
+    dissipated_energy: float
+    """Energy that it dissipates. (Units: reduced energy)"""
+    area: float
+    """Area between the fronts before and after. (Units: reduced lateral length**2)"""
+    extent: float
+    """Width of its largest patch along the perimeter. (Units: reduced lateral length)"""
+
+
+def jump_size(jump: Motion, field: Field, travel: float) -> JumpSize:
+    """What an instability swept and dissipated; travel as of :func:`resolved_motion`."""
+    before, after, geometry = jump.before, jump.after, field.geometry
+    return JumpSize(
+        dissipated_energy=dissipated_energy(before, after, jump.end, field),
+        area=float(np.sum(swept_areas(before, after, geometry))),
+        extent=swept_clusters(before, after, travel, geometry)[0].extent,
+    )
+
+
 def measured_instabilities(jumps: Sequence[Motion], field: Field, travel: float) -> Instabilities:
     """What the jumps of one branch swept and dissipated; travel as of :func:`resolved_motion`."""
-    geometry = field.geometry
-    clusters = [swept_clusters(jump.before, jump.after, travel, geometry) for jump in jumps]
+    sizes = [jump_size(jump, field, travel) for jump in jumps]
     fronts = [np.array([getattr(jump, name) for jump in jumps]) for name in ("before", "after")]
     return Instabilities(
         np.array([jump.end for jump in jumps]),
-        np.array([dissipated_energy(jump.before, jump.after, jump.end, field) for jump in jumps]),
-        np.array([float(np.sum(swept_areas(jump.before, jump.after, geometry))) for jump in jumps]),
-        np.array([parts[0].extent for parts in clusters]),
-        *(front.reshape(-1, geometry.n_site) for front in fronts),
+        *(
+            np.array([getattr(size, name) for size in sizes])
+            for name in ("dissipated_energy", "area", "extent")
+        ),
+        *(front.reshape(-1, field.geometry.n_site) for front in fronts),
     )
 
 
