@@ -31,7 +31,7 @@ _STEP_SECONDS = 2.8e-3
 _SITE_POWER, _TRAVEL_POWER, _ENERGY_POWER = 1.46, 0.47, 0.06
 """Powers of that time: a longer front, a longer step and disorder need more sweeps."""
 
-_JUMP_SECONDS = 0.6
+_JUMP_SECONDS = 0.4
 """Time to separate the jumps of a load step of 1000 sites that sweeps 100 squared correlation
 lengths. (Units: s)"""
 

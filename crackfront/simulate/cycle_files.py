@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from crackfront.core.cycle.jumps import Jumps
+from crackfront.core.cycle.jumps import Jumps, jump_variables
 from crackfront.core.cycle.record import Checkpoint, CycleRecord
 from crackfront.core.geometry.base import Geometry, State
 from crackfront.core.geometry.line import LineState
@@ -151,7 +151,10 @@ def cycle_dataset(record: CycleRecord, geometry: Geometry) -> xr.Dataset:
     """Labelled curves of a record."""
     curves = labelled_fields(record.states, STEP) | labelled_fields(record)
     if record.jumps is not None:
-        curves |= labelled_fields(record.jumps)
+        curves |= {
+            item.name: labelled(item, getattr(record.jumps, item.name))
+            for item in jump_variables(type(record.states))
+        }
     curves[STEP] = labelled(_STEP, np.arange(record.states.direction.size))
     if record.fronts is not None:
         front, site = geometry.variables

@@ -10,9 +10,9 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any, get_args
 
-from pydantic import Field, model_validator
+from pydantic import BeforeValidator, Field, model_validator
 
 from crackfront.core.adhesion import FieldKind
 from crackfront.simulate.simulation import Recorded
@@ -29,6 +29,14 @@ from crackfront.sweep.spectrum_sections import SpectrumSection
 from crackfront.validation import Count, Seed
 
 
+def _listed(record: Any) -> Any:
+    """What to record; an error with all that may be in the list if it is a word instead."""
+    if isinstance(record, str):
+        names = ", ".join(get_args(Recorded))
+        raise section_error(f"{record!r} is not a list; give one or more of {names}, as in [jumps]")
+    return record
+
+
 class Configuration(Section):
     """The whole file."""
 
@@ -40,7 +48,7 @@ class Configuration(Section):
     realisations: Count
     numerics: NumericsSection
     load: LoadSection
-    record: tuple[Recorded, ...] = ()
+    record: Annotated[tuple[Recorded, ...], BeforeValidator(_listed)] = ()
     failed_fraction: Annotated[float, Field(ge=0, le=1)] = 0.1
     fit: FitSection = FitSection()
 

@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 from crackfront.analysis.jump_measures import JumpMeasures
 from crackfront.analysis.run_measures import RunMeasures
 from crackfront.analysis.table import JumpRow, SweepRow
-from crackfront.core.cycle.jumps import JUMP, Jumps
+from crackfront.core.cycle.jumps import JUMP, Jumps, jump_variables
 from crackfront.core.cycle.record import CycleRecord
 from crackfront.core.geometry.base import State
 from crackfront.core.outcome import Status
@@ -202,8 +202,10 @@ def _state_columns(records: Sequence[CycleRecord]) -> dict[str, NDArray[Any]]:
 def _labelled(columns: dict[str, Any], state_types: Iterable[type[State]]) -> xr.Dataset:
     """Dataset of columns with their units and meanings; states are of some types."""
     state_variables: dict[str, Variable] = {}
-    for kind in (*state_types, CycleRecord, Jumps):
+    for kind in (*state_types, CycleRecord):
         state_variables |= {_state_name(item.name): item for item in variables(kind)}
+    for kind in state_types:
+        state_variables |= {item.name: item for item in jump_variables(kind)}
     labelled: dict[str, Any] = {}
     for item in (*variables(JumpRow, SIMULATION), *IDENTITY, *_CYCLE, _N_JUMP):
         if item.name not in columns:

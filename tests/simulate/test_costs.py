@@ -43,6 +43,16 @@ MEASURED = [
     ("line-long", "two-reversed-L90", 0.0025, 15.6),
 ]
 
+# The same of simulations that record jumps.
+MEASURED_JUMPS = [
+    ("config/jumps.yaml", "flat-L3", 0.1764, 10.9),
+    ("config/jumps.yaml", "flat-L10", 0.1764, 13.2),
+    ("config/test.yaml", "flat", 0.1, 1.51),
+    ("config/test.yaml", "rough", 0.02, 0.96),
+    ("tests/line-test.yaml", "flat-L2", 0.04, 0.37),
+    ("tests/line-test.yaml", "flat-L8", 0.16, 6.35),
+]
+
 
 @pytest.fixture(scope="module")
 def fronts(tmp_path_factory):
@@ -60,6 +70,17 @@ def test_times_are_expected_within_a_factor_of_two(
     [energy] = [value for value in sweep.elastic_energies if value == pytest.approx(energy)]
     expected = expected_cost(sweep.simulation(sweep.named(spectrum), energy, 0)).seconds
     assert 0.5 < expected / seconds < 2
+
+
+@pytest.mark.parametrize(("configuration", "spectrum", "energy", "seconds"), MEASURED_JUMPS)
+def test_times_of_jumps_are_expected_within_a_factor_of_two(
+    configuration, spectrum, energy, seconds
+):
+    sweep = replace(load_sweep(ROOT / configuration), record=("jumps",))
+    [energy] = [value for value in sweep.elastic_energies if value == pytest.approx(energy)]
+    cost = expected_cost(sweep.simulation(sweep.named(spectrum), energy, 0))
+    assert seconds / 2 < cost.seconds < 2 * seconds
+    assert cost.jump_seconds > 0.9 * cost.seconds
 
 
 @pytest.mark.parametrize("step", [0.05, 0.2])

@@ -16,10 +16,19 @@ from crackfront.core.arrays import Array
 from crackfront.core.cycle.follow import Load, Step, front_at
 from crackfront.core.cycle.instabilities import Motion, jump_size, resolved_motion, swept_areas
 from crackfront.core.field.fields import Field
-from crackfront.core.geometry.base import restoring_force, weight
+from crackfront.core.geometry.base import State, restoring_force, weight
 from crackfront.core.solver.relax import Solver, force_round_off
 from crackfront.core.units import WORK_OF_ADHESION
-from crackfront.core.variables import AREA, ENERGY, LATERAL, STEP, variable
+from crackfront.core.variables import (
+    AREA,
+    ENERGY,
+    LATERAL,
+    STEP,
+    VERTICAL,
+    Variable,
+    variable,
+    variables,
+)
 
 JUMP = "jump"
 """Dimension of the jumps of a cycle."""
@@ -52,11 +61,20 @@ class Jumps:
     """
 
     jump_state: Array = variable("number of the state that ends its load step", "1", JUMP)
-    jump_load: Array = variable("load of the jump", "1", JUMP)
+    jump_load: Array = variable("load of the jump", VERTICAL, JUMP)
     jump_area: Array = variable("area that the jump sweeps", AREA, JUMP)
     jump_extent: Array = variable("width of its largest patch along the front", LATERAL, JUMP)
     jump_energy: Array = variable("energy that the jump dissipates", ENERGY, JUMP)
     swept_area: Array = variable("area that a steady load step sweeps; else NaN", AREA, STEP)
+
+
+def jump_variables(states: type[State]) -> tuple[Variable, ...]:
+    """Variables of the jumps between states of a type; their loads have the unit of its loads."""
+    load = variables(states)[0]
+    return tuple(
+        replace(item, units=load.units) if item.name == "jump_load" else item
+        for item in variables(Jumps)
+    )
 
 
 class JumpRecorder:
