@@ -88,6 +88,7 @@ def test_the_page_of_sweeps_computes_the_fit_repeats_a_row_and_compares_results(
     configuration = ROOT / "config/test.yaml"
     table = cf.run_sweep(configuration, "results/test", progress=False)
     cf.run_sweep(configuration, "results/again", progress=False)
+    cf.run_sweep(ROOT / "config/jumps.yaml", "results/jumps", progress=False)
     fit_stored_study()
     shown = run_examples(DOCS / "sweeps.md")
     factor = shown["fit"].factor
