@@ -255,7 +255,9 @@ class Store:
                 "configuration and output, or `make` again"
             )
         blocks = watched([block for spectrum in chosen for block in spectrum])
-        read = (shard_columns(*block, rows=sweep.row_type) for block in blocks)
+        read = (
+            shard_columns(shard, series, taken, sweep.row_type) for shard, series, taken in blocks
+        )
         parts = [[*itertools.islice(read, len(spectrum))] for spectrum in chosen]
         forget_sums(self.folder)
         self.keep_configuration(origin.configuration)

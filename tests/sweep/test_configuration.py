@@ -75,7 +75,7 @@ def refusal(tmp_path, text):
     return message.replace(str(path), "").lstrip(": ")
 
 
-@pytest.mark.parametrize("name", ["test", "default", "paper", "fig3c", "spheres", "hurst"])
+@pytest.mark.parametrize("name", ["test", "default", "paper", "fig3c", "spheres", "hurst", "jumps"])
 def test_the_configurations_of_the_project_are_valid(name):
     sweep = load_sweep(ROOT / "config" / f"{name}.yaml")
     assert len({item.name for item in sweep.spectra}) == len(sweep.spectra)
