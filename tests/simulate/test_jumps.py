@@ -10,7 +10,7 @@ import pytest
 
 from crackfront.core.cycle.energy import contact_energy
 from crackfront.core.cycle.instabilities import jump_size, resolved_motion
-from crackfront.core.cycle.jumps import SMOOTH_TRAVEL, Jumps
+from crackfront.core.cycle.jumps import SMOOTH_TRAVEL
 from crackfront.core.solver.relax import Newton
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.units import WORK_OF_ADHESION
@@ -120,12 +120,10 @@ def test_finer_loads_separate_as_many_jumps(line):
 
 
 def assert_equal_records(first, second):
-    for kind, one, two in (
-        (type(first.states), first.states, second.states),
-        (Jumps, first.jumps, second.jumps),
-    ):
-        for item in fields(kind):
-            np.testing.assert_array_equal(getattr(one, item.name), getattr(two, item.name))
+    for part in ("states", "jumps"):
+        pair = getattr(first, part), getattr(second, part)
+        for item in fields(pair[0]):
+            np.testing.assert_array_equal(*(getattr(record, item.name) for record in pair))
 
 
 def test_a_killed_run_goes_on_to_the_same_jumps(line, tmp_path):
