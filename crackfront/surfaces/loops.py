@@ -196,11 +196,17 @@ def result_sentence(record: CycleRecord, steady: SteadyAdhesion, remark: str = "
     if steady.sentence:
         unknown = "no steady part: w_appr and w_retr are unknown"
         return "; ".join(filter(None, (unknown, remark, forces)))
-    works = []
-    for name in ("w_appr", "w_retr", "hysteresis"):
-        value, error = getattr(steady, name), getattr(steady, f"{name}_error")
-        works.append(f"{name} {with_error(value, error) if error > 0 else format(value, '.4g')}")
-    return "; ".join(filter(None, (f"{', '.join(works)} (w_int)", remark, forces)))
+    works = (
+        f"w_appr {_value_text(steady.w_appr, steady.w_appr_error)}, "
+        f"w_retr {_value_text(steady.w_retr, steady.w_retr_error)}, "
+        f"hysteresis {_value_text(steady.hysteresis, steady.hysteresis_error)} (w_int)"
+    )
+    return "; ".join(filter(None, (works, remark, forces)))
+
+
+def _value_text(value: float, error: float) -> str:
+    """A value with its standard error, if it has one."""
+    return with_error(value, error) if error > 0 else f"{value:.4g}"
 
 
 @checked_call
@@ -266,27 +272,35 @@ def find_instabilities(
         )
     schedule = LoadSchedule(max_penetration, step)
     numerics = LoopNumerics(error, sites, samples, usual_error=0.05)
-    contact = PressedSphere(surface, max_penetration).setup(None, step, numerics)
-    reach = travel * contact.measures.correlation_length
+    setup = PressedSphere(surface, max_penetration).setup(None, step, numerics)
+    largest_motion = travel * setup.measures.correlation_length
     if precision is None:
-        precision = min(2e-5, step / 10, max(reach**2, _round_off(contact)))
+        precision = min(2e-5, step / 10, max(largest_motion**2, _round_off(setup)))
     if precision > step / 10:
         raise ValueError(
             f"precision is {precision:g}; it must be at most a tenth of the step, {step / 10:g}"
         )
-    _check_resolved_motion(contact, travel, precision, direction)
-    field, solver = contact.field, Newton(min(contact.tolerance, precision / 10))
-    start = 0.0 if direction > 0 else max_penetration
-    touched = front_at(field, first_touch(field), Load(start, 1), solver)
-    loads = schedule.approach() if direction > 0 else schedule.retraction()
+    _check_resolved_motion(setup, travel, precision, direction)
+    field, solver = setup.field, Newton(min(setup.tolerance, precision / 10))
+    if direction > 0:
+        start, loads = 0.0, schedule.approach()
+    else:
+        start, loads = max_penetration, schedule.retraction()
     steps = resolved_motion(
-        field, touched, start, loads, direction, travel=reach, precision=precision, solver=solver
+        field,
+        front_at(field, first_touch(field), Load(start, 1), solver),
+        start,
+        loads,
+        direction,
+        travel=largest_motion,
+        precision=precision,
+        solver=solver,
     )
     jumps = [motion for motion in steps if motion.unstable]
-    instabilities = labelled_fields(measured_instabilities(jumps, field, reach))
-    angle = field.geometry.variables[1]
+    instabilities = labelled_fields(measured_instabilities(jumps, field, largest_motion))
+    _, angle = field.geometry.variables
     angles = {angle.name: labelled(angle, field.geometry.sites)}
-    return Dataset(instabilities, angles, {"travel": reach})
+    return Dataset(instabilities, angles, {"travel": largest_motion})
 
 
 _SMOOTH = 0.25
@@ -294,9 +308,9 @@ _SMOOTH = 0.25
 lengths: where a site is about to jump, it moves with that root."""
 
 
-def _round_off(contact: LoopSetup) -> float:
+def _round_off(setup: LoopSetup) -> float:
     """Penetration below which steps are round-off, in reduced units."""
-    return 10 * force_round_off(contact.front.size)
+    return 10 * force_round_off(setup.front.size)
 
 
 _PULL_OFF = 1.5
@@ -305,20 +319,22 @@ curvature of the penetration in the radius. (Units: reduced lengths)"""
 
 
 def _check_resolved_motion(
-    contact: LoopSetup, travel: float, precision: float, direction: Direction
+    setup: LoopSetup, travel: float, precision: float, direction: Direction
 ) -> None:
     """Raise if round-off hides steps of a precision, or if smooth motion counts as a jump."""
-    if precision < (least := _round_off(contact)):
+    round_off = _round_off(setup)
+    if precision < round_off:
         raise ValueError(
-            f"precision is {precision:g}, below the round-off of a front of {contact.front.size} "
-            f"sites ({least:.1e}); raise it"
+            f"precision is {precision:g}, below the round-off of a front of {setup.front.size} "
+            f"sites ({round_off:.1e}); raise it"
         )
-    length = contact.measures.correlation_length
-    least = max(_SMOOTH * math.sqrt(precision), precision / length)
+    length = setup.measures.correlation_length
+    smooth_motion = max(_SMOOTH * math.sqrt(precision), precision / length)
     if direction < 0:
-        least = max(least, math.sqrt(precision / _PULL_OFF) / length)
-    if travel < least:
+        smooth_motion = max(smooth_motion, math.sqrt(precision / _PULL_OFF) / length)
+    if travel < smooth_motion:
         raise ValueError(
             f"travel is {travel:g} correlation lengths, but within a precision of {precision:g} a "
-            f"front moves smoothly by up to {least:.2g} of them; raise travel or lower precision"
+            f"front moves smoothly by up to {smooth_motion:.2g} of them; raise travel or lower "
+            "precision"
         )
