@@ -65,14 +65,14 @@ def run_loop(
         :func:`crackfront.straight_front` makes of one.
     loads : iterable of float, optional
         Loads to visit in their order, down and up as often as they say; a repeated load is a pause.
-        The loop ends where contact is lost. By default, for a sphere, from first contact to the
+        The loop ends where contact is lost. Without loads a sphere goes from first contact to the
         largest penetration, and to pull-off. (Units: reduced vertical length; for a straight front
-        the length of its tile)
+        the unit of length of its tile)
     max_penetration : float, optional
         Largest penetration in place of loads, by default 1. (Units: reduced vertical length)
     step : float, optional
-        Largest difference of loads: equal steps lead from one to the next. By default 0.02 in place
-        of loads; those that are given are visited as they are. The fronts do not depend on it.
+        Largest difference of loads: equal steps lead from one to the next. The default is 0.02
+        without loads; stated loads are visited as they are. The fronts do not depend on it.
         (Units: as the loads)
     error : float, optional
         Standard error of the factor k of either branch that the numerics may leave; measured
@@ -81,11 +81,11 @@ def run_loop(
         with these it is 0.03 by default, or what the finest numerics on the pixels leave, and the
         result states it; without these attributes `error` is not allowed.
     sites : int, optional
-        Sites of the front, in place of an error. By default those that the error needs; where
-        there is none, one a pixel or more.
+        Sites of the front, in place of an error. The default is what the error needs; without an
+        error, one a pixel or more.
     samples : float, optional
-        Samples a pixel along a ray, in place of an error. By default those that the error needs;
-        where there is none 2, of a straight front 1.
+        Samples a pixel along a ray, in place of an error. The default is what the error needs;
+        without an error 2, for a straight front 1.
     solver : {"newton", "reference"}, optional
         Solver; both find the same fronts.
     fronts, energy : bool, optional
@@ -240,7 +240,7 @@ def find_instabilities(
         quarter of the root of the precision, by which a front moves smoothly before it jumps.
     precision : float, optional
         Penetration to which an instability is located, at most a tenth of the step: a smooth step
-        that is not divided further would count as one. By default 2e-5, or less where the step or
+        that is not divided further would count as one. The default is 2e-5, or less if the step or
         the `travel` is small: before pull-off the whole front moves with the root of the
         penetration. (Units: reduced vertical length)
     error : float, optional
