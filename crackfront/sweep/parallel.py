@@ -230,7 +230,7 @@ def _run_on_ranks(
 
 
 def _next_ended(ended: queue.SimpleQueue[Future[Result]]) -> Future[Result] | None:
-    """The next task that ends within a moment; None if none of them does."""
+    """The next task that has ended; None if a moment passes without one."""
     try:
         return ended.get(timeout=_SECONDS)
     except queue.Empty:
