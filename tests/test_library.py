@@ -714,12 +714,12 @@ def test_the_patches_of_the_instabilities_have_the_area_of_the_sites_that_moved(
         (lambda surface, loop, jumps: cf.plot_fronts(loop * np.nan), "radius .* not finite; drop"),
         (
             lambda surface, loop, jumps: cf.plot_loop((loop * np.nan).assign_attrs(loop.attrs)),
-            "force of the loop has no finite value to plot",
+            "force of the loop lacks a finite value to plot",
         ),
         (lambda surface, loop, jumps: cf.plot_spectrum(0 * surface), "the surface is flat"),
         (
             lambda surface, loop, jumps: cf.plot_instabilities(jumps[{"instability": []}]),
-            "no instability",
+            "lacks an instability",
         ),
         (
             lambda surface, loop, jumps: cf.plot_spectrum(

@@ -13,7 +13,7 @@ from scipy.special import stdtrit
 
 from crackfront.core.arrays import Array
 
-Other = TypeVar("Other")
+Mapped = TypeVar("Mapped")
 FloatOrArray = TypeVar("FloatOrArray", float, Array)
 
 if TYPE_CHECKING:
@@ -43,7 +43,7 @@ class Estimate(Generic[Number]):
     high: Number
     """Upper end of the 95% interval; NaN if the data are not sufficient."""
 
-    def each(self, function: Callable[[Number], Other]) -> Estimate[Other]:
+    def each(self, function: Callable[[Number], Mapped]) -> Estimate[Mapped]:
         """Apply a function, such as an index or a change of units, to all four entries."""
         return Estimate(*map(function, (self.value, self.standard_error, self.low, self.high)))
 

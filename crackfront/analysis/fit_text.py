@@ -7,6 +7,7 @@ from dataclasses import astuple
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from crackfront.analysis.estimate import MISSING, Estimate, finite_mean, with_error, with_interval
 from crackfront.analysis.finding import (
@@ -101,7 +102,7 @@ def _needed_line(fit: SweepFit) -> str:
     needed = [
         f"±{width:g} needs about {number:.0f}"
         for width, number in zip(HALF_WIDTHS, fit.pooled_n_needed, strict=True)
-        if width < float(f"{half_width:.1g}")  # one that reads as the present one is no narrower
+        if width < float(f"{half_width:.1g}")  # narrower also as it is printed
     ]
     further = f"; {', '.join(needed)}" if needed else ""
     spectra = f"{counted(present, 'realisation')} of each spectrum"
@@ -244,7 +245,10 @@ def _powers_sentence(fit: SweepFit) -> str:
     """The fit of k in disorder and size."""
     powers = fit.powers
     if not np.isfinite(powers.factor.value):
-        return "The cells in the range do not span disorder and size, so that k has no fit in both."
+        return (
+            "The cells in the range do not span disorder and size, so that k cannot be fitted in "
+            "both."
+        )
     return (
         f"k of the cells in the range follows k_m (s / {powers.disorder:.3g})^a "
         f"(g / {powers.size:.3g})^b with k_m = {with_interval(powers.factor)}, "
@@ -397,31 +401,8 @@ def _onset_sentences(fit: SweepFit) -> Iterator[str]:
 
 def _gap_sentences(fit: SweepFit) -> Iterator[str]:
     """Failed simulations, missing amplitudes and single realisations."""
-    for index, name in enumerate(fit.table.spectrum):
-        missing = fit.in_range & (fit.cells.count[index] == 0)
-        if fit.n_realisation[index] == 0:
-            yield f"{name}: no simulation in the range has a value; pooled results leave it out."
-            continue
-        if fit.n_failed[index]:
-            yield (
-                f"{name}: {fit.n_failed[index]} simulations in the range have no value and are "
-                "left out; if failure depends on the surface, the means are biased."
-            )
-        if np.any(missing):
-            gaps = ", ".join(f"{value:.4g}" for value in fit.table.amplitude[missing])
-            yield (
-                f"{name}: no value at e_el = {gaps} w_int; its k is a mean over the other "
-                "amplitudes and cannot be compared with the k of other spectra."
-            )
-        alone = fit.in_range & (fit.cells.count[index] == 1)
-        if np.any(alone) and fit.n_realisation[index] > 1:
-            gaps = ", ".join(f"{value:.4g}" for value in fit.table.amplitude[alone])
-            yield (
-                f"{name}: only one realisation has a value at e_el = {gaps} w_int; the exponent "
-                "and the trend with w_rms leave it out, k does not."
-            )
-        if fit.n_realisation[index] == 1:
-            yield f"{name}: one realisation gives no interval, neither here nor in pooled results."
+    for index in range(fit.table.spectrum.size):
+        yield from _spectrum_gap_sentences(fit, index)
     if pairs := [str(name) for name in fit.table.spectrum[fit.n_realisation == 2]]:
         yield (
             f"{', '.join(pairs)}: two realisations give no interval, because by Student's t with "
@@ -430,16 +411,48 @@ def _gap_sentences(fit: SweepFit) -> Iterator[str]:
         )
 
 
+def _spectrum_gap_sentences(fit: SweepFit, index: int) -> Iterator[str]:
+    """Failed simulations, missing amplitudes and single realisations of one spectrum."""
+    name, n_realisation = fit.table.spectrum[index], fit.n_realisation[index]
+    if n_realisation == 0:
+        yield f"{name}: no simulation in the range has a value; pooled results leave it out."
+        return
+    if fit.n_failed[index]:
+        yield (
+            f"{name}: {fit.n_failed[index]} simulations in the range have no value and are "
+            "left out; if failure depends on the surface, the means are biased."
+        )
+    missing = fit.in_range & (fit.cells.count[index] == 0)
+    if np.any(missing):
+        yield (
+            f"{name}: no value at e_el = {_amplitudes(fit, missing)} w_int; its k is a mean over "
+            "the other amplitudes and cannot be compared with the k of other spectra."
+        )
+    single = fit.in_range & (fit.cells.count[index] == 1)
+    if np.any(single) and n_realisation > 1:
+        yield (
+            f"{name}: only one realisation has a value at e_el = {_amplitudes(fit, single)} w_int; "
+            "the exponent and the trend with w_rms leave it out, k does not."
+        )
+    if n_realisation == 1:
+        yield f"{name}: one realisation gives no interval, neither here nor in pooled results."
+
+
+def _amplitudes(fit: SweepFit, chosen: NDArray[np.bool_]) -> str:
+    """Chosen e_el of a sweep, with commas."""
+    return ", ".join(f"{value:.4g}" for value in fit.table.amplitude[chosen])
+
+
 def _exponent_sentences(fit: SweepFit) -> Iterator[str]:
     """Amplitudes whose mean hysteresis is not positive, so that it lacks a logarithm."""
     hysteresis = fit.cells.hysteresis.value
     for index, name in enumerate(fit.table.spectrum):
         negative = fit.in_range & (hysteresis[index] <= 0)
         if np.any(negative):
-            gaps = ", ".join(f"{value:.4g}" for value in fit.table.amplitude[negative])
             yield (
-                f"{name}: the mean hysteresis at e_el = {gaps} w_int is not positive; the exponent "
-                "leaves it out, k does not; raise the lower end of the range."
+                f"{name}: the mean hysteresis at e_el = {_amplitudes(fit, negative)} w_int is not "
+                "positive; the exponent leaves it out, k does not; raise the lower end of the "
+                "range."
             )
 
 

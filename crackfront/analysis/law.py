@@ -294,7 +294,7 @@ def pinning_factor(
     kind : {"roughness", "chemical"}, optional
         Cause of the variations of w_loc. It decides the mean of w_loc, and so `negative_share`.
     breadth : float, optional
-        Breadth of the spectrum, by :func:`crackfront.analysis.law.spectral_breadth`. By default k
+        Breadth of the spectrum, by :func:`crackfront.analysis.law.spectral_breadth`. Without it k
         is for a typical spectrum, and the interval covers all breadths.
 
     Returns
@@ -343,7 +343,7 @@ def pinning_factors(
     size : array
         g, as for :func:`pinning_factor`.
     breadth : array, optional
-        Breadth of the spectrum. By default k is for a typical spectrum, and the intervals cover
+        Breadth of the spectrum. Without it k is for a typical spectrum, and the intervals cover
         all breadths.
 
     Returns

@@ -54,37 +54,70 @@ def power_fit(
     with np.errstate(divide="ignore", invalid="ignore"):
         logarithms = np.log(np.stack([disorder, size, factor, law_factor]))
     used = np.all(np.isfinite(logarithms), axis=0)
-    middle = np.array([np.mean(values[used]) if np.any(used) else np.nan for values in logarithms])
-    s, g, _, law = (values[used] - mean for values, mean in zip(logarithms, middle, strict=True))
-    design = np.stack([np.ones(s.size), s, g], axis=1)
-    if s.size <= _N_COEFFICIENT or np.linalg.cond(design) > _LARGEST_CONDITION:
-        nothing = student_estimate(np.nan, np.nan, 0)
-        missing = np.array(np.nan)
-        return PowerFit(nothing, nothing, nothing, missing, missing, missing, missing)
+    if np.count_nonzero(used) <= _N_COEFFICIENT:
+        return _undetermined()
+    log_s, log_g, log_k, log_law = logarithms
+    mean_s, mean_g, mean_k, mean_law = (float(np.mean(values[used])) for values in logarithms)
+    design = np.stack(
+        [np.ones(np.count_nonzero(used)), log_s[used] - mean_s, log_g[used] - mean_g], axis=1
+    )
+    if np.linalg.cond(design) > _LARGEST_CONDITION:
+        return _undetermined()
+    inverse = np.linalg.pinv(design)
     # Coefficients are sums over the cells of these weights times log k.
     weights = np.zeros((_N_COEFFICIENT, *used.shape))
-    weights[:, used] = np.linalg.pinv(design)
-    parts = np.sum(weights * np.where(used, logarithms[2] - middle[2], 0.0), axis=-1)
+    weights[:, used] = inverse
+    deviation = np.where(used, log_k - mean_k, 0.0)
+    middle, disorder_power, size_power = _coefficients(weights, deviation, used, draws, freedom)
+    value = middle.each(lambda logarithm: np.exp(logarithm + mean_k))
+    _, law_disorder_power, law_size_power = inverse @ (log_law[used] - mean_law)
+    return PowerFit(
+        factor=replace(value, standard_error=value.value * middle.standard_error),
+        disorder_power=disorder_power,
+        size_power=size_power,
+        disorder=np.asarray(np.exp(mean_s)),
+        size=np.asarray(np.exp(mean_g)),
+        law_disorder_power=np.asarray(law_disorder_power),
+        law_size_power=np.asarray(law_size_power),
+    )
+
+
+def _undetermined() -> PowerFit:
+    """Fit whose numbers are all NaN."""
+    nothing, missing = student_estimate(np.nan, np.nan, 0), np.array(np.nan)
+    return PowerFit(
+        factor=nothing,
+        disorder_power=nothing,
+        size_power=nothing,
+        disorder=missing,
+        size=missing,
+        law_disorder_power=missing,
+        law_size_power=missing,
+    )
+
+
+def _coefficients(
+    weights: Array,
+    deviation: Array,
+    used: NDArray[np.bool_],
+    draws: Sequence[Array | None],
+    freedom: NDArray[np.int64],
+) -> list[Estimate]:
+    """Coefficients of the least squares, sums of the independent parts of the spectra.
+
+    `weights` have the shape (n_coefficient, n_spectrum, n_amplitude), deviations of log k from its
+    mean and `used` cells (n_spectrum, n_amplitude).
+    """
+    parts = np.sum(weights * deviation, axis=-1)
     errors = np.stack(
         [_errors(drawn, weights[:, index], used[index]) for index, drawn in enumerate(draws)],
         axis=-1,
     )
     present = np.any(used, axis=1).astype(float)
-    logarithm, *powers = (
-        combination(student_estimate(*row, freedom), freedom, present)
-        for row in zip(parts, errors, strict=True)
-    )
-    value = logarithm.each(lambda values: np.exp(values + middle[2]))
-    by_law = np.linalg.pinv(design) @ law
-    return PowerFit(
-        factor=replace(value, standard_error=value.value * logarithm.standard_error),
-        disorder_power=powers[0],
-        size_power=powers[1],
-        disorder=np.asarray(np.exp(middle[0])),
-        size=np.asarray(np.exp(middle[1])),
-        law_disorder_power=np.asarray(by_law[1]),
-        law_size_power=np.asarray(by_law[2]),
-    )
+    return [
+        combination(student_estimate(part, error, freedom), freedom, present)
+        for part, error in zip(parts, errors, strict=True)
+    ]
 
 
 def _errors(draws: Array | None, weights: Array, used: NDArray[np.bool_]) -> Array:

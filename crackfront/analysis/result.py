@@ -51,8 +51,8 @@ class CellEstimates:
 class LawEstimates:
     """Estimates from the amplitudes in the range, for every spectrum or pooled.
 
-    If k is constant, the exponent is 2 and the disorder slope 0. By the law the midpoint slope is
-    1 for roughness and 0 for a chemical field.
+    If k is constant, the exponent is 2 and the disorder slope 0. The midpoint slope of
+    the law is 1 for roughness and 0 for a chemical field.
     """
 
     factor: Estimate = variable("k, mean over the amplitudes", "1")
@@ -109,12 +109,12 @@ class SweepFit:
     n_failed: Counts = variable("simulations without a value in the range", "1", SPECTRUM)
     n_needed: Array = variable(_NEEDED, "1", SPECTRUM, _HALF_WIDTH.name)
     pooled_n_needed: Array = variable(_NEEDED, "1", _HALF_WIDTH.name)
-    """By 1/sqrt(n) from the present intervals, for each of :data:`HALF_WIDTHS`."""
+    """Extrapolated by 1/sqrt(n) from the present intervals, for each of :data:`HALF_WIDTHS`."""
     law_exponent: Array = variable(_LAW_EXPONENT, "1", SPECTRUM)
     pooled_law_exponent: Array = variable(_LAW_EXPONENT, "1")
     midpoint_largest: Array = variable("least likely deviation of a midpoint, in errors", "1")
     midpoint_probability: Array = variable("probability of that deviation among all cells", "1")
-    """By Student's t, if the cells in the range are independent."""
+    """It follows from Student's t, if the cells in the range are independent."""
     size_slope: Estimate = variable(_SIZE_SLOPE, "1", AMPLITUDE)
     pooled_size_slope: Estimate = variable(_SIZE_SLOPE, "1")
     k_0: Estimate = variable("k of weak disorder in the infinite contact, by the law", "1")

@@ -5,7 +5,8 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass, field, replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -101,14 +102,26 @@ def steady_adhesion(
     )
     if sentence:
         return _no_value(branches, sentence)
+    lowest_radius, highest_radius = window
     from_force = [_adhesion_from_force(radius[branch], states.force[branch]) for branch in branches]
     columns = states.apparent_work_of_adhesion, radius, states.rms_radius
     return replace(
         _measures(columns, branches, correlation_length, from_force),
         hysteresis_error=_error_of_difference(states, branches, correlation_length),
-        lowest_radius=window[0],
-        highest_radius=window[1],
+        lowest_radius=lowest_radius,
+        highest_radius=highest_radius,
     )
+
+
+class SteadyStates(NamedTuple):
+    """Steady states of both branches."""
+
+    branches: Branches
+    """States at the positions that both branches share; all of them if one branch has too few."""
+    window: tuple[float, float]
+    """Ends of the range of these positions; NaN if a branch has too few states."""
+    sentence: str
+    """Why there are too few states; else empty."""
 
 
 def steady_branches(
@@ -118,33 +131,42 @@ def steady_branches(
     correlation_length: float,
     period: float = math.inf,
     remedy: str = _FURTHER,
-) -> tuple[Branches, tuple[float, float], str]:
-    """Steady states of both branches, the window of positions that they share, and a sentence.
+) -> SteadyStates:
+    """Steady states of both branches at the positions that they share.
 
-    The sentence says why there are too few states, else it is empty. `place` has the position of
-    each state, `name` its name in the plural. If the load turns several times, a branch is one
-    passage without a turn: the pair of passages that share the most states.
+    `place` has the position of each state, `name` its name in the plural. If the load turns several
+    times, a branch is one passage without a turn: the pair of passages that share the most states.
     """
+    needed = f"{FEWEST_STATES} each are needed, so {remedy}"
+    approach, retraction = _passages_with_most_states(states, place, correlation_length, period)
+    if min(approach.size, retraction.size) < FEWEST_STATES:
+        counts = f"{approach.size} steady states in approach and {retraction.size} in retraction"
+        return SteadyStates((approach, retraction), (math.nan, math.nan), f"{counts}; {needed}")
+    branches, window = shared_window(place, (approach, retraction), period)
+    approach, retraction = branches
+    if min(approach.size, retraction.size) < FEWEST_STATES:
+        counts = f"{approach.size} states of approach and {retraction.size} of retraction"
+        sentence = f"the steady branches share {counts} at equal mean {name}; {needed}"
+        return SteadyStates(branches, window, sentence)
+    return SteadyStates(branches, window, "")
+
+
+def _passages_with_most_states(
+    states: State, place: Array, correlation_length: float, period: float
+) -> Branches:
+    """Steady states of the passage forward and the passage back that share the most states."""
     steady = states.least_travel >= correlation_length
     forward = _passages(np.flatnonzero(steady & (states.direction > 0)))
     back = _passages(np.flatnonzero(steady & (states.direction < 0)))
+    pairs: list[Branches] = list(itertools.product(forward, back))
+    if len(pairs) == 1:  # its passages may be empty
+        return pairs[0]
 
     def n_shared(pair: Branches) -> int:
-        return min(branch.size for branch in shared_window(place, pair, period)[0])
+        (approach, retraction), _ = shared_window(place, pair, period)
+        return min(approach.size, retraction.size)
 
-    pairs: list[Branches] = list(itertools.product(forward, back))
-    branches = max(pairs, key=n_shared) if len(pairs) > 1 else pairs[0]
-    approach, retraction = branches
-    needed = f"{FEWEST_STATES} each are needed, so {remedy}"
-    if min(approach.size, retraction.size) < FEWEST_STATES:
-        counts = f"{approach.size} steady states in approach and {retraction.size}"
-        return branches, (math.nan, math.nan), f"{counts} in retraction; {needed}"
-    branches, window = shared_window(place, branches, period)
-    if min(branch.size for branch in branches) < FEWEST_STATES:
-        counts = f"{branches[0].size} states of approach and {branches[1].size} of retraction"
-        sentence = f"the steady branches share {counts} at equal mean {name}; {needed}"
-        return branches, window, sentence
-    return branches, window, ""
+    return max(pairs, key=n_shared)
 
 
 def _passages(states: Rows) -> list[Rows]:
@@ -267,21 +289,24 @@ def _measures(
         standard_error(values[branch], place[branch], roughness[branch], correlation_length)
         for branch in branches
     ]
+    w_appr, w_retr = works
+    w_appr_error, w_retr_error = errors
     # The force of a straight front's springs gives the same works of adhesion.
-    (w_appr, w_retr), from_force = works, from_force or works
+    w_appr_from_force, w_retr_from_force = from_force or works
+    approach, retraction = branches
     return SteadyAdhesion(
         w_appr=w_appr,
         w_retr=w_retr,
-        w_appr_error=errors[0],
-        w_retr_error=errors[1],
+        w_appr_error=w_appr_error,
+        w_retr_error=w_retr_error,
         hysteresis=w_retr - w_appr,
-        hysteresis_error=math.hypot(*errors),
+        hysteresis_error=math.hypot(w_appr_error, w_retr_error),
         midpoint=(w_retr + w_appr) / 2,
-        w_appr_from_force=from_force[0],
-        w_retr_from_force=from_force[1],
-        hysteresis_from_force=from_force[1] - from_force[0],
-        n_approach=branches[0].size,
-        n_retraction=branches[1].size,
+        w_appr_from_force=w_appr_from_force,
+        w_retr_from_force=w_retr_from_force,
+        hysteresis_from_force=w_retr_from_force - w_appr_from_force,
+        n_approach=approach.size,
+        n_retraction=retraction.size,
         lowest_radius=math.nan,
         highest_radius=math.nan,
         front_rms=float(np.mean(roughness[np.concatenate(branches)])),
@@ -293,11 +318,13 @@ def _error_of_difference(
     states: ContactState[Array], branches: Branches, correlation_length: float
 ) -> float:
     """Standard error of the hysteresis, from differences of states at the closest radii."""
-    radii = [states.mean_radius[branch] for branch in branches]
-    approach, retraction = (states.apparent_work_of_adhesion[branch] for branch in branches)
-    closest = np.argmin(np.abs(radii[0][:, np.newaxis] - radii[1]), axis=1)
-    roughness = states.rms_radius[branches[0]]
-    return standard_error(retraction[closest] - approach, radii[0], roughness, correlation_length)
+    approach, retraction = branches
+    radius = states.mean_radius[approach]
+    distances = np.abs(radius[:, np.newaxis] - states.mean_radius[retraction])
+    closest = retraction[np.argmin(distances, axis=1)]
+    works = states.apparent_work_of_adhesion
+    differences = works[closest] - works[approach]
+    return standard_error(differences, radius, states.rms_radius[approach], correlation_length)
 
 
 def _adhesion_from_force(radius: Array, force: Array) -> float:
@@ -310,6 +337,22 @@ def _adhesion_from_force(radius: Array, force: Array) -> float:
 
 def _no_value(branches: Branches, sentence: str) -> SteadyAdhesion:
     """Measures that are NaN but for the numbers of states, with a sentence that says why."""
-    values = {item.name: math.nan for item in fields(SteadyMeasures)}
-    values |= {"n_approach": branches[0].size, "n_retraction": branches[1].size}
-    return SteadyAdhesion(**values, sentence=sentence)  # type: ignore[arg-type]
+    approach, retraction = branches
+    return SteadyAdhesion(
+        w_appr=math.nan,
+        w_retr=math.nan,
+        w_appr_error=math.nan,
+        w_retr_error=math.nan,
+        hysteresis=math.nan,
+        hysteresis_error=math.nan,
+        midpoint=math.nan,
+        w_appr_from_force=math.nan,
+        w_retr_from_force=math.nan,
+        hysteresis_from_force=math.nan,
+        n_approach=approach.size,
+        n_retraction=retraction.size,
+        lowest_radius=math.nan,
+        highest_radius=math.nan,
+        front_rms=math.nan,
+        sentence=sentence,
+    )

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable
-from dataclasses import astuple, dataclass, fields
-from typing import NamedTuple
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import astuple, dataclass
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -45,9 +45,6 @@ COUNTS_AT_ONCE = 2**23
 
 _SAME_SIZE = 1e-6
 """Difference of log2 of the correlation lengths up to which two spectra have the same size."""
-
-_LAW_NAMES = tuple(item.name for item in fields(LawEstimates))
-"""Names of the estimates of a spectrum."""
 
 FIT_DEFINITION = (
     "k of one simulation is (w_retr - w_appr) / (2 e_el) with e_el measured on its tile. k of a "
@@ -94,24 +91,37 @@ class _Samples(NamedTuple):
     factor_from_force: Array
 
 
-class _Statistic(NamedTuple):
-    """One number of every bootstrap sample, and its weight among spectra, each (n_sample,)."""
+class _LawNumbers(NamedTuple):
+    """Something of each estimate in `LawEstimates`, such as its value, error or weight."""
 
-    values: Array
-    weights: Array
+    factor: Any
+    factor_by_sums: Any
+    factor_from_force: Any
+    exponent: Any
+    midpoint_slope: Any
+    disorder_slope: Any
+
+
+class _Statistics(NamedTuple):
+    """Estimates of one spectrum from every bootstrap sample."""
+
+    values: _LawNumbers
+    """Arrays (n_sample,)."""
+    weights: _LawNumbers
+    """Weights of the spectrum where several are pooled, arrays (n_sample,)."""
 
 
 @dataclass(frozen=True, slots=True)
 class _SpectrumFit:
-    """Fit of one spectrum, by the names of the fields of `LawEstimates`."""
+    """Fit of one spectrum."""
 
-    values: dict[str, float]
-    standard_errors: dict[str, float]
-    """NaN of a single realisation."""
-    weights: dict[str, float]
+    values: _LawNumbers
+    standard_errors: _LawNumbers
+    """NaN if there is a single realisation."""
+    weights: _LawNumbers
     """Weights of the spectrum where several are pooled."""
     factor_draws: Array | None
-    """k of the bootstrap samples, (n_sample, n_amplitude); None of a single realisation."""
+    """k of the bootstrap samples, (n_sample, n_amplitude); None if there is one realisation."""
 
 
 def fit_sweep(
@@ -165,9 +175,7 @@ def fit_sweep(
     fits = _fit_spectra(chosen, n_bootstrap, seed, watched)
     spectra = _spectra_estimates(fits, freedom)
     shares = _pooling_shares(fits)
-    pooled = LawEstimates(
-        **{name: combination(getattr(spectra, name), freedom, shares[name]) for name in _LAW_NAMES}
-    )
+    pooled = _pooled_estimates(spectra, freedom, shares)
     law = SweepLaw(table, kind, uncorrelated)
     cells = _cell_estimates(samples, 1.0 if kind == "roughness" else 0.0, law)
     n_large, departure = law_departure(cells.factor, cells.law_factor, cells.size)
@@ -200,7 +208,7 @@ def fit_sweep(
         n_needed=_needed_realisations(spectra.factor, n_realisation),
         pooled_n_needed=_needed_realisations(pooled.factor, np.max(n_realisation)),
         law_exponent=law_exponent,
-        pooled_law_exponent=_weighted_mean(law_exponent, shares["exponent"]),
+        pooled_law_exponent=_weighted_mean(law_exponent, shares.exponent),
         powers=powers,
         midpoint_largest=largest,
         midpoint_probability=probability,
@@ -277,40 +285,59 @@ def _fit_spectrum(samples: _Samples, n_bootstrap: int, rng: np.random.Generator)
     samples = _Samples(*(quantity[:, present] for quantity in samples))
     n_present = np.count_nonzero(present)
     count = np.count_nonzero(np.isfinite(samples.factor), axis=1)
-    # A cell of one realisation has no scatter, which the slopes' intervals would lack.
+    # A cell of one realisation lacks a scatter, and so would the intervals of the slopes.
     sloped = count >= min(2, np.max(count, initial=0))
-    statistics = _statistics(_means(samples, np.ones((1, n_present))), sloped)
-    values = {name: statistic.values[0] for name, statistic in statistics.items()}
-    weights = {
-        name: statistic.weights[0] if np.isfinite(values[name]) else 0.0
-        for name, statistic in statistics.items()
-    }
+    whole = _statistics(_means(samples, np.ones((1, n_present))), sloped)
+    values = _LawNumbers(*(numbers[0] for numbers in whole.values))
+    weights = _LawNumbers(
+        *(
+            weight[0] if np.isfinite(value) else 0.0
+            for value, weight in zip(values, whole.weights, strict=True)
+        )
+    )
     if n_present < 2:
-        return _SpectrumFit(values, dict.fromkeys(values, math.nan), weights, None)
+        unknown = _LawNumbers(*(math.nan for _ in values))
+        return _SpectrumFit(values, unknown, weights, None)
     resampled = _resampled(samples, n_bootstrap, rng)
     drawn = _statistics(resampled, sloped)
-    errors = {name: float(finite_std(statistic.values)) for name, statistic in drawn.items()}
+    errors = _LawNumbers(*(float(finite_std(numbers)) for numbers in drawn.values))
     return _SpectrumFit(values, errors, weights, resampled.factor)
 
 
 def _spectra_estimates(fits: list[_SpectrumFit], freedom: NDArray[np.int64]) -> LawEstimates:
     """Estimates of the spectra, (n_spectrum,), with intervals."""
+    values = _by_estimate([fit.values for fit in fits])
+    errors = _by_estimate([fit.standard_errors for fit in fits])
+    estimates = _LawNumbers(
+        *(
+            student_estimate(value, error, freedom)
+            for value, error in zip(values, errors, strict=True)
+        )
+    )
+    return LawEstimates(**estimates._asdict())
+
+
+def _by_estimate(spectra: Sequence[_LawNumbers]) -> _LawNumbers:
+    """Numbers of all spectra, as a list for each estimate."""
+    return _LawNumbers(*map(list, zip(*spectra, strict=True)))
+
+
+def _pooling_shares(fits: list[_SpectrumFit]) -> _LawNumbers:
+    """Shares of the spectra in each pooled estimate, arrays (n_spectrum,)."""
+    weights = _by_estimate([fit.weights for fit in fits])
+    return _LawNumbers(*(ratio_or_nan(weight, np.sum(weight)) for weight in weights))
+
+
+def _pooled_estimates(
+    spectra: LawEstimates, freedom: NDArray[np.int64], shares: _LawNumbers
+) -> LawEstimates:
+    """Estimates of all spectra together."""
     return LawEstimates(
         **{
-            name: student_estimate(
-                [fit.values[name] for fit in fits],
-                [fit.standard_errors[name] for fit in fits],
-                freedom,
-            )
-            for name in _LAW_NAMES
+            name: combination(getattr(spectra, name), freedom, share)
+            for name, share in shares._asdict().items()
         }
     )
-
-
-def _pooling_shares(fits: list[_SpectrumFit]) -> dict[str, Array]:
-    """Shares of the spectra in each pooled estimate, (n_spectrum,), by the estimate's name."""
-    weights = {name: np.array([fit.weights[name] for fit in fits]) for name in _LAW_NAMES}
-    return {name: ratio_or_nan(weight, np.sum(weight)) for name, weight in weights.items()}
 
 
 def _resampled(samples: _Samples, n_bootstrap: int, rng: np.random.Generator) -> _Samples:
@@ -332,25 +359,34 @@ def _means(samples: _Samples, counts: Array) -> _Samples:
     return _Samples(*means)
 
 
-def _statistics(means: _Samples, sloped: NDArray[np.bool_]) -> dict[str, _Statistic]:
-    """Numbers of every bootstrap sample, by the names of the fields of `LawEstimates`.
+def _statistics(means: _Samples, sloped: NDArray[np.bool_]) -> _Statistics:
+    """Estimates from the means of every bootstrap sample.
 
     Slopes use only the amplitudes that are `sloped`.
     """
     doublings = np.where(sloped, np.log2(means.rms), np.nan)
     positive = means.hysteresis > 0
     logarithm = np.log2(means.hysteresis, where=positive, out=np.full(positive.shape, np.nan))
+    exponent, exponent_weight = least_squares_slope(doublings, logarithm)
+    disorder_slope, slope_weight = least_squares_slope(doublings, means.factor)
     energy, equal = finite_sum(means.energy), np.ones(positive.shape[0])
-    by_sums = ratio_or_nan(finite_sum(means.hysteresis), 2 * energy)
-    midpoint_slope = ratio_or_nan(finite_sum(means.depression), energy)
-    return {
-        "factor": _Statistic(finite_mean(means.factor), equal),
-        "factor_by_sums": _Statistic(by_sums, energy),
-        "factor_from_force": _Statistic(finite_mean(means.factor_from_force), equal),
-        "exponent": _Statistic(*least_squares_slope(doublings, logarithm)),
-        "midpoint_slope": _Statistic(midpoint_slope, energy),
-        "disorder_slope": _Statistic(*least_squares_slope(doublings, means.factor)),
-    }
+    values = _LawNumbers(
+        factor=finite_mean(means.factor),
+        factor_by_sums=ratio_or_nan(finite_sum(means.hysteresis), 2 * energy),
+        factor_from_force=finite_mean(means.factor_from_force),
+        exponent=exponent,
+        midpoint_slope=ratio_or_nan(finite_sum(means.depression), energy),
+        disorder_slope=disorder_slope,
+    )
+    weights = _LawNumbers(
+        factor=equal,
+        factor_by_sums=energy,
+        factor_from_force=equal,
+        exponent=exponent_weight,
+        midpoint_slope=energy,
+        disorder_slope=slope_weight,
+    )
+    return _Statistics(values, weights)
 
 
 def _largest_deviation(cells: CellEstimates, in_range: NDArray[np.bool_]) -> tuple[Array, Array]:
@@ -378,10 +414,10 @@ def _needed_realisations(factor: Estimate, n_realisation: ArrayLike) -> Array:
 
 
 def _law_exponents(cells: CellEstimates, in_range: NDArray[np.bool_]) -> Array:
-    """Exponents of the hysteresis by the law in w_rms, (n_spectrum,), as those that are measured.
+    """Exponents of the hysteresis in w_rms by the law, (n_spectrum,).
 
-    The amplitudes are the same: those with a positive mean hysteresis, and with several
-    realisations if others have them.
+    The amplitudes are the same as for measured exponents: a positive mean hysteresis, and several
+    realisations if other amplitudes have them.
     """
     most = np.max(cells.count[:, in_range], axis=1, keepdims=True)
     sloped = in_range & (cells.count >= np.minimum(2, most)) & (cells.hysteresis.value > 0)

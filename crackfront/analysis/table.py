@@ -143,7 +143,7 @@ class SweepTable:
         return self.shape_of(index).is_isotropic and not self.ensemble(index)
 
     def ensemble(self, index: int) -> str:
-        """What the surfaces of an entry are besides their spectrum; empty if they are Gaussian."""
+        """Description of the surfaces of an entry; empty if they are Gaussian."""
         if self.parameters is None:
             return ""
         return str(json.loads(str(self.parameters[index])).get(ENSEMBLE, ""))

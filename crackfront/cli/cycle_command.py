@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Sequence
-from dataclasses import replace
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -27,7 +26,6 @@ from crackfront.core.bounds import (
     SITES,
     Range,
 )
-from crackfront.core.solver import DEFAULT_TOLERANCE
 from crackfront.core.words import counted
 from crackfront.sweep.checkpoints import CheckpointTimer
 from crackfront.sweep.parallel import deferring_stops
@@ -39,10 +37,10 @@ if TYPE_CHECKING:
     from crackfront.core.cycle.record import Observer, Recorder
     from crackfront.core.solver.relax import Solver
     from crackfront.simulate.cycle_files import CycleCheckpoint
-    from crackfront.surfaces.loop_setup import LoopSetup
+    from crackfront.surfaces.loop_setup import LoopContact, LoopSetup
 
 _SECONDS_BETWEEN_CHECKPOINTS = 60.0
-"""As of `crackfront simulate`: a kill loses at most a minute of work. (Units: s)"""
+"""The same as in `crackfront simulate`: a kill loses at most a minute of work. (Units: s)"""
 
 _PLACE = Range(-NUMBER.most, NUMBER.most)
 """Loads and their steps; the contact rejects negative ones where they are not allowed."""
@@ -169,46 +167,40 @@ def cycle(
     the same command continues from there.
     """
     from crackfront.core.cycle.load_schedule import DEFAULT_STEP
-    from crackfront.core.outcome import Status
     from crackfront.core.solver.relax import named_solver
     from crackfront.simulate.cycle_files import CycleCheckpoint, checkpoint_path, cycle_key
-    from crackfront.simulate.provenance import provenance
-    from crackfront.simulate.storage import write_dataset
     from crackfront.surfaces.loop_setup import LoopNumerics
-    from crackfront.surfaces.loops import loop_contact, loop_dataset
-    from crackfront.surfaces.straight_front import straight_front
-    from crackfront.surfaces.surface_array import read_field
 
     _check_outputs(field_file, output, figure)
-    solution = named_solver(solver, DEFAULT_TOLERANCE)
-    surface = read_field(field_file)
-    pressed = surface if spring is None else straight_front(surface, spring)
-    contact = loop_contact(pressed, max_penetration)
     if step is None:
         step = DEFAULT_STEP if loads is None else math.inf
     numerics = LoopNumerics(error, sites, samples)
+    contact = _contact(field_file, spring, max_penetration)
     setup = contact.setup(loads, step, numerics)
-    solution = replace(solution, tolerance=setup.tolerance)
+    solution = named_solver(solver, setup.tolerance)
     key = cycle_key(field_file, spring, loads, max_penetration, step, numerics, solver, record)
     checkpoint = CycleCheckpoint(checkpoint_path(output), key, setup.field.geometry)
     announce_compilation(err=as_json)
     announce_cost("cycle", setup.seconds)
     recorder = _recorded(setup, solution, checkpoint, record, every_state=watch)
-    loop = loop_dataset(recorder.record(), setup)
-    write_dataset(output, loop, provenance())
+    loop = _written_loop(recorder, setup, output)
     checkpoint.remove()
-    drawn = () if figure is None else _draw(loop, figure)
-    end = f"{recorder.load_noun} {recorder.load:.6g}"
-    lines = [
-        f"{counted(len(recorder.states), 'state')}: {output}",
-        *(f"figure: {path}" for path in drawn),
-    ]
-    lines.append(loop.attrs["result"])
-    if recorder.status is Status.LOST_CONTACT:
-        lines.append(f"contact was lost at {end}")
+    figures = () if figure is None else _draw(loop, figure)
+    lines = _result_lines(recorder, loop, output, figures)
     echo_answer(_content(recorder, loop, output), lines, as_json=as_json)
-    if recorder.status not in (Status.LOST_CONTACT, None if loads is None else Status.CONVERGED):
-        raise click.ClickException(f"at {end} {recorder.status.value}")
+    _check_complete(recorder, has_loads=loads is not None)
+
+
+def _contact(field_file: Path, spring: float | None, max_penetration: float | None) -> LoopContact:
+    """Contact with the field of a file: a sphere, or a straight front on springs of a length."""
+    from crackfront.surfaces.loops import loop_contact
+    from crackfront.surfaces.straight_front import straight_front
+    from crackfront.surfaces.surface_array import read_field
+
+    surface = read_field(field_file)
+    if spring is None:
+        return loop_contact(surface, max_penetration)
+    return loop_contact(straight_front(surface, spring), max_penetration)
 
 
 def _check_outputs(field_file: Path, output: Path, figure: Path | None) -> None:
@@ -248,6 +240,47 @@ def _recorded(
         )
         recorder.run(setup.field, setup.front, setup.loads, solver)
     return recorder
+
+
+def _written_loop(recorder: Recorder, setup: LoopSetup, output: Path) -> Dataset:
+    """Curves and measures of a cycle, which are written into the output."""
+    from crackfront.simulate.provenance import provenance
+    from crackfront.simulate.storage import write_dataset
+    from crackfront.surfaces.loops import loop_dataset
+
+    loop = loop_dataset(recorder.record(), setup)
+    write_dataset(output, loop, provenance())
+    return loop
+
+
+def _end(recorder: Recorder) -> str:
+    """Load at which a cycle ended, in words."""
+    return f"{recorder.load_noun} {recorder.load:.6g}"
+
+
+def _result_lines(
+    recorder: Recorder, loop: Dataset, output: Path, figures: Iterable[Path]
+) -> Iterator[str]:
+    """Files and result of a cycle, in lines for people."""
+    from crackfront.core.outcome import Status
+
+    yield f"{counted(len(recorder.states), 'state')}: {output}"
+    for path in figures:
+        yield f"figure: {path}"
+    yield loop.attrs["result"]
+    if recorder.status is Status.LOST_CONTACT:
+        yield f"contact was lost at {_end(recorder)}"
+
+
+def _check_complete(recorder: Recorder, *, has_loads: bool) -> None:
+    """Raise if a cycle ended before contact was lost or all of the user's loads were visited."""
+    from crackfront.core.outcome import Status
+
+    complete = [Status.LOST_CONTACT]
+    if has_loads:
+        complete.append(Status.CONVERGED)
+    if recorder.status not in complete:
+        raise click.ClickException(f"at {_end(recorder)} {recorder.status.value}")
 
 
 def _draw(loop: Dataset, figure: Path) -> tuple[Path, ...]:

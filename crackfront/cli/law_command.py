@@ -68,45 +68,63 @@ def law(
     --contact-radius for a sphere, whose edge the contact restores as springs do. Works of adhesion
     are w_int - e_el -+ k e_el.
     """
-    from crackfront.analysis.law import pinning_factor, shipped_law, spectral_breadth
-    from crackfront.analysis.law_spheres import sphere_factors
-    from crackfront.core.adhesion import adhesion_rms
+    from crackfront.analysis.law import shipped_law
 
-    front, sphere = (w_rms, g), (spectrum, elastic_energy, contact_radius)
-    names_front = any(item is not None for item in (*front, breadth))
-    if names_front and any(item is not None for item in sphere):
+    front_options = w_rms, g, breadth
+    sphere_options = spectrum, elastic_energy, contact_radius
+    if any(value is not None for value in front_options) and any(
+        value is not None for value in sphere_options
+    ):
         raise ValueError(
             f"options of a front ({_FRONT}) and a sphere ({_SPHERE}) are mixed; name either of them"
         )
     if w_rms is not None and g is not None:
-        factor = pinning_factor(w_rms, g, field, breadth)
-        answer = LawAnswer(
-            k=factor.factor,
-            approach=factor,
-            retraction=factor,
-            w_rms=w_rms,
-            g=g,
-            breadth=breadth,
-            departures=shipped_law().departures_at(g, breadth),
-        )
+        answer = _front_answer(w_rms, g, breadth, field)
     elif spectrum is not None and elastic_energy is not None and contact_radius is not None:
-        shape = _shape(spectrum)
-        factors = sphere_factors(field, shape, elastic_energy, contact_radius)
-        answer = LawAnswer(
-            k=factors.both,
-            approach=factors.approach,
-            retraction=factors.retraction,
-            w_rms=adhesion_rms(elastic_energy),
-            l_kappa=factors.spring,
-            larkin_length=factors.larkin_length,
-            g=factors.size,
-            departures=shipped_law().departures_at(factors.size, spectral_breadth(field, shape)),
-        )
+        answer = _sphere_answer(_shape(spectrum), elastic_energy, contact_radius, field)
     else:
         raise ValueError(f"the options are incomplete; name {_FRONT}, or else {_SPHERE}")
     ranges = {"w_rms": shipped_law().disorder, "g": shipped_law().size}
     content = answer.content | {"measured": ranges}
     echo_answer(content, answer.lines(ranges), as_json=as_json)
+
+
+def _front_answer(w_rms: float, g: float, breadth: float | None, field: FieldKind) -> LawAnswer:
+    """Answer for a straight front on springs."""
+    from crackfront.analysis.law import pinning_factor, shipped_law
+
+    factor = pinning_factor(w_rms, g, field, breadth)
+    return LawAnswer(
+        k=factor.factor,
+        approach=factor,
+        retraction=factor,
+        w_rms=w_rms,
+        g=g,
+        breadth=breadth,
+        departures=shipped_law().departures_at(g, breadth),
+    )
+
+
+def _sphere_answer(
+    spectrum: SelfAffineSpectrum, elastic_energy: float, contact_radius: float, field: FieldKind
+) -> LawAnswer:
+    """Answer for a sphere on a random surface."""
+    from crackfront.analysis.law import shipped_law, spectral_breadth
+    from crackfront.analysis.law_spheres import sphere_factors
+    from crackfront.core.adhesion import adhesion_rms
+
+    factors = sphere_factors(field, spectrum, elastic_energy, contact_radius)
+    breadth = spectral_breadth(field, spectrum)
+    return LawAnswer(
+        k=factors.both,
+        approach=factors.approach,
+        retraction=factors.retraction,
+        w_rms=adhesion_rms(elastic_energy),
+        l_kappa=factors.spring,
+        larkin_length=factors.larkin_length,
+        g=factors.size,
+        departures=shipped_law().departures_at(factors.size, breadth),
+    )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -116,7 +134,7 @@ class LawAnswer:
     k: Estimate[float]
     """Mean of both branches."""
     approach: PinningFactor
-    """k of the approach; of a front equal to the other branch."""
+    """k of the approach; for a front the same as in retraction."""
     retraction: PinningFactor
     """k of the retraction."""
     w_rms: float
@@ -124,13 +142,13 @@ class LawAnswer:
     g: float
     """Length of the springs over the Larkin length."""
     l_kappa: float | None = None
-    """None of a front, which only the ratio g describes. (Units: reduced lateral length)"""
+    """None for a front, which only the ratio g describes. (Units: reduced lateral length)"""
     larkin_length: float | None = None
-    """As `l_kappa`. (Units: reduced lateral length)"""
+    """None for a front. (Units: reduced lateral length)"""
     breadth: float | None = None
     """Breadth of the spectrum of w_loc that a front was asked for, in e-folds."""
     departures: Sequence[Departure]
-    """Where measured k are known to lie above the law."""
+    """Known departures of measured k from the law, for fronts of this size and breadth."""
 
     @property
     def errors(self) -> dict[str, float]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -55,7 +55,7 @@ _Callback = Callable[[click.Context, click.Parameter, str | None], Any]
 
 
 def _in_si(unit: str) -> _Callback:
-    """Callback that gives an option its value in a unit of SI."""
+    """Callback that converts the text of an option into a number in a unit of SI."""
 
     def value(_: click.Context, option: click.Parameter, text: str | None) -> float | None:
         return None if text is None else si_value(text, unit, name=option.opts[0])
@@ -66,7 +66,7 @@ def _in_si(unit: str) -> _Callback:
 def _window(
     _: click.Context, option: click.Parameter, text: str | None
 ) -> tuple[float, float] | None:
-    """Callback that gives an option two contact radii (Units: m)."""
+    """Callback that converts a text such as 50um:150um into two contact radii (Units: m)."""
     if text is None:
         return None
     ends = text.split(":")
@@ -145,8 +145,6 @@ def loop(
     --work-of-adhesion-error, are the same as in `crackfront predict` and apply to the prediction
     for --scans.
     """
-    from crackfront.measured.scan.netcdf import is_netcdf
-
     sphere = checked_options(SphereOptions, options, "--")
     check_needed_option(context, "modulus", "poisson")
     check_needed_option(context, "poisson", "modulus")
@@ -154,19 +152,8 @@ def loop(
         raise ValueError("a prediction for --scans needs w_int; give --work-of-adhesion")
     theory = _prediction_options(scans, options)
     rig = {name: value for name, value in options.items() if name not in _SPHERE_AND_PREDICTION}
-    check_overwriting([path, *scans], {"--figure": figure, "--report": report})
-    check_replaced_page("--report", report)
-    for output in filter(None, (figure, report)):
-        check_writable(output.parent)
-    if is_netcdf(path):
-        if names := [name for name, value in rig.items() if value]:
-            option = option_name(names[0])
-            raise ValueError(f"{path} is a simulated cycle without a rig; leave out {option}")
-        result = _simulated(path, sphere, bool(scans))
-    else:
-        if sphere.work_of_adhesion is not None and not scans:
-            raise ValueError("--work-of-adhesion is of a prediction; name --scans too")
-        result = _measured(path, sphere, rig)
+    _check_outputs([path, *scans], figure, report)
+    result = _evaluated(path, sphere, rig, has_scans=bool(scans))
     prediction, failure = None, None
     if sphere.work_of_adhesion is not None and scans:
         try:
@@ -175,19 +162,58 @@ def loop(
             failure = error  # The loop is printed and drawn all the same.
     _print(result, prediction, as_json=as_json)
     if figure is not None:
-        from crackfront.measured.loops.loop_drawing import loop_figure
-        from crackfront.plots.style import save_figure
-
-        for file in save_figure(loop_figure(result, prediction), figure):
+        for file in _draw(result, prediction, figure):
             click.echo(f"figure: {file}", err=as_json)
     if report is not None:
-        from crackfront.measured.loops.loop_report import loop_report
-        from crackfront.simulate.storage import write_text
-
-        write_text(report, loop_report(result, prediction, path.name))
+        _write_report(result, prediction, report, path.name)
         click.echo(f"report: {report}", err=as_json)
     if failure is not None:
         raise failure
+
+
+def _check_outputs(inputs: Sequence[Path], figure: Path | None, report: Path | None) -> None:
+    """Raise before any work if a file cannot be written or would be lost."""
+    check_overwriting(inputs, {"--figure": figure, "--report": report})
+    check_replaced_page("--report", report)
+    for output in (figure, report):
+        if output is not None:
+            check_writable(output.parent)
+
+
+def _evaluated(
+    path: Path, sphere: SphereOptions, rig: dict[str, Any], *, has_scans: bool
+) -> MeasuredLoop:
+    """Loop of a file, measured or simulated."""
+    from crackfront.measured.scan.netcdf import is_netcdf
+
+    if is_netcdf(path):
+        rig_options = [option_name(name) for name, value in rig.items() if value]
+        if rig_options:
+            raise ValueError(
+                f"{path} is a simulated cycle without a rig; leave out {rig_options[0]}"
+            )
+        return _simulated(path, sphere, has_scans=has_scans)
+    if sphere.work_of_adhesion is not None and not has_scans:
+        raise ValueError("--work-of-adhesion is of a prediction; name --scans too")
+    return _measured(path, sphere, rig)
+
+
+def _draw(loop: MeasuredLoop, prediction: Prediction | None, figure: Path) -> tuple[Path, ...]:
+    """Draw the figure of a loop with its prediction, if there is one; its files."""
+    from crackfront.measured.loops.loop_drawing import loop_figure
+    from crackfront.plots.style import save_figure
+
+    return save_figure(loop_figure(loop, prediction), figure)
+
+
+def _write_report(
+    loop: MeasuredLoop, prediction: Prediction | None, report: Path, name: str
+) -> None:
+    """Write the page of the loop of a file of some name, with its prediction, if there is one."""
+    from crackfront.measured.loops.loop_report import loop_report
+    from crackfront.simulate.storage import write_text
+
+    write_text(report, loop_report(loop, prediction, name))
 
 
 def _prediction_options(scans: tuple[Path, ...], options: dict[str, Any]) -> dict[str, Any]:
@@ -233,8 +259,11 @@ def _measured(path: Path, sphere: SphereOptions, options: dict[str, Any]) -> Mea
     return analyse_loop(recording, rig)
 
 
-def _simulated(path: Path, sphere: SphereOptions, is_compared: bool) -> MeasuredLoop:
-    """Loop of a simulated cycle, in SI units if its file or the options state a sphere."""
+def _simulated(path: Path, sphere: SphereOptions, *, has_scans: bool) -> MeasuredLoop:
+    """Loop of a simulated cycle, in SI units if its file or the options state a sphere.
+
+    ValueError if there are scans, with whose prediction it is compared, and it is in reduced units.
+    """
     from crackfront.measured.loops.simulated_loop import simulated_loop
     from crackfront.simulate.storage import read_dataset
     from crackfront.surfaces.si_units import in_si_units, stated_scales
@@ -244,12 +273,12 @@ def _simulated(path: Path, sphere: SphereOptions, is_compared: bool) -> Measured
         raise ValueError(f"{path} is not a cycle; name a file of crackfront cycle or of a sweep")
     is_in_si = stated_scales(cycle) is not None
     if sphere.radius is None and sphere.modulus is None:
-        if sphere.work_of_adhesion is not None and not is_compared:
+        if sphere.work_of_adhesion is not None and not has_scans:
             raise ValueError(
                 "--work-of-adhesion is of a prediction; name --scans too, or --radius, --modulus "
                 "and --poisson for SI units"
             )
-        if is_compared and not is_in_si:
+        if has_scans and not is_in_si:
             raise ValueError(
                 f"{path} is in reduced units, and predictions are not; give --radius, --modulus "
                 "and --poisson"

@@ -87,22 +87,23 @@ def options_of(
 
 
 def check_needed_option(context: click.Context, needed: str, *names: str) -> None:
-    """Raise ValueError if an option is given without another one that it needs."""
+    """Raise ValueError if one of some options is set, but not the option that it needs."""
     if not _first_set(context, [needed]) and (option := _first_set(context, names)):
         raise ValueError(f"{option} has an effect only with {option_name(needed)}; give both")
 
 
 def check_together(context: click.Context, decider: str, *names: str) -> None:
-    """Raise ValueError if an option is given with another one that leaves it without effect."""
+    """Raise ValueError if one of some options is set that `decider` leaves without effect."""
     if context.params[decider] and (option := _first_set(context, names)):
         raise ValueError(f"{option} has no effect with {option_name(decider)}; drop one")
 
 
 def _first_set(context: click.Context, names: Iterable[str]) -> str:
     """The first of some options that the user has set; empty if there is none."""
-    default = ParameterSource.DEFAULT
-    names_set = (name for name in names if context.get_parameter_source(name) is not default)
-    return next(map(option_name, names_set), "")
+    for name in names:
+        if context.get_parameter_source(name) is not ParameterSource.DEFAULT:
+            return option_name(name)
+    return ""
 
 
 def option_name(name: str) -> str:

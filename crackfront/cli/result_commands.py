@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 from dataclasses import asdict
 from pathlib import Path
@@ -21,7 +22,7 @@ if TYPE_CHECKING:
     from crackfront.simulate.run_simulation import SimulationResult
     from crackfront.simulate.simulation import Simulation
     from crackfront.sweep.store import Store
-    from crackfront.sweep.sweep import Sweep
+    from crackfront.sweep.sweep import NamedSpectrum, Sweep
 
 
 @click.command(epilog=examples("crackfront aggregate config/default.yaml"))
@@ -110,12 +111,14 @@ def _write_figures(folder: Path, fitted: SweepFit, example: SimulationResult) ->
         "loop": simulation_figure(example),
         "factor": factor_figure(fitted),
     }
-    return [
-        path
-        for name, figure in drawn.items()
-        for path in save_figure(figure, folder / "figures" / name)
-    ]
+    paths: list[Path] = []
+    for name, figure in drawn.items():
+        paths += save_figure(figure, folder / "figures" / name)
+    return paths
 
+
+_EXAMPLE_ENERGY = 0.05
+"""e_el of the paper's Fig. 3c, next to which a loop is drawn as an example. (Units: w_int)"""
 
 _CAPTIONS = {
     "factor": "k against e_el/w_int (a), and averaged over the range of the fit against the "
@@ -205,23 +208,32 @@ def _fitted(sweep: Sweep, store: Store) -> SweepFit:
 
 
 def _loop_example(sweep: Sweep, table: SweepTable) -> Simulation:
-    """The simulation that comes nearest to the paper's Fig. 3c, a front on its longest springs.
+    """The simulation with a value that is closest to the paper's Fig. 3c.
 
-    It is one with a value: others may have no curve.
+    A simulation of the spectrum of :func:`_example_spectrum` is preferred, then a similar e_el.
     """
     import numpy as np
 
+    preferred = _example_spectrum(sweep)
+
+    def distance(place: tuple[int, ...]) -> tuple[bool, float, int]:
+        spectrum, amplitude, realisation = place
+        energy = sweep.elastic_energies[amplitude]
+        is_elsewhere = sweep.spectra[spectrum] is not preferred
+        return is_elsewhere, abs(energy - _EXAMPLE_ENERGY), realisation
+
+    # A simulation without a value may lack a curve.
+    places = [tuple(place) for place in np.argwhere(table.finite).tolist()]
+    spectrum, amplitude, realisation = min(places, key=distance)
+    return sweep.simulation(sweep.spectra[spectrum], sweep.elastic_energies[amplitude], realisation)
+
+
+def _example_spectrum(sweep: Sweep) -> NamedSpectrum:
+    """The self-affine spectrum with the longest springs; for spheres the first of them."""
     self_affine = [
         item for item in sweep.spectra if item.spectrum.longest_feature > item.spectrum.short_cutoff
     ]
-    # The springs of spheres are NaN and count as none: the first spectrum stays.
-    longest = max(self_affine or sweep.spectra, key=lambda item: max(0.0, item.spring))
-    spectrum, amplitude, realisation = np.nonzero(table.finite)
-    away = np.abs(np.array(sweep.elastic_energies) - 0.05)[amplitude]
-    is_elsewhere = spectrum != sweep.spectra.index(longest)
-    first = np.lexsort((realisation, away, is_elsewhere))[0]
-    return sweep.simulation(
-        sweep.spectra[spectrum[first]],
-        sweep.elastic_energies[amplitude[first]],
-        int(realisation[first]),
-    )
+    candidates = self_affine or sweep.spectra
+    if math.isnan(candidates[0].spring):
+        return candidates[0]
+    return max(candidates, key=lambda item: item.spring)

@@ -7,7 +7,7 @@ import io
 import math
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import click
 
@@ -92,55 +92,80 @@ def samples(
     series = read_samples(path, options)
     if not no_figure:
         check_writable((figure or stem).parent)
-    if further := list(dict.fromkeys(name for sample in series for name in sample.further)):
-        click.echo(f"copied to the results without being used: {', '.join(further)}", err=True)
+    unused_columns = list(dict.fromkeys(name for sample in series for name in sample.further))
+    if unused_columns:
+        listed = ", ".join(unused_columns)
+        click.echo(f"copied to the results without being used: {listed}", err=True)
     results = write_samples(table, series, "sample", quantity)
     invalid = [result.sample.name for result in results if result.outcome == "invalid"]
     if invalid:
         click.echo(f"without a value: {', '.join(invalid)}; the table states the reasons", err=True)
     if not no_figure:
-        from crackfront.measured.page.series import series_figure
-        from crackfront.plots.style import save_figure
-
-        drawn = series_figure([result.point(quantity) for result in results], quantity)
-        for file in save_figure(drawn, figure or stem):
-            click.echo(f"figure: {file}", err=str(table) == "-")
+        for file in _draw_series(results, quantity, figure or stem):
+            click.echo(f"figure: {file}", err=_is_standard_output(table))
     context.exit(max(exit_code(result.outcome, strict) for result in results))
 
 
-def write_samples(
-    path: Path, samples: Sequence[Sample], first: str, quantity: str = "hysteresis"
-) -> list[SampleResult]:
-    """Write a table with a row for each sample, as soon as it is known; - is standard output.
+def _draw_series(results: Sequence[SampleResult], quantity: str, figure: Path) -> tuple[Path, ...]:
+    """Draw predicted and measured values of a series; the files of the figure."""
+    from crackfront.measured.page.series import series_figure
+    from crackfront.plots.style import save_figure
 
-    The quantity of every sample is printed.
+    points = [result.point(quantity) for result in results]
+    return save_figure(series_figure(points, quantity), figure)
+
+
+def write_samples(
+    path: Path,
+    samples: Sequence[Sample],
+    first_column: Literal["sample", "scan"],
+    quantity: str = "hysteresis",
+) -> list[SampleResult]:
+    """Write a table with a row for each sample, and print the quantity of each as it is known.
+
+    The path - is standard output. A file is written again after every sample, because each takes
+    seconds: an interrupted command leaves the rows of the samples so far.
     """
     from crackfront.measured.samples.sample_results import predicted_samples
     from crackfront.simulate.storage import check_regular_file, write_text
 
-    is_printed = str(path) == "-"
-    results, rows = [], []
+    is_printed = _is_standard_output(path)
     if not is_printed:
         check_regular_file(path)
         check_writable(path.parent)
-    text = ""
+    results: list[SampleResult] = []
     for result in predicted_samples(samples):
         click.echo(_line(result, quantity), err=is_printed)
         results.append(result)
-        row = {first: result.row["sample"]} | result.row
-        if first != "sample":
+        if not is_printed:
+            write_text(path, _csv_text(results, first_column))
+    if is_printed:
+        click.echo(_csv_text(results, first_column), nl=False)
+    else:
+        click.echo(f"table: {path}")
+    return results
+
+
+def _is_standard_output(path: Path) -> bool:
+    """Whether the name of a table means standard output."""
+    return str(path) == "-"
+
+
+def _csv_text(results: Sequence[SampleResult], first_column: Literal["sample", "scan"]) -> str:
+    """Comma-separated values of all results; tables of scans lack the group of a sample."""
+    rows = []
+    for result in results:
+        row = {first_column: result.row["sample"]} | result.row
+        if first_column == "scan":
             del row["sample"], row["group"]
         rows.append({_as_text(name): _as_text(cell) for name, cell in row.items()})
-        # After every sample, as each takes seconds: an interruption keeps what was read.
-        stream = io.StringIO()
-        table = csv.DictWriter(stream, dict.fromkeys(name for row in rows for name in row))
-        table.writeheader()
-        table.writerows(rows)
-        text = stream.getvalue()
-        if not is_printed:
-            write_text(path, text)
-    click.echo(text if is_printed else f"table: {path}", nl=not is_printed)
-    return results
+    # Samples may have different columns.
+    heads = dict.fromkeys(name for row in rows for name in row)
+    text = io.StringIO()
+    table = csv.DictWriter(text, heads)
+    table.writeheader()
+    table.writerows(rows)
+    return text.getvalue()
 
 
 def _as_text(cell: Any) -> Any:
@@ -152,7 +177,7 @@ def _as_text(cell: Any) -> Any:
 
 
 def _line(result: SampleResult, quantity: str) -> str:
-    """What came of a sample: the quantity, and why there is none or it is in doubt."""
+    """Quantity and outcome of a sample, with the reason if it lacks a value or is in doubt."""
     from crackfront.measured.prediction.prediction_texts import ENERGY, estimate_text
 
     row = result.row
@@ -171,7 +196,7 @@ def _line(result: SampleResult, quantity: str) -> str:
 
 
 def exit_code(outcome: str, strict: bool) -> int:
-    """Exit code of what came of a surface: 3 of reservations if strict, 4 without a prediction."""
+    """Exit code for an outcome: 4 without a prediction; if strict, 3 with reservations."""
     if outcome in ("does not apply", "invalid"):
         return 4
     return 3 if strict and outcome != "applies" else 0

@@ -157,12 +157,12 @@ def predict(
     """
     scales = _scales(options)
     theory = checked_options(PredictionOptions, options, "--")
-    name = _origin(scans, psd, options)
+    _check_one_surface(scans, psd, options)
     _check_outputs(context, scans if psd is None else (psd,))
     if table is not None:
         outcomes = _write_rows(table, scans, options, scales, theory)
         context.exit(max(exit_code(outcome, strict) for outcome in outcomes))
-    outputs = _outputs(options, name)
+    outputs = _outputs(options, _surface_name(scans, psd))
     surface: Surface = _surface(scans, options) if scans else _stated_surface(psd, options)
     outcome = _predict(surface, scales, theory, outputs)
     context.exit(exit_code(outcome, strict))
@@ -198,13 +198,16 @@ def _check_outputs(context: click.Context, inputs: tuple[Path, ...]) -> None:
     check_overwriting(inputs, {"--csv": table, "--figure": figure, "--report": report})
     check_replaced_table("--csv", table, "scan")
     check_replaced_page("--report", report)
-    others = ("as_json", "simulate", "is_long", "panel", "figure", "report")
-    if table is not None and any(options[name] for name in others):
+    unused = ("as_json", "simulate", "is_long", "panel", "figure", "report")
+    if table is not None and any(options[name] for name in unused):
         raise ValueError("--csv writes rows alone; leave out what prints, draws or simulates")
 
 
 def _outputs(options: Mapping[str, Any], name: str) -> _Outputs:
-    """What the options ask for, with folders that can be written; `name` is of the surface."""
+    """Outputs that the options request; `name` is the name of the surface.
+
+    OSError if a folder cannot be written.
+    """
     figure = None if options["no_figure"] else options["figure"] or Path("results/predict", name)
     for path in filter(None, (figure, options["report"])):
         check_writable(path.parent)
@@ -267,23 +270,34 @@ def _write_report(
     outputs.say(f"report: {path}")
 
 
-def _origin(scans: tuple[Path, ...], psd: Path | None, options: Mapping[str, Any]) -> str:
-    """Name for the figure of a surface; ValueError unless the surface is given in one way."""
-    numbers = named_options(SelfAffineOptions, options)
-    number = option_name(numbers[0] if numbers else "rms")
-    ways = {"SCANS": bool(scans), "--psd": psd is not None, number: bool(numbers)}
-    named = [way for way, is_named in ways.items() if is_named]
-    if len(named) != 1:
+def _check_one_surface(
+    scans: tuple[Path, ...], psd: Path | None, options: Mapping[str, Any]
+) -> None:
+    """Raise ValueError unless the surface and its options are stated in exactly one way."""
+    self_affine = named_options(SelfAffineOptions, options)
+    ways = []
+    if scans:
+        ways.append("SCANS")
+    if psd is not None:
+        ways.append("--psd")
+    if self_affine:
+        ways.append(option_name(self_affine[0]))
+    if len(ways) != 1:
+        stated = f"by {' and '.join(ways)}" if ways else "in no way"
         raise ValueError(
-            f"the surface is given {'by ' + ' and '.join(named) if named else 'in no way'}; name "
-            "scans, or a spectral density with --psd, or numbers with --rms"
+            f"the surface is given {stated}; name scans, or a spectral density with --psd, or "
+            "numbers with --rms"
         )
-    further = named_options(PsdOptions, options)
-    if psd is None and further:
-        raise ValueError(f"{option_name(further[0])} is of a density; name it with --psd")
+    density_options = named_options(PsdOptions, options)
+    if psd is None and density_options:
+        raise ValueError(f"{option_name(density_options[0])} is of a density; name it with --psd")
     reading = named_options(ReadingOptions, options)
     if not scans and reading:
         raise ValueError(f"{option_name(reading[0])} is of scans; leave it out")
+
+
+def _surface_name(scans: tuple[Path, ...], psd: Path | None) -> str:
+    """Name of a surface, which its figure has by default."""
     if scans:
         return scans[0].stem
     return "numbers" if psd is None else psd.stem

@@ -7,7 +7,7 @@ import sys
 import time
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import closing
-from dataclasses import asdict, astuple, dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -35,6 +35,7 @@ if TYPE_CHECKING:
     from crackfront.sweep.store import Store
     from crackfront.sweep.sweep import Shard, Sweep
     from crackfront.sweep.sweep_cost import ErrorCost, SweepCost
+    from crackfront.sweep.tasks import SimulationOutcome
 
 _ERROR = Number(Range(1e-9, 1.0))
 """Numerical error of k; the finest numerics leave far more than the least."""
@@ -83,6 +84,7 @@ def plan(
     """
     from crackfront.sweep.advice import expectations, small_size_warnings, steady_part_warnings
     from crackfront.sweep.changed_keys import change_sentence
+    from crackfront.sweep.inventory import Inventory
     from crackfront.sweep.run_sweep import opened
     from crackfront.sweep.sweep_cost import error_costs
 
@@ -90,10 +92,9 @@ def plan(
     store.set_aside_damaged()
     shards, expected = sweep.shards(block), expectations(sweep)
     progress = {item.name: store.progress(sweep, item) for item in sweep.spectra}
-    missing = [item for inventory in progress.values() for item in inventory.missing]
-    n_missing = sum(inventory.n_missing for inventory in progress.values())
+    total = sum(progress.values(), Inventory())
     warnings = [*steady_part_warnings(sweep), *small_size_warnings(sweep)]
-    prices = [*error_costs(sweep, errors)]
+    prices = list(error_costs(sweep, errors))
     changed = change_sentence(store.configuration, configuration)
     content = {
         "results": store.folder,
@@ -102,20 +103,23 @@ def plan(
         "realisations": sweep.n_realisation,
         "fitted_elastic_energies": sweep.fit.chosen(sweep.elastic_energies),
         "simulations": sweep.n_simulation,
-        "missing": n_missing,
-        "arithmetic": sorted(set().union(*(item.arithmetic for item in progress.values()))),
+        "missing": total.n_missing,
+        "arithmetic": sorted(total.arithmetic),
         "shards": [shard.name for shard in shards],
         "unit_of_lengths": "reduced" if sweep.scales is None else "m",
         "expected": expected,
         "warnings": warnings,
         "changed": changed,
-        **asdict(_cost(missing)),
+        **asdict(_cost(total.missing)),
     }
     if prices:
         content["errors"] = prices
-    lines = [*_plan_lines(sweep, store, shards, progress, expected)]
-    lines += [changed] if changed else []
-    echo_answer(content, [*lines, *_price_lines(prices), *map(wrapped, warnings)], as_json=as_json)
+    lines = list(_plan_lines(sweep, store, shards, progress, expected))
+    if changed:
+        lines.append(changed)
+    if prices:
+        lines += _price_lines(prices)
+    echo_answer(content, [*lines, *map(wrapped, warnings)], as_json=as_json)
 
 
 def _size_sentence(sweep: Sweep, inventory: Inventory) -> str:
@@ -143,32 +147,62 @@ def _plan_lines(
     expected: Mapping[str, Sequence[Expectation]],
 ) -> Iterator[str]:
     """Tables of the spectra of a sweep and of what is left to run, and its sizes."""
-    from crackfront.analysis.fit_text import MEASURED_ON
     from crackfront.sweep.inventory import Inventory, mixture_sentence
 
-    everything = sum(progress.values(), Inventory())
-    yield f"{wrapped(_size_sentence(sweep, everything))}\n"
+    total = sum(progress.values(), Inventory())
+    yield f"{wrapped(_size_sentence(sweep, total))}\n"
     yield from _spectra_table(sweep, progress, expected)
     yield "s is w_rms/w_int, g the size, and k what the law expects at the largest load"
-    uncovered = [item for item in sweep.spectra if not sweep.one_per_amplitude(item)[0].is_covered]
-    if uncovered:
-        listed = ", ".join(item.name for item in uncovered)
-        yield wrapped(f"the law of k does not cover {listed}: {MEASURED_ON}")
-    remarks = filter(None, (*everything.sentences(), mixture_sentence(everything.arithmetic)))
-    yield from map(wrapped, remarks)
+    yield from map(wrapped, _uncovered_sentences(sweep))
+    yield from map(wrapped, total.sentences())
+    if mixture := mixture_sentence(total.arithmetic):
+        yield wrapped(mixture)
     yield ""
-    to_run = []
-    for item in sweep.spectra:
-        n_shard = sum(shard.item is item for shard in shards)
-        to_run.append(_to_run(item.name, n_shard, progress[item.name].missing))
-    to_run.append(_to_run("all", len(shards), everything.missing))
-    header = "to run", "shards", "simulations", "core hours", "longest s", "MB a rank"
-    yield from table(header, to_run)
-    yield from _jump_lines(_cost(everything.missing))
+    yield from _work_table(sweep, shards, progress)
+    yield from _jump_lines(_cost(total.missing))
     energies = sweep.elastic_energies
     yield f"\n{counted(len(energies), 'amplitude')} e_el/w_int: {_listed(energies)}"
     yield _fit_sentence(sweep)
     yield f"results in {store.folder}/"
+
+
+def _uncovered_sentences(sweep: Sweep) -> Iterator[str]:
+    """Sentence on the spectra that the law of k does not cover, if there are any."""
+    from crackfront.analysis.fit_text import MEASURED_ON
+
+    uncovered = [
+        item.name for item in sweep.spectra if not sweep.one_per_amplitude(item)[0].is_covered
+    ]
+    if uncovered:
+        yield f"the law of k does not cover {', '.join(uncovered)}: {MEASURED_ON}"
+
+
+def _work_table(
+    sweep: Sweep, shards: Sequence[Shard], progress: Mapping[str, Inventory]
+) -> Iterator[str]:
+    """Table of what is left to run of each spectrum and of all, and what it costs."""
+    from crackfront.sweep.inventory import Inventory
+
+    rows = []
+    for item in sweep.spectra:
+        n_shard = sum(shard.item is item for shard in shards)
+        rows.append(_work_row(item.name, n_shard, progress[item.name]))
+    rows.append(_work_row("all", len(shards), sum(progress.values(), Inventory())))
+    heads = "to run", "shards", "simulations", "core hours", "longest s", "MB a rank"
+    return table(heads, rows)
+
+
+def _work_row(name: str, n_shard: int, inventory: Inventory) -> tuple[str, ...]:
+    """Row of what the missing simulations of a spectrum, or of all, are expected to cost."""
+    cost = _cost(inventory.missing)
+    return (
+        name,
+        str(n_shard),
+        str(inventory.n_missing),
+        f"{cost.core_seconds / 3600:.3g}",
+        f"{cost.longest_seconds:.3g}",
+        f"{cost.bytes_a_rank / 1e6:.0f}",
+    )
 
 
 def _spectra_table(
@@ -231,29 +265,24 @@ def _jump_lines(cost: SweepCost) -> Iterator[str]:
 
 
 def _price_lines(prices: Sequence[ErrorCost]) -> Iterator[str]:
-    """Table of the cost of the whole sweep against the numerical error of k; empty without any."""
-    if not prices:
-        return
+    """Table of the cost of the whole sweep against the numerical error of k."""
     rows = []
     for price in prices:
-        missed, cost = price.remaining_error, price.cost
-        is_reached = f"no, {missed:.2g} is left" if missed else "yes"
-        cells = in_time(cost.core_seconds), f"{cost.longest_seconds:.3g}"
-        rows.append((f"{price.error:g}", *cells, f"{cost.bytes_a_rank / 1e6:.0f}", is_reached))
+        remaining = price.remaining_error
+        row = (
+            f"{price.error:g}",
+            in_time(price.cost.core_seconds),
+            f"{price.cost.longest_seconds:.3g}",
+            f"{price.cost.bytes_a_rank / 1e6:.0f}",
+            f"no, {remaining:.2g} is left" if remaining else "yes",
+        )
+        rows.append(row)
     yield "\nthe whole sweep, by the numerical error of k (numerics: error)"
     yield from table(("error", "processor time", "longest s", "MB a rank", "reached"), rows)
 
 
-def _to_run(name: str, n_shard: int, missing: Sequence[MissingSimulations]) -> tuple[str, ...]:
-    """Row of what the missing simulations of a spectrum, or of all, are expected to cost."""
-    cost, n_missing = _cost(missing), sum(item.realisations.size for item in missing)
-    hours, longest = f"{cost.core_seconds / 3600:.3g}", f"{cost.longest_seconds:.3g}"
-    cells = hours, longest, f"{cost.bytes_a_rank / 1e6:.0f}"
-    return name, str(n_shard), str(n_missing), *cells
-
-
 def _span(values: Sequence[float | None], form: str = "{:.0f}") -> str:
-    """Range of values over the amplitudes, or the one that all have."""
+    """Smallest and largest value of the amplitudes, or a single value if they are equal."""
     present = [value for value in values if value is not None]
     if not present:
         return "-"
@@ -262,7 +291,7 @@ def _span(values: Sequence[float | None], form: str = "{:.0f}") -> str:
 
 
 def _block(context: click.Context, parameter: click.Parameter, value: str | None) -> range | None:
-    """Range that an option like 0-49 means, both ends included."""
+    """Numbers that an option such as 0-49 means, both ends included."""
     if value is None:
         return None
     first, dash, last = value.partition("-")
@@ -319,8 +348,7 @@ def _simulate(
     checkpoint: float,
     workers: Ranks,
 ) -> None:
-    """Run what some shards lack, and derive their rows."""
-    from crackfront.sweep.advice import steady_part_warnings
+    """Run the missing simulations of the chosen shards, and derive the rows of these shards."""
     from crackfront.sweep.changed_keys import change_sentence
     from crackfront.sweep.finished_shards import finish_shard
     from crackfront.sweep.inventory import Inventory
@@ -336,21 +364,12 @@ def _simulate(
         inventory = sum(inventories, Inventory())
         total = inventory.stored + inventory.n_missing
         click.echo(f"{configuration}: {inventory.stored} of {total} simulations are stored")
-        changed = change_sentence(store.configuration, configuration)
-        for sentence in filter(None, (changed, *inventory.sentences())):
+        if changed := change_sentence(store.configuration, configuration):
+            click.echo(changed)
+        for sentence in inventory.sentences():
             click.echo(sentence)
         if inventory.missing:
-            cost = _cost(inventory.missing)
-            busy = min(workers.n_here, inventory.n_missing)
-            check_memory(
-                f"{counted(busy, 'rank')} of {in_bytes(cost.bytes_a_rank)}",
-                cost.bytes_a_rank * busy,
-                "use fewer ranks, coarser numerics or a smaller tile",
-            )
-            task = counted(inventory.n_missing, "simulation")
-            announce_cost(task, cost.core_seconds, err=False)
-            for sentence in steady_part_warnings(replace(sweep, spectra=items)):
-                warn(sentence)
+            _announce_work(replace(sweep, spectra=items), inventory, workers)
         lacking = [
             (shard, inventory.simulations())
             for shard, inventory in zip(shards, inventories, strict=True)
@@ -360,6 +379,23 @@ def _simulate(
             click.echo(f"rows: {finish_shard(store, sweep, shard, origin)}")
 
 
+def _announce_work(sweep: Sweep, inventory: Inventory, workers: Ranks) -> None:
+    """Print what the missing simulations will cost; raise if the memory does not suffice."""
+    from crackfront.sweep.advice import steady_part_warnings
+
+    cost = _cost(inventory.missing)
+    n_rank = min(workers.n_here, inventory.n_missing)
+    check_memory(
+        f"{counted(n_rank, 'rank')} of {in_bytes(cost.bytes_a_rank)}",
+        cost.bytes_a_rank * n_rank,
+        "use fewer ranks, coarser numerics or a smaller tile",
+    )
+    task = counted(inventory.n_missing, "simulation")
+    announce_cost(task, cost.core_seconds, err=False)
+    for sentence in steady_part_warnings(sweep):
+        warn(sentence)
+
+
 def run_missing(
     store: Store,
     lacking: Sequence[tuple[Shard, Sequence[Simulation]]],
@@ -367,33 +403,45 @@ def run_missing(
     workers: Ranks,
     checkpoint_seconds: float = 60.0,
 ) -> None:
-    """Run what shards lack with a bar on a terminal, elsewhere with a line for each simulation."""
-    from tqdm import tqdm
-
-    from crackfront.sweep.rows import COMPLETE
+    """Run the missing simulations of shards, and show their progress."""
     from crackfront.sweep.tasks import NotStoredError, run_and_store
 
-    started, terminal = time.monotonic(), sys.stderr.isatty()
-    if total := sum(len(simulations) for _, simulations in lacking):
+    started = time.monotonic()
+    total = sum(len(simulations) for _, simulations in lacking)
+    if total:
         announce_compilation()
     try:
-        with (
-            closing(run_and_store(store, lacking, origin, checkpoint_seconds, workers)) as outcomes,
-            tqdm(total=total, unit="simulation", disable=not terminal, file=sys.stderr) as bar,
-        ):
-            for count, (simulation, finished) in enumerate(outcomes, start=1):
-                ended = "complete" if finished.status in COMPLETE else finished.status
-                details = finished.sentence or f"{finished.seconds:.2f} s"
-                line = f"{simulation.label}: {ended}, {details}"
-                if not terminal:
-                    click.echo(f"[{count}/{total}] {line}")
-                elif finished.status not in COMPLETE:
-                    bar.write(line)
-                bar.update()
+        with closing(
+            run_and_store(store, lacking, origin, checkpoint_seconds, workers)
+        ) as outcomes:
+            _show_outcomes(outcomes, total)
     except NotStoredError as error:
         raise click.ClickException(str(error)) from error
     if total:
         click.echo(f"{total} simulations in {time.monotonic() - started:.1f} s")
+
+
+def _show_outcomes(outcomes: Iterable[tuple[Simulation, SimulationOutcome]], total: int) -> None:
+    """Show simulations as they end: a bar on a terminal, elsewhere a line for each.
+
+    On a terminal, simulations without values have a line too.
+    """
+    from tqdm import tqdm
+
+    from crackfront.sweep.rows import COMPLETE
+
+    is_terminal = sys.stderr.isatty()
+    with tqdm(total=total, unit="simulation", disable=not is_terminal, file=sys.stderr) as bar:
+        for count, (simulation, outcome) in enumerate(outcomes, start=1):
+            is_complete = outcome.status in COMPLETE
+            status = "complete" if is_complete else outcome.status
+            details = outcome.sentence or f"{outcome.seconds:.2f} s"
+            line = f"{simulation.label}: {status}, {details}"
+            if not is_terminal:
+                click.echo(f"[{count}/{total}] {line}")
+            elif not is_complete:
+                bar.write(line)
+            bar.update()
 
 
 @click.command(
@@ -461,7 +509,16 @@ def _progress(inventories: Mapping[str, Inventory]) -> list[Progress]:
 
 def _status_lines(spectra: Sequence[Progress], running: Sequence[str]) -> Iterator[str]:
     """Table of the spectra of a sweep, and the shards that run."""
-    rows = [(*map(str, astuple(item)[:-1]), f"{item.seconds / 3600:.3g}") for item in spectra]
+    rows = [
+        (
+            item.name,
+            str(item.done),
+            str(item.failed),
+            str(item.left),
+            f"{item.seconds / 3600:.3g}",
+        )
+        for item in spectra
+    ]
     yield from table(("spectrum", "done", "failed", "left", "core hours left"), rows)
     if running:
         yield f"running: {', '.join(running)}"

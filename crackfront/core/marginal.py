@@ -1,4 +1,4 @@
-"""Fields that are not Gaussian: the distribution of their values beside their spectrum.
+"""Fields that are not Gaussian: the distribution of their values in addition to their spectrum.
 
 The magnitudes of all modes stay, and their phases are changed until the values are distributed as
 requested: the iterative amplitude-adjusted Fourier transform.
@@ -46,7 +46,7 @@ class Marginal:
     Raises
     ------
     ValueError
-        If there is no such distribution, a parameter is missing, unknown or out of range, or the
+        If the distribution is unknown, a parameter is missing, unknown or out of range, or the
         variance is not finite.
 
     References
@@ -90,7 +90,7 @@ class Marginal:
         return np.asarray(values / np.std(values))
 
     def _parameter_names(self) -> tuple[str, ...]:
-        """Names of the shape parameters; ValueError if there is no such distribution."""
+        """Names of the shape parameters; ValueError if the distribution is unknown."""
         distributions = _distributions()
         if self.distribution not in distributions:
             near = difflib.get_close_matches(self.distribution, distributions, n=1)
@@ -141,7 +141,7 @@ def field_of_marginal(field: Array, marginal: Marginal) -> Array:
         ranked[order] = quantiles
         modes = rfft2(ranked.reshape(field.shape))
         sizes = np.abs(modes)
-        # A mode that is exactly zero has no phase; it gets the phase 0.
+        # A mode that is exactly zero gets the phase 0.
         phases = np.where(sizes > 0, modes, 1.0) / np.where(sizes > 0, sizes, 1.0)
         values = irfft2(magnitudes * phases, s=field.shape)
     return np.asarray(values)

@@ -10,7 +10,7 @@ import zlib
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
-from typing import Any, ClassVar, Self, cast
+from typing import TYPE_CHECKING, Any, ClassVar, Self, cast
 
 import numpy as np
 import scipy
@@ -35,7 +35,11 @@ class Spectrum(ABC):
 
     __slots__ = ()
 
-    short_cutoff: float
+    if TYPE_CHECKING:
+
+        @property
+        def short_cutoff(self) -> float:
+            """Shortest wavelength (Units: length); a field or a property of each shape."""
 
     is_isotropic: ClassVar[bool] = True
     """Whether waves in all directions have the same density; the law of k needs it."""
@@ -52,16 +56,24 @@ class Spectrum(ABC):
 
     @staticmethod
     def stated(parameters: Mapping[str, Any]) -> Spectrum | None:
-        """Shape that some parameters state, numbers or arrays by their names, if they state one."""
-        for shape in sorted(Spectrum._shapes.values(), key=lambda shape: -len(shape._names())):
-            if all(name in parameters for name in shape._names()):
-                values = (np.asarray(parameters[name], float).tolist() for name in shape._names())
-                spectrum = shape(*(tuple(x) if isinstance(x, list) else x for x in values))
-                stretch = [parameters.get(name) for name in AnisotropicSpectrum.numbers]
-                if None in stretch:
-                    return spectrum
-                return AnisotropicSpectrum(spectrum, *map(float, cast(list[float], stretch)))
+        """Spectrum whose parameters, numbers or arrays, are stated by their names; else None."""
+        # A shape with few parameters may have them in common with a shape that has more.
+        shapes = sorted(
+            Spectrum._shapes.values(), key=lambda shape: len(shape._names()), reverse=True
+        )
+        for shape in shapes:
+            if parameters.keys() >= {*shape._names()}:
+                return _stretched(shape._with_parameters(parameters), parameters)
         return None
+
+    @classmethod
+    def _with_parameters(cls, parameters: Mapping[str, Any]) -> Spectrum:
+        """The shape with parameters, numbers or arrays, by their names."""
+        values = []
+        for name in cls._names():
+            value = np.asarray(parameters[name], float).tolist()
+            values.append(tuple(value) if isinstance(value, list) else value)
+        return cls(*values)
 
     @staticmethod
     def length_names() -> set[str]:
@@ -351,7 +363,7 @@ class TabulatedSpectrum(Spectrum):
             raise ValueError("the wavelengths of a table must fall; order them from long to short")
 
     @property
-    def short_cutoff(self) -> float:  # type: ignore[override]
+    def short_cutoff(self) -> float:
         """Shortest wavelength (Units: length)."""
         return self.wavelengths[-1]
 
@@ -389,7 +401,7 @@ class TabulatedSpectrum(Spectrum):
         if not longer:
             longer = [2 * wavelength]
         end = float(self.density(2 * np.pi / wavelength))
-        # Where all of it is flat, the first density applies at any longer wavelength as well.
+        # If all of it is flat, the first density applies at any longer wavelength as well.
         values = (self.densities[0], *self.densities[1 : len(longer)], end)
         return TabulatedSpectrum((*longer, wavelength), values)
 
@@ -449,7 +461,7 @@ class AnisotropicSpectrum(Spectrum):
             )
 
     @property
-    def short_cutoff(self) -> float:  # type: ignore[override]
+    def short_cutoff(self) -> float:
         """Shortest wavelength, across the grooves (Units: length)."""
         return self.shape.short_cutoff / math.sqrt(self.anisotropy)
 
@@ -509,6 +521,14 @@ class AnisotropicSpectrum(Spectrum):
         """Squares of wavevectors over squares of stretched ones, at evenly spaced directions."""
         angle = np.pi * (np.arange(n_angle) + 0.5) / n_angle
         return np.cos(angle) ** 2 / self.anisotropy + self.anisotropy * np.sin(angle) ** 2
+
+
+def _stretched(spectrum: Spectrum, parameters: Mapping[str, Any]) -> Spectrum:
+    """A spectrum, stretched if parameters state how."""
+    anisotropy, angle = (parameters.get(name) for name in AnisotropicSpectrum.numbers)
+    if anisotropy is None or angle is None:
+        return spectrum
+    return AnisotropicSpectrum(spectrum, float(anisotropy), float(angle))
 
 
 _N_ANGLE = 180

@@ -55,19 +55,16 @@ def draw_spectrum(
     axes.set_xlim(0.7 * wave[0], 1.4 * wave[-1])
     if units.is_si:
         measured = vertical * rms / lateral ** np.array([0.0, 0.5, 1.0])
-        names, labels = _measured_names(measured**2), (WAVEVECTOR_LABEL, ISOTROPIC_LABEL)
+        names = _measured_names(measured**2)
+        axes.set(xlabel=WAVEVECTOR_LABEL, ylabel=ISOTROPIC_LABEL)
     else:
-        names = [
-            rf"$h_\mathrm{{rms}}^{{({order})}} = {value:.3g}$"
-            for order, value in zip(("0", "1/2", "1"), rms, strict=True)
-        ]
-        labels = rf"wavevector $q$ $\times$ ${LATERAL.tex}$", _REDUCED_LABEL
-    axes.set(xlabel=labels[0], ylabel=labels[1])
+        names = _reduced_names(rms)
+        axes.set(xlabel=rf"wavevector $q$ $\times$ ${LATERAL.tex}$", ylabel=_REDUCED_LABEL)
     if ideal is not None:
         curve = wave[ideal > 0], power * ideal[ideal > 0]
         axes.plot(*curve, color=BLACK, dashes=(4, 2), label="spectrum", zorder=3)
     axes.set_ylim(bottom=0.1 * power * float(density.min()))
-    _add_bars(axes, names, *(2 * np.pi / (lateral * ends) for ends in (longest, shortest)))
+    _add_bars(axes, names, 2 * np.pi / (lateral * longest), 2 * np.pi / (lateral * shortest))
     axes.legend(loc="lower left")
 
 
@@ -78,6 +75,14 @@ def draw_dominant_scales(axes: Axes, mean_square: Array, shortest: Array, longes
     half-derivatives and slopes (Units: m^(2 - 2 order)), the ends of the scales in m.
     """
     _add_bars(axes, _measured_names(mean_square), 2 * np.pi / longest, 2 * np.pi / shortest)
+
+
+def _reduced_names(rms: Array) -> list[str]:
+    """Names of the bars in reduced units, from rms height, half-derivative and slope."""
+    return [
+        rf"$h_\mathrm{{rms}}^{{({order})}} = {value:.3g}$"
+        for order, value in zip(("0", "1/2", "1"), rms, strict=True)
+    ]
 
 
 def _measured_names(mean_square: Array) -> list[str]:

@@ -26,7 +26,7 @@ from crackfront.surfaces.random_surface import stated_spectrum
 from crackfront.surfaces.si_units import Labelled, in_reduced_units, stated_scales
 from crackfront.surfaces.surface_adhesion import surface_adhesion
 from crackfront.surfaces.surface_array import surface_kind
-from crackfront.surfaces.tile_measures import tile_modes
+from crackfront.surfaces.tile_measures import Modes, tile_modes
 from crackfront.validation import Count, checked_call
 
 _ORDERS = (0.0, 0.5, 1.0)
@@ -34,6 +34,9 @@ _ORDERS = (0.0, 0.5, 1.0)
 
 _TAIL = 0.1
 """Part of a mean square in waves shorter than its dominant scales, and in longer ones."""
+
+_LARGEST_RATIO = 2.0
+"""Ratio of measured and requested e_el up to which the stated spectrum is drawn."""
 
 _BINS_A_DECADE = 20
 """Bins of a spectrum in a decade of wavevectors."""
@@ -51,7 +54,7 @@ def _check_states(loop: Dataset, name: str) -> None:
     """Raise ValueError unless a loop has a state with a finite value and a direction."""
     finite = np.isfinite(loop[name].values) & np.isfinite(loop.direction.values)
     if not np.any(finite):
-        raise ValueError(f"{name} of the loop has no finite value to plot; give another loop")
+        raise ValueError(f"{name} of the loop lacks a finite value to plot; give another loop")
 
 
 def _fronts(loop: Dataset, name: str, site: str) -> tuple[Array, Array, NDArray[np.int64]]:
@@ -141,22 +144,40 @@ def plot_spectrum(surface: DataArray, axes: Axes | None = None) -> Axes:
     if modes.power.size == 0:
         raise ValueError("the surface is flat; give one with roughness, which has a spectrum")
     wavevector, density = modes.isotropic_density(_BINS_A_DECADE, pixel**2 * surface.size)
-    shares = np.array([modes.power * modes.wavevector ** (2 * order) for order in _ORDERS])
-    sums = np.cumsum(shares, axis=1)
-    ends = [
-        np.searchsorted(cumulated, cumulated[-1] * np.array([1 - _TAIL, _TAIL]))
-        for cumulated in sums
-    ]
-    shortest, longest = (2 * np.pi / modes.wavevector[np.array(ends)]).T
-    shape, energy = stated_spectrum(surface), surface.attrs.get("elastic_energy_requested")
-    ideal = None
-    # Heights keep their attributes when a user multiplies them, but the spectrum changes.
-    if shape is not None and energy is not None and 0.5 < adhesion.e_el / float(energy) < 2:
-        ideal = shape.with_elastic_energy(float(energy)).density(wavevector)
-    rms = np.sqrt(sums[:, -1])
+    rms, shortest, longest = _dominant_scales(modes)
+    ideal = _stated_density(surface, adhesion.e_el, wavevector)
     with axes_to_draw_on(axes) as drawn:
         draw_spectrum(drawn, wavevector, density, rms, shortest, longest, ideal, units)
     return drawn
+
+
+def _dominant_scales(modes: Modes) -> tuple[Array, Array, Array]:
+    """Rms of each derivative in `_ORDERS`, and the ends of the wavelengths that dominate it."""
+    rms, shortest, longest = [], [], []
+    for order in _ORDERS:
+        mean_squares = np.cumsum(modes.power * modes.wavevector ** (2 * order))
+        total = mean_squares[-1]
+        largest_mode, smallest_mode = np.searchsorted(
+            mean_squares, total * np.array([1 - _TAIL, _TAIL])
+        )
+        rms.append(np.sqrt(total))
+        shortest.append(2 * np.pi / modes.wavevector[largest_mode])
+        longest.append(2 * np.pi / modes.wavevector[smallest_mode])
+    return np.array(rms), np.array(shortest), np.array(longest)
+
+
+def _stated_density(surface: DataArray, e_el: float, wavevector: Array) -> Array | None:
+    """Density of the spectrum that a surface states; None without one, or if it does not apply.
+
+    Heights keep their attributes when a user multiplies them, but their e_el changes.
+    """
+    shape, requested = stated_spectrum(surface), surface.attrs.get("elastic_energy_requested")
+    if shape is None or requested is None:
+        return None
+    ratio = e_el / float(requested)
+    if not 1 / _LARGEST_RATIO < ratio < _LARGEST_RATIO:
+        return None
+    return shape.with_elastic_energy(float(requested)).density(wavevector)
 
 
 @checked_call
@@ -180,7 +201,7 @@ def plot_loop(loop: Dataset, axes: Axes | None = None) -> Axes:
     Raises
     ------
     ValueError
-        If it is not a loop, or has no state.
+        If it is not a loop, or lacks states.
     TypeError
         If an argument is of another type.
     """
@@ -236,13 +257,13 @@ def plot_fronts(
     Raises
     ------
     ValueError
-        If loop or surface cannot be used, or the loop has no fronts.
+        If loop or surface cannot be used, or the loop lacks fronts.
     TypeError
         If an argument is of another type.
     """
     if ("radius" not in loop and "position" not in loop) or loop.sizes.get("step") == 0:
         raise ValueError(
-            "the loop has no fronts; run it with fronts=True, or crackfront cycle with "
+            "the loop lacks fronts; run it with fronts=True, or crackfront cycle with "
             "--record fronts"
         )
     if "position" in loop:
@@ -297,7 +318,7 @@ def plot_instabilities(jumps: Dataset, axes: Axes | None = None) -> Axes:
     if "before" not in jumps or "travel" not in jumps.attrs:
         raise ValueError("jumps is another dataset; give what find_instabilities returns")
     if jumps.before.size == 0:
-        raise ValueError("the branch has no instability to draw; give another branch")
+        raise ValueError("the branch lacks an instability to draw; give another branch")
     jumps, units = _reduced(jumps)
     fronts = jumps.before.values, jumps.after.values
     energy, travel = jumps.dissipated_energy.values, float(jumps.attrs["travel"])

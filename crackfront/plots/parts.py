@@ -242,6 +242,12 @@ def spectrum_marker(index: int) -> str:
     return MARKERS[index % len(MARKERS)]
 
 
+def title_letters(*panels: Axes) -> None:
+    """Bold letter a, b, ... above the left corner of each panel."""
+    for axes, letter in zip(panels, "abcdef", strict=False):
+        axes.set_title(letter, loc="left", fontweight="bold")
+
+
 def label_panel(axes: Axes, name: str, shift: float = 4.0) -> None:
     """Bold letter of a panel above its upper left corner, shifted to the left (Units: point)."""
     look: dict[str, Any] = {"fontsize": 9, "fontweight": "bold", "ha": "right"}

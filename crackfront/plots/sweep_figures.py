@@ -30,6 +30,7 @@ from crackfront.analysis.result import SweepFit
 from crackfront.analysis.sweep_law import LARGE, SweepLaw
 from crackfront.core.adhesion import adhesion_rms
 from crackfront.core.arrays import Array
+from crackfront.core.spectrum import Spectrum
 from crackfront.plots.parts import (
     PointStyle,
     draw_below,
@@ -46,6 +47,7 @@ from crackfront.plots.parts import (
     spectrum_styles,
     spring_label,
     springs_explained,
+    title_letters,
 )
 from crackfront.plots.style import BLACK, PAGE, blank_figure, explain, house_style
 
@@ -54,6 +56,19 @@ SHIFTS_EXPLAINED = "points of one amplitude are shifted sideways by up to 6%"
 
 _MOST_FOR_DECIMALS = 100.0
 """Ratio of the ends of a logarithmic axis up to which its labels are decimal numbers."""
+
+_VARIANCE_MARGIN = 1.8
+"""Ratio of an end of the axis of the variance to the outermost point."""
+
+_HYSTERESIS_MARGIN = 1.6
+"""Ratio of the lowest point or theory to the lower end of the axis of the hysteresis."""
+
+_SIZE_MARGIN = 1.5
+"""Ratio of an end of the axis of g to the outermost point."""
+
+_SMALLEST_POINT = 0.05
+"""Smallest hysteresis that is drawn as a point, relative to the paper's k at the weakest disorder:
+hysteresis vanishes below its onset, and such points must not stretch the axes."""
 
 _FACTOR_LABEL = r"$k = (w_\mathrm{retr}-w_\mathrm{appr})\,/\,2e_\mathrm{el}$"
 
@@ -93,8 +108,7 @@ def hysteresis_figure(fit: SweepFit) -> Figure:
         draw_hysteresis(left_axes, fit)
         draw_spectra(right_axes, fit)
         figure.legend(*legend_entries(left_axes), loc="outside upper center", ncols=3)
-        for axes, letter in ((left_axes, "a"), (right_axes, "b")):
-            axes.set_title(letter, loc="left", fontweight="bold")
+        title_letters(left_axes, right_axes)
         texts = [*points_explained(fit), *arrows_explained(fit)]
         if fit.table.on_springs:
             texts.append(springs_explained(fit))
@@ -122,8 +136,7 @@ def factor_figure(fit: SweepFit) -> Figure:
             figure.legend(*legend_entries(left_axes), loc="outside upper center", ncols=3)
             texts += [f"{SHIFTS_EXPLAINED} (a)", *pooled_explained(fit)]
             texts += [f"{text} (b)" for text in shapes_explained(fit)]
-        for axes, letter in ((left_axes, "a"), (right_axes, "b")):
-            axes.set_title(letter, loc="left", fontweight="bold")
+        title_letters(left_axes, right_axes)
         explain(figure, "; ".join(texts))
         return figure
 
@@ -150,16 +163,11 @@ def _draw_line_factors(left_axes: Axes, right_axes: Axes, fit: SweepFit) -> None
 
 def draw_factor_by_size(axes: Axes, fit: SweepFit) -> None:
     """Draw mean k of straight fronts against g; colours are amplitudes, markers are spectra."""
-    table, size = fit.table, fit.cells.size
-    families, ends = spectrum_families(table), _ends(size, 1.5)
+    table = fit.table
     shades = colormaps["viridis"](np.linspace(0, 0.88, table.amplitude.size))
     for amplitude, energy in enumerate(table.amplitude):
         colour = to_hex(shades[amplitude])
-        for index, family in enumerate(families):
-            style = PointStyle(colour, spectrum_marker(family), "")
-            cell = fit.cells.factor.at(([index], amplitude))
-            in_range = fit.in_range[[amplitude]]
-            draw_estimates(axes, style, size[[index], amplitude], cell, in_range)
+        _draw_amplitude_by_size(axes, fit, amplitude, colour)
         if fit.uncorrelated:
             label = rf"$e_\mathrm{{el}}={energy:.3g}\,w_\mathrm{{int}}$"
             axes.plot([], [], color=colour, linewidth=3.0, label=label)
@@ -168,18 +176,28 @@ def draw_factor_by_size(axes: Axes, fit: SweepFit) -> None:
     if fit.uncorrelated:
         # The law of weak disorder is the same at all amplitudes.
         _draw_law_by_size(axes, fit, 0.0, BLACK)
+    families = spectrum_families(table)
     for family in dict.fromkeys(families):
         label = spectrum_label(table, families.index(family))
         axes.plot([], [], spectrum_marker(family), color="0.4", label=label)
-    axes.set(xscale="log", xlim=ends, ylabel=_FACTOR_LABEL)
+    axes.set(xscale="log", xlim=_ends(fit.cells.size, _SIZE_MARGIN), ylabel=_FACTOR_LABEL)
     label_decimals(axes.xaxis)
     axes.set_xlabel(r"size $g=L_\kappa/\ell$, springs over Larkin length")
     axes.legend(loc="upper left", ncols=2)
 
 
+def _draw_amplitude_by_size(axes: Axes, fit: SweepFit, amplitude: int, colour: str) -> None:
+    """Draw a point for k of each spectrum at one amplitude against its g."""
+    for index, family in enumerate(spectrum_families(fit.table)):
+        style = PointStyle(colour, spectrum_marker(family), "")
+        factor = fit.cells.factor.at(([index], amplitude))
+        size = fit.cells.size[[index], amplitude]
+        draw_estimates(axes, style, size, factor, fit.in_range[[amplitude]])
+
+
 def _draw_law_by_size(axes: Axes, fit: SweepFit, s: float, colour: str) -> None:
     """Draw k by the law against g at a disorder s, for the mean breadth of the spectra."""
-    law, ends = shipped_law(), _ends(fit.cells.size, 1.5)
+    law, ends = shipped_law(), _ends(fit.cells.size, _SIZE_MARGIN)
     breadth = float(np.nanmean(SweepLaw(fit.table, fit.kind).breadths))
     abscissa = np.geomspace(max(law.size[0], ends[0]), ends[1], 100)
     curve = law_value(law.coefficients, s, abscissa, breadth)
@@ -201,24 +219,19 @@ def _ends(values: Array, margin: float) -> Array:
 def draw_hysteresis(axes: Axes, fit: SweepFit) -> None:
     """Draw mean hysteresis against (w_rms / w_int)^2 on log-log axes, with law, fit and theory."""
     variance, hysteresis, below = _variance(fit), fit.cells.hysteresis, _below(fit)
-    ends = _ends(variance, 1.8)
-    # The mean of one realisation has no interval.
-    lows = np.fmax(np.fmin(hysteresis.low, hysteresis.value), _floor(variance))
-    least = float(np.min(lows, where=~below, initial=np.inf))
-    lowest = min(least, PAPER_FACTOR / 2 * float(ends[0])) / 1.6
     for index, style in enumerate(spectrum_styles(fit.table)):
         draw_below(axes, index, style.colour, variance[index, below[index]])
         shown = hysteresis.at(index).where(~below[index])
         draw_estimates(axes, style, variance[index], shown, fit.in_range)
-    draw_law(axes, fit, lambda energy, factor: (4 * energy, 2 * factor * energy))
+    draw_law(axes, fit, _hysteresis_points)
     if not fit.table.on_springs:
-        draw_fit(axes, fit, lambda energy, factor: (4 * energy, 2 * factor * energy))
+        draw_fit(axes, fit, _hysteresis_points)
+    ends = _ends(variance, _VARIANCE_MARGIN)
+    # Hysteresis is 2 k e_el, and the variance 4 e_el.
     draw_theory(axes, ends, ends / 2)
-    axes.set(xscale="log", yscale="log", xlim=ends)
-    highest = PERTURBATION_FACTOR / 2 * float(ends[1])
-    axes.set_ylim(lowest, highest)
-    for axis, low, high in ((axes.xaxis, *ends), (axes.yaxis, lowest, highest)):
-        if high < _MOST_FOR_DECIMALS * low:
+    axes.set(xscale="log", yscale="log", xlim=ends, ylim=_hysteresis_limits(fit))
+    for axis, limits in ((axes.xaxis, axes.get_xlim()), (axes.yaxis, axes.get_ylim())):
+        if limits[1] < _MOST_FOR_DECIMALS * limits[0]:
             label_decimals(axis)
     disorder = r"(w_\mathrm{rms}/w_\mathrm{int})^2"
     if fit.uncorrelated:
@@ -226,6 +239,22 @@ def draw_hysteresis(axes: Axes, fit: SweepFit) -> None:
     axes.set_xlabel(f"disorder ${disorder}$")
     axes.set_ylabel(r"hysteresis $(w_\mathrm{retr}-w_\mathrm{appr})/w_\mathrm{int}$")
     _add_spring_entries(axes, fit)
+
+
+def _hysteresis_points(energy: Array, factor: Array) -> tuple[Array, Array]:
+    """Variance of w_loc and hysteresis at some e_el and k."""
+    return 4 * energy, 2 * factor * energy
+
+
+def _hysteresis_limits(fit: SweepFit) -> tuple[float, float]:
+    """Ends of the axis of the hysteresis, which show its intervals and the theories."""
+    variance, hysteresis = _variance(fit), fit.cells.hysteresis
+    weakest, strongest = _ends(variance, _VARIANCE_MARGIN)
+    # The mean of one realisation lacks an interval.
+    low_ends = np.fmax(np.fmin(hysteresis.low, hysteresis.value), _floor(variance))
+    least = float(np.min(low_ends, where=~_below(fit), initial=np.inf))
+    lowest = min(least, PAPER_FACTOR / 2 * float(weakest)) / _HYSTERESIS_MARGIN
+    return lowest, PERTURBATION_FACTOR / 2 * float(strongest)
 
 
 def _add_spring_entries(axes: Axes, fit: SweepFit) -> None:
@@ -244,8 +273,8 @@ def _variance(fit: SweepFit) -> Array:
 
 def _floor(variance: Array) -> float:
     """Smallest hysteresis that is drawn as a point (Units: w_int)."""
-    # Hysteresis vanishes below its onset; such points must not stretch the axes.
-    return 0.05 * PAPER_FACTOR / 2 * float(_ends(variance, 1.8)[0])
+    weakest = float(_ends(variance, _VARIANCE_MARGIN)[0])
+    return _SMALLEST_POINT * PAPER_FACTOR / 2 * weakest
 
 
 def _below(fit: SweepFit) -> NDArray[np.bool_]:
@@ -255,28 +284,40 @@ def _below(fit: SweepFit) -> NDArray[np.bool_]:
 
 def draw_spectra(axes: Axes, fit: SweepFit) -> None:
     """Draw the spectra (of heights or of w_loc), all scaled to one variance of w_loc."""
-    table, kind, densities = fit.table, fit.kind, []
-    lowest, families = np.pi / np.max(table.roll_off), spectrum_families(table)
-    for index in (families.index(family) for family in dict.fromkeys(families)):
-        spectrum = table.shape_of(index)
-        scale = spectrum.elastic_energy if kind == "roughness" else spectrum.mean_square(0)
-        cutoff = 2 * np.pi / spectrum.short_cutoff
-        wavevector = np.geomspace(lowest, cutoff, 200)
-        density = spectrum.density(wavevector) / scale
-        densities.append(density)
-        points = np.append(wavevector, cutoff), np.append(density, np.finfo(float).tiny)
-        axes.plot(*points, color=spectrum_colour(families[index]), linewidth=0.8)
+    table = fit.table
+    is_rough = fit.kind == "roughness"
+    lowest = np.pi / np.max(table.roll_off)
+    families = spectrum_families(table)
+    densities = []
+    for family in dict.fromkeys(families):
+        spectrum = table.shape_of(families.index(family))
+        scale = spectrum.elastic_energy if is_rough else spectrum.mean_square(0)
+        densities.append(_draw_density(axes, spectrum, scale, lowest, spectrum_colour(family)))
     axes.set(xscale="log", yscale="log")
     axes.set_xlim(lowest, 2.5 * 2 * np.pi / np.min(table.short_cutoff))
     # The mean density of an anisotropic spectrum falls to zero at its cutoff.
     least = np.min(densities, where=np.array(densities) > 0, initial=np.inf)
     axes.set_ylim(least / 10, np.max(densities) * 5)
     axes.set_xlabel("wavevector $q$ (reduced)")
-    unit = r"w_\mathrm{int}/e_\mathrm{el}" if kind == "roughness" else r"/ w_\mathrm{rms}^2"
+    unit = r"w_\mathrm{int}/e_\mathrm{el}" if is_rough else r"/ w_\mathrm{rms}^2"
     axes.set_ylabel(rf"$C(q)\,{unit}$")
     for axis in (axes.xaxis, axes.yaxis):
         axis.set_major_locator(LogLocator(numticks=4))
         axis.set_minor_formatter(NullFormatter())
+
+
+def _draw_density(
+    axes: Axes, spectrum: Spectrum, scale: float, lowest: float, colour: str
+) -> Array:
+    """Draw a spectral density over a scale, from the lowest wavevector on; its values."""
+    cutoff = 2 * np.pi / spectrum.short_cutoff
+    wavevector = np.geomspace(lowest, cutoff, 200)
+    density = spectrum.density(wavevector) / scale
+    # The last point draws the fall to zero at the cutoff.
+    abscissa = np.append(wavevector, cutoff)
+    ordinate = np.append(density, np.finfo(float).tiny)
+    axes.plot(abscissa, ordinate, color=colour, linewidth=0.8)
+    return density
 
 
 def draw_factor_by_disorder(axes: Axes, fit: SweepFit) -> None:
@@ -290,13 +331,18 @@ def draw_factor_by_disorder(axes: Axes, fit: SweepFit) -> None:
     for index, style in enumerate(spectrum_styles(fit.table)):
         abscissa = energy[index] * (1 + shifts[index])
         draw_estimates(axes, style, abscissa, fit.cells.factor.at(index), fit.in_range)
-    draw_law(axes, fit, lambda energy, factor: (energy, factor))
+    draw_law(axes, fit, _factor_points)
     ends = _ends(energy, 1.4)
-    draw_fit(axes, fit, lambda energy, factor: (energy, factor))
+    draw_fit(axes, fit, _factor_points)
     draw_theory(axes, ends)
     axes.set(xscale="log", xlim=ends, ylabel=_FACTOR_LABEL)
     label_decimals(axes.xaxis)
     axes.set_xlabel(r"energy of full conformity $e_\mathrm{el}/w_\mathrm{int}$")
+
+
+def _factor_points(energy: Array, factor: Array) -> tuple[Array, Array]:
+    """Values of e_el and k as they are."""
+    return energy, factor
 
 
 def draw_factor_by_length(axes: Axes, fit: SweepFit) -> None:

@@ -177,7 +177,8 @@ def cycle_record(
 ) -> CycleRecord:
     """Record in a dataset of :func:`cycle_dataset`, or `UnreadableFileError`.
 
-    By default it is a loop on a user's surface, with the states of a sphere or a straight front.
+    `states` is the record of its states; without it, the dataset is a loop on a user's surface
+    with the states of a sphere or a straight front.
     """
     if states is None:
         loops = (kind for kind in _LOOP_STATES if variables(kind)[0].name in dataset)

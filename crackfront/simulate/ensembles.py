@@ -1,4 +1,4 @@
-"""Ensembles of random surfaces: what the surfaces of one spectrum are besides their spectrum.
+"""Ensembles of random surfaces: how the surfaces of one spectrum are distributed.
 
 A new ensemble is a frozen dataclass that derives from :class:`Ensemble`.
 """
@@ -39,12 +39,12 @@ class Ensemble(ABC):
     @property
     @abstractmethod
     def key(self) -> dict[str, Any]:
-        """What determines the surfaces besides spectrum and seed, as a JSON object."""
+        """What determines the surfaces in addition to spectrum and seed, as a JSON object."""
 
     @property
     @abstractmethod
     def description(self) -> str:
-        """What the surfaces are besides their spectrum, in words; empty if they are Gaussian."""
+        """The surfaces in words; empty if they are Gaussian."""
 
     @property
     def tile_side(self) -> float | None:

@@ -164,7 +164,7 @@ def combined_error(
 ) -> tuple[float, float]:
     """Standard errors (w_appr, w_retr) that values of all settings leave (Units: w_int).
 
-    They are NaN where errors were not measured. Of interpolations, the value is the one that is
+    They are NaN where errors were not measured. `values` has one interpolation, the one that is
     used; `cutoffs` is the number of cutoffs crossed, as in :mod:`crackfront.simulate.laws`. The
     other arguments are as of :func:`crackfront.simulate.settings.chosen_settings`.
     """

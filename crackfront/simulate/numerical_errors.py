@@ -25,7 +25,7 @@ def numerical_error(
     """Standard errors (w_appr, w_retr) that the numerics leave (Units: w_int).
 
     `cutoffs` is the number of cutoffs crossed, as in :mod:`crackfront.simulate.laws`, by default
-    the usual one. By default `front_length` is the length of the longest front of a smooth contact
+    the usual one; `front_length` is by default the length of the longest front of a smooth contact
     (Units: reduced lateral length). NaN if no errors were measured on such surfaces.
     """
     if not simulation.is_covered:

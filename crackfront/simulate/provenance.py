@@ -1,4 +1,4 @@
-"""Where a result comes from: version, sources, command, machine and moment."""
+"""Origin of a result: version, sources, command, machine and moment."""
 
 from __future__ import annotations
 

@@ -64,15 +64,15 @@ def run_simulation(
     surface does not allow full conformity, e_el >= w_int.
     """
     compile_solver(simulation.solver.name, type(simulation.schedule))
-    before = (0.0, 0.0) if resume is None else (resume.seconds, resume.cpu_seconds)
-    wall, cpu = time.perf_counter() - before[0], time.process_time() - before[1]
-
-    def costs() -> tuple[float, float]:
-        return time.perf_counter() - wall, time.process_time() - cpu
+    clock = _Clock() if resume is None else _Clock(resume.seconds, resume.cpu_seconds)
 
     def observe(recorder: Recorder) -> None:
         if keep is not None:
-            keep(lambda: PartialRun(simulation, recorder.checkpoint(), *costs()))
+            keep(
+                lambda: PartialRun(
+                    simulation, recorder.checkpoint(), clock.seconds, clock.cpu_seconds
+                )
+            )
 
     adhesion = simulation_adhesion(simulation)
     problem = Problem(
@@ -80,7 +80,8 @@ def run_simulation(
         simulation.correlation_length,
         simulation.elastic_energy,
     )
-    measured = adhesion.e_el, adhesion.w_rms, float(np.mean(adhesion.work_of_adhesion < 0))
+    e_el, w_rms = adhesion.e_el, adhesion.w_rms
+    negative_share = float(np.mean(adhesion.work_of_adhesion < 0))
     # Only the splines stay in memory during the run, not the tile.
     del adhesion
     recorder = Recorder(
@@ -91,8 +92,33 @@ def run_simulation(
         resume=None if resume is None else resume.checkpoint,
     )
     record = simulation.schedule.run(problem, simulation.solver, recorder)
-    measures = RunMeasures(*measured, *costs(), peak_memory())
+    measures = RunMeasures(
+        e_el=e_el,
+        w_rms=w_rms,
+        negative_share=negative_share,
+        seconds=clock.seconds,
+        cpu_seconds=clock.cpu_seconds,
+        peak_memory=peak_memory(),
+    )
     return SimulationResult(simulation, record, measures)
+
+
+class _Clock:
+    """Wall time and processor time since its start, added to earlier ones (Units: s)."""
+
+    def __init__(self, seconds: float = 0.0, cpu_seconds: float = 0.0) -> None:
+        self._wall_start = time.perf_counter() - seconds
+        self._cpu_start = time.process_time() - cpu_seconds
+
+    @property
+    def seconds(self) -> float:
+        """Wall time."""
+        return time.perf_counter() - self._wall_start
+
+    @property
+    def cpu_seconds(self) -> float:
+        """Processor time."""
+        return time.process_time() - self._cpu_start
 
 
 @functools.cache

@@ -38,7 +38,7 @@ class Simulation:
     kind: FieldKind
     """What the spectrum describes: heights, or the work of adhesion itself."""
     spectrum: Spectrum
-    """Shape of the spectrum; its plateau has no effect. (Units: reduced lateral length)"""
+    """Shape of the spectrum, whatever its plateau. (Units: reduced lateral length)"""
     elastic_energy: float
     """Requested e_el / w_int; for a chemical field the equivalent (w_rms / w_int)^2 / 4."""
     realisation: int

@@ -54,8 +54,8 @@ def surface(
     Parameters
     ----------
     values : (n_x, n_y) array
-        Heights, positive at peaks, or works of adhesion on a periodic tile of square pixels. Of a
-        DataArray the dimensions x and y, and the units that it states, count.
+        Heights, positive at peaks, or works of adhesion on a periodic tile of square pixels. A
+        DataArray is read by its dimensions x and y and the units that it states.
     side : float or str
         Side of the tile along x: a number (Units: reduced lateral length; with a sphere m), or with
         a sphere a text with a unit, as '120um'.
@@ -114,7 +114,7 @@ def _samples(values: ArrayLike) -> Array:
     try:
         samples: Array = np.ma.array(values, dtype=float).filled(np.nan)
     except (TypeError, ValueError) as error:
-        raise TypeError(f"the values are no array of numbers: {error}") from error
+        raise TypeError(f"the values are not an array of numbers: {error}") from error
     if samples.ndim != 2 or min(samples.shape) < 2:
         raise ValueError(f"the values have the shape {samples.shape}; a tile must be (x, y)")
     return samples
@@ -167,31 +167,42 @@ def _stated(values: xr.DataArray, units: str | None) -> tuple[xr.DataArray, str 
 
 def _check_side(values: xr.DataArray, side: float | str, sphere: Scales | None) -> None:
     """Raise ValueError if coordinates of an array span another side, or pixels are not square."""
-    expected_side = float(side) if sphere is None else in_si("side", side, "m")
+    if "x" not in values.dims:
+        return
+    side_along_x = float(side) if sphere is None else in_si("side", side, "m")
     for name in ("x", "y"):
-        along_dimension = name in values.coords and {"x", name} <= {*values.dims}
-        if not along_dimension or values.sizes[name] < 2:
+        if name not in values.coords or name not in values.dims or values.sizes[name] < 2:
             continue
-        if name == "y" and values.y[0] > values.y[-1]:
-            # As in pictures, whose rows are counted downwards.
-            values = values.isel(y=slice(None, None, -1))
         unit = str(stated_unit(values[name].attrs) or "1")
         factor = _length_unit(unit, sphere, has_plain_side=not isinstance(side, str))
         if factor is None:
             continue
-        span = values.sizes[name] * spacing(values, name)
+        span = values.sizes[name] * spacing(_upwards(values, name), name)
         # Pixels are square, so that the side along x determines the side along y.
-        expected = expected_side * values.sizes[name] / values.sizes["x"]
+        expected = side_along_x * values.sizes[name] / values.sizes["x"]
         if abs(factor * span / expected - 1) > UNEQUAL:
-            reason, remedy = "", "this side"
-            if name == "y":
-                reason = f", where a side of {side} along x makes pixels square"
-                remedy = "values on square pixels"
-            raise ValueError(
-                f"side is {side}, but the coordinate {name} of the array spans "
-                f"{span:.6g}{'' if unit == '1' else f' {unit}'}{reason}; give {remedy}, or the "
-                "values alone"
-            )
+            raise _unequal_side(side, name, span, unit)
+
+
+def _upwards(values: xr.DataArray, name: str) -> xr.DataArray:
+    """Values with increasing y; pictures count their rows downwards."""
+    if name == "y" and values.y[0] > values.y[-1]:
+        return values.isel(y=slice(None, None, -1))
+    return values
+
+
+def _unequal_side(side: float | str, name: str, span: float, unit: str) -> ValueError:
+    """Error of a coordinate that spans another length than the side calls for."""
+    length = f"{span:.6g}" if unit == "1" else f"{span:.6g} {unit}"
+    if name == "x":
+        problem, remedy = f"spans {length}", "this side"
+    else:
+        problem = f"spans {length}, where a side of {side} along x makes pixels square"
+        remedy = "values on square pixels"
+    return ValueError(
+        f"side is {side}, but the coordinate {name} of the array {problem}; give {remedy}, or the "
+        "values alone"
+    )
 
 
 def _length_unit(unit: str, sphere: Scales | None, *, has_plain_side: bool) -> float | None:

@@ -65,14 +65,14 @@ def run_loop(
         :func:`crackfront.straight_front` makes of one.
     loads : iterable of float, optional
         Loads to visit in their order, down and up as often as they say; a repeated load is a pause.
-        The loop ends where contact is lost. By default, for a sphere, from first contact to the
+        The loop ends where contact is lost. Without loads a sphere goes from first contact to the
         largest penetration, and to pull-off. (Units: reduced vertical length; for a straight front
-        the length of its tile)
+        the unit of length of its tile)
     max_penetration : float, optional
         Largest penetration in place of loads, by default 1. (Units: reduced vertical length)
     step : float, optional
-        Largest difference of loads: equal steps lead from one to the next. By default 0.02 in place
-        of loads; those that are given are visited as they are. The fronts do not depend on it.
+        Largest difference of loads: equal steps lead from one to the next. The default is 0.02
+        without loads; stated loads are visited as they are. The fronts do not depend on it.
         (Units: as the loads)
     error : float, optional
         Standard error of the factor k of either branch that the numerics may leave; measured
@@ -81,11 +81,11 @@ def run_loop(
         with these it is 0.03 by default, or what the finest numerics on the pixels leave, and the
         result states it; without these attributes `error` is not allowed.
     sites : int, optional
-        Sites of the front, in place of an error. By default those that the error needs; where
-        there is none, one a pixel or more.
+        Sites of the front, in place of an error. The default is what the error needs; without an
+        error, one a pixel or more.
     samples : float, optional
-        Samples a pixel along a ray, in place of an error. By default those that the error needs;
-        where there is none 2, of a straight front 1.
+        Samples a pixel along a ray, in place of an error. The default is what the error needs;
+        without an error 2, for a straight front 1.
     solver : {"newton", "reference"}, optional
         Solver; both find the same fronts.
     fronts, energy : bool, optional
@@ -196,11 +196,17 @@ def result_sentence(record: CycleRecord, steady: SteadyAdhesion, remark: str = "
     if steady.sentence:
         unknown = "no steady part: w_appr and w_retr are unknown"
         return "; ".join(filter(None, (unknown, remark, forces)))
-    works = []
-    for name in ("w_appr", "w_retr", "hysteresis"):
-        value, error = getattr(steady, name), getattr(steady, f"{name}_error")
-        works.append(f"{name} {with_error(value, error) if error > 0 else format(value, '.4g')}")
-    return "; ".join(filter(None, (f"{', '.join(works)} (w_int)", remark, forces)))
+    works = (
+        f"w_appr {_value_text(steady.w_appr, steady.w_appr_error)}, "
+        f"w_retr {_value_text(steady.w_retr, steady.w_retr_error)}, "
+        f"hysteresis {_value_text(steady.hysteresis, steady.hysteresis_error)} (w_int)"
+    )
+    return "; ".join(filter(None, (works, remark, forces)))
+
+
+def _value_text(value: float, error: float) -> str:
+    """A value with its standard error, if it has one."""
+    return with_error(value, error) if error > 0 else f"{value:.4g}"
 
 
 @checked_call
@@ -234,7 +240,7 @@ def find_instabilities(
         quarter of the root of the precision, by which a front moves smoothly before it jumps.
     precision : float, optional
         Penetration to which an instability is located, at most a tenth of the step: a smooth step
-        that is not divided further would count as one. By default 2e-5, or less where the step or
+        that is not divided further would count as one. The default is 2e-5, or less if the step or
         the `travel` is small: before pull-off the whole front moves with the root of the
         penetration. (Units: reduced vertical length)
     error : float, optional
@@ -266,27 +272,35 @@ def find_instabilities(
         )
     schedule = LoadSchedule(max_penetration, step)
     numerics = LoopNumerics(error, sites, samples, usual_error=0.05)
-    contact = PressedSphere(surface, max_penetration).setup(None, step, numerics)
-    reach = travel * contact.measures.correlation_length
+    setup = PressedSphere(surface, max_penetration).setup(None, step, numerics)
+    largest_motion = travel * setup.measures.correlation_length
     if precision is None:
-        precision = min(2e-5, step / 10, max(reach**2, _round_off(contact)))
+        precision = min(2e-5, step / 10, max(largest_motion**2, _round_off(setup)))
     if precision > step / 10:
         raise ValueError(
             f"precision is {precision:g}; it must be at most a tenth of the step, {step / 10:g}"
         )
-    _check_resolved_motion(contact, travel, precision, direction)
-    field, solver = contact.field, Newton(min(contact.tolerance, precision / 10))
-    start = 0.0 if direction > 0 else max_penetration
-    touched = front_at(field, first_touch(field), Load(start, 1), solver)
-    loads = schedule.approach() if direction > 0 else schedule.retraction()
+    _check_resolved_motion(setup, travel, precision, direction)
+    field, solver = setup.field, Newton(min(setup.tolerance, precision / 10))
+    if direction > 0:
+        start, loads = 0.0, schedule.approach()
+    else:
+        start, loads = max_penetration, schedule.retraction()
     steps = resolved_motion(
-        field, touched, start, loads, direction, travel=reach, precision=precision, solver=solver
+        field,
+        front_at(field, first_touch(field), Load(start, 1), solver),
+        start,
+        loads,
+        direction,
+        travel=largest_motion,
+        precision=precision,
+        solver=solver,
     )
     jumps = [motion for motion in steps if motion.unstable]
-    instabilities = labelled_fields(measured_instabilities(jumps, field, reach))
-    angle = field.geometry.variables[1]
+    instabilities = labelled_fields(measured_instabilities(jumps, field, largest_motion))
+    _, angle = field.geometry.variables
     angles = {angle.name: labelled(angle, field.geometry.sites)}
-    return Dataset(instabilities, angles, {"travel": reach})
+    return Dataset(instabilities, angles, {"travel": largest_motion})
 
 
 _SMOOTH = 0.25
@@ -294,9 +308,9 @@ _SMOOTH = 0.25
 lengths: where a site is about to jump, it moves with that root."""
 
 
-def _round_off(contact: LoopSetup) -> float:
+def _round_off(setup: LoopSetup) -> float:
     """Penetration below which steps are round-off, in reduced units."""
-    return 10 * force_round_off(contact.front.size)
+    return 10 * force_round_off(setup.front.size)
 
 
 _PULL_OFF = 1.5
@@ -305,20 +319,22 @@ curvature of the penetration in the radius. (Units: reduced lengths)"""
 
 
 def _check_resolved_motion(
-    contact: LoopSetup, travel: float, precision: float, direction: Direction
+    setup: LoopSetup, travel: float, precision: float, direction: Direction
 ) -> None:
     """Raise if round-off hides steps of a precision, or if smooth motion counts as a jump."""
-    if precision < (least := _round_off(contact)):
+    round_off = _round_off(setup)
+    if precision < round_off:
         raise ValueError(
-            f"precision is {precision:g}, below the round-off of a front of {contact.front.size} "
-            f"sites ({least:.1e}); raise it"
+            f"precision is {precision:g}, below the round-off of a front of {setup.front.size} "
+            f"sites ({round_off:.1e}); raise it"
         )
-    length = contact.measures.correlation_length
-    least = max(_SMOOTH * math.sqrt(precision), precision / length)
+    length = setup.measures.correlation_length
+    smooth_motion = max(_SMOOTH * math.sqrt(precision), precision / length)
     if direction < 0:
-        least = max(least, math.sqrt(precision / _PULL_OFF) / length)
-    if travel < least:
+        smooth_motion = max(smooth_motion, math.sqrt(precision / _PULL_OFF) / length)
+    if travel < smooth_motion:
         raise ValueError(
             f"travel is {travel:g} correlation lengths, but within a precision of {precision:g} a "
-            f"front moves smoothly by up to {least:.2g} of them; raise travel or lower precision"
+            f"front moves smoothly by up to {smooth_motion:.2g} of them; raise travel or lower "
+            "precision"
         )

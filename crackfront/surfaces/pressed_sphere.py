@@ -71,10 +71,10 @@ class PressedSphere(LoopContact):
         """As :meth:`crackfront.surfaces.loop_setup.LoopContact.setup`."""
         deepest = self.max_penetration
         if loads is None and deepest is not None:
-            way = LoadSchedule(deepest, step).loads()
+            full_cycle = LoadSchedule(deepest, step).loads()
             # A smooth sphere comes off there; a rough one goes somewhat further.
             n_state = 3 + (2 * deepest - jkr.pull_off_penetration()) / step
-            return self._setup(deepest, way, n_state, numerics)
+            return self._setup(deepest, full_cycle, n_state, numerics)
         if loads is None or deepest is not None:
             raise ValueError("a sphere needs max_penetration or loads; give one of the two")
         if loads[0] < 0:
@@ -85,35 +85,39 @@ class PressedSphere(LoopContact):
         return self._setup(max(loads), protocol(loads, step), state_count(loads, step), numerics)
 
     def _setup(
-        self, deepest: float, way: Iterator[Load], n_state: float, numerics: LoopNumerics
+        self, deepest: float, loads: Iterator[Load], n_state: float, numerics: LoopNumerics
     ) -> SphereSetup:
         """Setup of a run up to a penetration, with its loads and about so many states."""
         adhesion = surface_adhesion(self.surface)
         radius, samples = jkr.equilibrium_radius(deepest), numerics.samples or _USUAL_SAMPLES
+        circumference = 2 * math.pi * radius
         seconds = affordable_seconds(
-            n_angle=numerics.sites or 2 * math.pi * radius / adhesion.pixel,
+            n_angle=numerics.sites or circumference / adhesion.pixel,
             n_point=adhesion.work_of_adhesion.size,
             n_state=n_state,
             n_sample=4 * samples * radius / adhesion.pixel,
         )
         measures = tile_measures(adhesion)
         check_samples(numerics, adhesion.pixel, measures)
+        remarks = [remark_on_mean(measures)]
         simulation = self._simulation(deepest, adhesion, measures.kind, numerics)
         if simulation is None:
+            tolerance = DEFAULT_TOLERANCE
             field = contact_field(adhesion, deepest, numerics.sites, adhesion.pixel / samples)
-            few_sites = remark_on_sites(field.geometry.n_site, 2 * math.pi * radius, measures)
+            remarks.append(remark_on_sites(field.geometry.n_site, circumference, measures))
         else:
-            field, few_sites = simulation_field(simulation, adhesion), ""
+            tolerance = simulation.solver.tolerance
+            field = simulation_field(simulation, adhesion)
         return SphereSetup(
             field=field,
             front=checked_touch(field, deepest),
-            loads=way,
+            loads=loads,
             expected=int(n_state),
             seconds=seconds,
-            tolerance=simulation.solver.tolerance if simulation else DEFAULT_TOLERANCE,
+            tolerance=tolerance,
             measures=measures,
             simulation=simulation,
-            remark="; ".join(filter(None, (remark_on_mean(measures), few_sites))),
+            remark="; ".join(filter(None, remarks)),
         )
 
     def _simulation(
@@ -129,12 +133,12 @@ class PressedSphere(LoopContact):
         if spectrum is None or adhesion.e_el == 0 or numerics.by_pixels:
             return None
         error = numerics.usual_error if numerics.error is None else numerics.error
-        schedule = FullCycle(deepest, 1.0)  # whose step has no effect on sizes
+        schedule = FullCycle(deepest, step=1.0)  # sizes do not depend on the step
         chosen = chosen_simulation(kind, spectrum, adhesion.e_el, schedule, error=error)
         n_point = min(adhesion.work_of_adhesion.shape)
         resolution = replace(chosen.resolution, tile_side=n_point * adhesion.pixel, n_point=n_point)
         simulation = replace(chosen, resolution=resolution)
-        # Where no error is asked for, the result states the one that is left.
+        # If no error is requested, the result states the remaining one.
         if numerics.error is not None and (remaining := missed_error(simulation, error)):
             pixels = spectrum.short_cutoff / adhesion.pixel
             raise ValueError(

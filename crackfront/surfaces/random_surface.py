@@ -40,7 +40,7 @@ def random_surface(
     ----------
     short_cutoff : float or Spectrum
         Shortest wavelength (Units: reduced lateral length); or a whole spectrum, which replaces
-        `roll_off` and `hurst` too. The amplitude of the spectrum has no effect.
+        `roll_off` and `hurst` too. Its amplitude is scaled to `elastic_energy`.
     elastic_energy : float
         Energy of full conformity e_el, from 0.001 to 0.4, where the errors of numerics are known;
         for a chemical surface the equivalent (w_rms / w_int)^2 / 4. It is the mean over

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import asdict
 from typing import Any, TypeVar
 
@@ -63,14 +63,18 @@ def in_si_units(data: Labelled, scales: InstanceOf[units.Scales] | None = None) 
                 "name it: in_si_units(data, crackfront.Scales(radius, ...))"
             )
     check_units(data)
-    converted = _converted(data, lambda unit, _: _si(unit, scales))
+    converted = _converted(
+        data,
+        lambda part: _in_si(reduced_unit(str(part.name)), scales),
+        lambda unit: unit.scale(scales),
+    )
     return converted.assign_attrs(sphere_attributes(scales))
 
 
 def stated_scales(data: xr.DataArray | xr.Dataset) -> units.Scales | None:
     """The sphere for which data were converted to SI units; None if they are in reduced units.
 
-    ValueError if they are in other units and do not say for which sphere they were converted.
+    ValueError if they are in other units and do not state a sphere.
     """
     sphere = attributes_sphere(data.attrs, CONVERTED_FOR)
     if sphere is None:
@@ -118,11 +122,12 @@ def in_reduced_units(data: Labelled, scales: InstanceOf[units.Scales]) -> Labell
         sphere = ", ".join(f"{name} {value:g}" for name, value in asdict(stated_sphere).items())
         raise ValueError(f"the data were converted for another sphere, {sphere}; give that one")
 
-    def change(unit: str, part: xr.DataArray | None) -> tuple[float, str]:
-        scale, needed = _si(unit, scales)
-        return (1.0 if part is None else _unit_value(part, needed)) / scale, unit
+    def change(part: xr.DataArray) -> tuple[float, str]:
+        unit = reduced_unit(str(part.name))
+        scale, si_unit = _in_si(unit, scales)
+        return _unit_value(part, si_unit) / scale, unit
 
-    reduced = _converted(data, change)
+    reduced = _converted(data, change, lambda unit: 1.0 / unit.scale(scales))
     attributes = {
         name: value for name, value in reduced.attrs.items() if not name.startswith(CONVERTED_FOR)
     }
@@ -130,39 +135,47 @@ def in_reduced_units(data: Labelled, scales: InstanceOf[units.Scales]) -> Labell
 
 
 def _converted(
-    data: Labelled, change: Callable[[str, xr.DataArray | None], tuple[float, str]]
+    data: Labelled,
+    change: Callable[[xr.DataArray], tuple[float, str]],
+    attribute_factor: Callable[[ReducedUnit], float],
 ) -> Labelled:
-    """Copy with other units; `change` gives the factor and the new unit of a reduced unit.
+    """Copy of data in other units.
 
-    It is called with the variable that has the unit, or with None for an attribute.
+    `change` returns the factor by which the values of a variable are multiplied, and their new
+    unit; `attribute_factor` returns the factor of an attribute that has a reduced unit.
     """
     dataset: xr.Dataset = as_dataset(data)
-
-    def attributes(part: xr.DataArray | xr.Dataset) -> dict[str, Any]:
-        return {
-            name: value * change(ATTRIBUTE_UNITS[name], None)[0]
-            if name in ATTRIBUTE_UNITS
-            else value
-            for name, value in part.attrs.items()
-            if name != "reduced_unit"
-        }
-
     parts = {}
     for name in dataset.variables:
         part = dataset[name]
-        factor, unit = change(reduced_unit(str(name)), part)
-        # Counts and texts have no scale, and keep their types.
+        factor, unit = change(part)
+        # Counts and texts lack a scale, and keep their types.
         values = part.values if factor == 1.0 else part.values * factor
-        parts[name] = (part.dims, values, attributes(part) | unit_attributes(unit))
-    converted = xr.Dataset(parts, attrs=attributes(dataset)).set_coords([*dataset.coords])
+        attributes = _converted_attributes(part.attrs, attribute_factor)
+        parts[name] = (part.dims, values, attributes | unit_attributes(unit))
+    attributes = _converted_attributes(dataset.attrs, attribute_factor)
+    converted = xr.Dataset(parts, attrs=attributes).set_coords(list(dataset.coords))
     if isinstance(data, xr.DataArray):
         return converted[data.name]
     return converted
 
 
-def _si(unit: str, scales: units.Scales) -> tuple[float, str]:
-    """Value of a reduced unit in SI, and the unit there; other units stay."""
-    return (unit.scale(scales), unit.si) if isinstance(unit, ReducedUnit) else (1.0, unit)
+def _converted_attributes(
+    attributes: Mapping[Any, Any], factor: Callable[[ReducedUnit], float]
+) -> dict[Any, Any]:
+    """Attributes in other units, without the reduced unit of a variable."""
+    converted = {name: value for name, value in attributes.items() if name != "reduced_unit"}
+    for name, unit in ATTRIBUTE_UNITS.items():
+        if name in converted:
+            converted[name] = converted[name] * factor(unit)
+    return converted
+
+
+def _in_si(unit: str, scales: units.Scales) -> tuple[float, str]:
+    """Value of a reduced unit in SI, and its unit there; a unit that is not reduced stays."""
+    if isinstance(unit, ReducedUnit):
+        return unit.scale(scales), unit.si
+    return 1.0, unit
 
 
 def _unit_value(part: xr.DataArray, needed: str) -> float:

@@ -14,6 +14,7 @@ from crackfront.core.adhesion import AdhesionMap
 from crackfront.core.arrays import Array
 from crackfront.core.cycle.load_schedule import protocol
 from crackfront.core.cycle.record import CycleRecord
+from crackfront.core.field.fields import TileField
 from crackfront.core.geometry.line import initial_front, line_field
 from crackfront.core.solver import DEFAULT_TOLERANCE
 from crackfront.core.units import WORK_OF_ADHESION
@@ -30,7 +31,7 @@ from crackfront.surfaces.loop_setup import (
 )
 from crackfront.surfaces.surface_adhesion import surface_adhesion
 from crackfront.surfaces.surface_array import surface_kind
-from crackfront.surfaces.tile_measures import tile_measures
+from crackfront.surfaces.tile_measures import TileMeasures, tile_measures
 from crackfront.validation import Positive, checked_call
 
 _ROUND_OFF = 1e-9
@@ -38,6 +39,12 @@ _ROUND_OFF = 1e-9
 
 _FEWEST_SAMPLES = 0.5
 """Samples a pixel: the field of a straight front begins two pixels behind its first front."""
+
+_USUAL_SAMPLES = 1.0
+"""Samples a pixel along a ray, if the user states no number."""
+
+_SPLINE_OVERSHOOT = 1.25
+"""Largest range of the splines over the range of the points that they go through."""
 
 _LINE_ROUND_OFF = 10.0
 """Round-off of forces of the line by Fourier transforms, relative to its shortest mode alone."""
@@ -81,9 +88,10 @@ class StraightFront(LoopContact):
     def setup(
         self, loads: tuple[float, ...] | None, step: float, numerics: LoopNumerics
     ) -> StraightSetup:
-        """What a run begins with, as of :meth:`crackfront.surfaces.loop_setup.LoopContact.setup`.
+        """Field, first front and loads of a run along some loads.
 
-        By default the front has a site for every y, and a sample a pixel along a ray.
+        The front has a site for every y, and a sample a pixel along a ray, unless the numerics
+        state other numbers.
         """
         if loads is None:
             raise ValueError("a straight front needs loads; give loads, and no max_penetration")
@@ -92,42 +100,76 @@ class StraightFront(LoopContact):
                 f"error is {numerics.error:g}, but errors of straight fronts on a given surface "
                 "were not measured; give sites and samples instead"
             )
-        adhesion, way = surface_adhesion(self.surface), protocol(loads, step)
-        short_front = self._remark_on_length(adhesion)
-        values, n_state = adhesion.work_of_adhesion, state_count(loads, step)
-        samples, measures = numerics.samples or 1.0, tile_measures(adhesion)
+        visited = protocol(loads, step)
+        n_state = state_count(loads, step)
+        adhesion = surface_adhesion(self.surface)
+        self._check_length(adhesion)
+        measures = tile_measures(adhesion)
         check_samples(numerics, adhesion.pixel, measures, _FEWEST_SAMPLES)
-        # The first front lies as far behind its load as pinning may pull the springs.
-        behind = 1.25 * self.spring * float(np.ptp(values)) / WORK_OF_ADHESION
-        furthest = max(abs(min(loads)), abs(max(loads))) + behind + 2 * adhesion.pixel
-        self._check_round_off(adhesion, furthest, numerics.sites or values.shape[1])
-        seconds = affordable_seconds(
-            n_angle=numerics.sites or values.shape[1],
+        seconds = self._affordable_seconds(adhesion, loads, n_state, numerics)
+        field = self._field(adhesion, loads, numerics)
+        front = initial_front(field, adhesion, loads[0])
+        # A branch begins with a front of its own: making contact releases no energy here.
+        first = next(visited)._replace(start=front)
+        return StraightSetup(
+            field=field,
+            front=front,
+            loads=chain([first], visited),
+            expected=int(n_state),
+            seconds=seconds,
+            tolerance=DEFAULT_TOLERANCE,
+            measures=measures,
+            load_stiffness=field.geometry.length * field.geometry.stiffness,
+            remark=self._remark(adhesion, field, measures),
+        )
+
+    def _pinned_distance(self, adhesion: AdhesionMap) -> float:
+        """Largest distance to the load at which pinning may stop a front (Units: length)."""
+        span = float(np.ptp(adhesion.work_of_adhesion))
+        return _SPLINE_OVERSHOOT * self.spring * span / WORK_OF_ADHESION
+
+    def _affordable_seconds(
+        self,
+        adhesion: AdhesionMap,
+        loads: tuple[float, ...],
+        n_state: float,
+        numerics: LoopNumerics,
+    ) -> float:
+        """Expected processor time (Units: s); raises if round-off, memory or time are too large."""
+        values, pixel = adhesion.work_of_adhesion, adhesion.pixel
+        n_site = numerics.sites or values.shape[1]
+        behind = self._pinned_distance(adhesion)
+        furthest = max(abs(min(loads)), abs(max(loads))) + behind + 2 * pixel
+        self._check_round_off(adhesion, furthest, n_site)
+        samples = numerics.samples or _USUAL_SAMPLES
+        return affordable_seconds(
+            n_angle=n_site,
             n_point=values.size,
             n_state=n_state,
-            n_sample=2 * samples * (float(np.ptp(loads)) + behind) / adhesion.pixel,
+            n_sample=2 * samples * (float(np.ptp(loads)) + behind) / pixel,
         )
-        field = line_field(
+
+    def _field(
+        self, adhesion: AdhesionMap, loads: tuple[float, ...], numerics: LoopNumerics
+    ) -> TileField:
+        """Field that no front leaves between the lowest and the highest load."""
+        samples = numerics.samples or _USUAL_SAMPLES
+        return line_field(
             adhesion,
             self.spring,
             (min(loads), max(loads)),
             n_site=numerics.sites,
             spacing=adhesion.pixel / samples,
         )
-        front = initial_front(field, adhesion, loads[0])
-        few_sites = remark_on_sites(field.geometry.n_site, field.geometry.length, measures)
-        return StraightSetup(
-            field=field,
-            front=front,
-            # A branch begins with a front of its own: making contact releases no energy here.
-            loads=chain([next(way)._replace(start=front)], way),
-            expected=int(n_state),
-            seconds=seconds,
-            tolerance=DEFAULT_TOLERANCE,
-            measures=measures,
-            load_stiffness=field.geometry.length * field.geometry.stiffness,
-            remark="; ".join(filter(None, (short_front, remark_on_mean(measures), few_sites))),
+
+    def _remark(self, adhesion: AdhesionMap, field: TileField, measures: TileMeasures) -> str:
+        """Reservations about the result, in one line; empty if there are none."""
+        remarks = (
+            self._remark_on_length(adhesion),
+            remark_on_mean(measures),
+            remark_on_sites(field.geometry.n_site, field.geometry.length, measures),
         )
+        return "; ".join(filter(None, remarks))
 
     def _check_round_off(self, adhesion: AdhesionMap, furthest: float, n_site: int) -> None:
         """Raise if the round-off of places so far from 0 exceeds the tolerance of forces."""
@@ -142,28 +184,36 @@ class StraightFront(LoopContact):
                 f"of the tile, {period:g}, to near 0, or use longer springs or fewer sites"
             )
 
-    def _remark_on_length(self, adhesion: AdhesionMap) -> str:
-        """What a short front means for k; ValueError if it is shorter than its springs."""
-        length = adhesion.pixel * adhesion.work_of_adhesion.shape[1]
-        ratio = length / self.spring
-        if ratio < 1 - _ROUND_OFF:
+    def _check_length(self, adhesion: AdhesionMap) -> None:
+        """Raise ValueError if the front is shorter than its springs."""
+        length = _front_length(adhesion)
+        if length / self.spring < 1 - _ROUND_OFF:
             raise ValueError(
                 f"spring is {self.spring:g}, longer than the front, {length:g}, which is pinned as "
                 "a whole; shorten the spring or lengthen the tile along y"
             )
-        if ratio < LAW_LENGTH * (1 - _ROUND_OFF):
-            return (
-                f"the front is {ratio:.2g} L_kappa long, below the {LAW_LENGTH:g} of the law of k: "
-                "its hysteresis is too large"
-            )
-        return ""
+
+    def _remark_on_length(self, adhesion: AdhesionMap) -> str:
+        """Sentence on a front that is too short for the law of k; else empty."""
+        ratio = _front_length(adhesion) / self.spring
+        if ratio >= LAW_LENGTH * (1 - _ROUND_OFF):
+            return ""
+        return (
+            f"the front is {ratio:.2g} L_kappa long, below the {LAW_LENGTH:g} of the law of k: "
+            "its hysteresis is too large"
+        )
+
+
+def _front_length(adhesion: AdhesionMap) -> float:
+    """Side of the tile along y (Units: length)."""
+    return adhesion.pixel * adhesion.work_of_adhesion.shape[1]
 
 
 @checked_call
 def straight_front(surface: DataArray, spring: Positive) -> StraightFront:
     """A straight front for :func:`crackfront.run_loop`, whose loads are places of its springs.
 
-    The front is as long as the side of the surface along y. Where this is below ten times the
+    The front is as long as the side of the surface along y. If this is less than ten times the
     length of the springs, the factor k is larger than on a long front, on which the law of k was
     measured; the result of the loop says so.
 

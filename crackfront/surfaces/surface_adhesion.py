@@ -50,24 +50,33 @@ def surface_adhesion(surface: xr.DataArray) -> AdhesionMap:
         )
     check_units(surface if kind == "roughness" else surface.coords.to_dataset())
     check_real(surface)
-    samples, pixel = tile_values(surface)
-    corner = float(surface["x"][0]), float(surface["y"][0])
-    if kind == "roughness":
-        _check_values(str(surface.name), samples, 1.0)
-        if not surface.attrs.get("periodic"):
-            _check_seam(samples)
-        return replace(rough_adhesion(samples, pixel), corner=corner)
+    adhesion = _of_heights(surface) if kind == "roughness" else _of_works(surface)
+    return replace(adhesion, corner=(float(surface["x"][0]), float(surface["y"][0])))
+
+
+def _of_heights(surface: xr.DataArray) -> AdhesionMap:
+    """Work of adhesion of heights, which must be finite and periodic."""
+    heights, pixel = tile_values(surface)
+    _check_values(str(surface.name), heights, 1.0)
+    if not surface.attrs.get("periodic"):
+        _check_seam(heights)
+    return rough_adhesion(heights, pixel)
+
+
+def _of_works(surface: xr.DataArray) -> AdhesionMap:
+    """Works of adhesion of a map, with the e_el of roughness of the same rms."""
+    values, pixel = tile_values(surface)
     unit = str(stated_unit(surface.attrs) or "reduced")
     if unit not in _UNITS:
         raise ValueError(
             f"{surface.name} has the units {unit!r}; they must be 'reduced' or '{ADHESION}': "
             "set them, or convert other units by in_reduced_units"
         )
-    samples = _UNITS[unit] * samples
-    _check_values(str(surface.name), samples, WORK_OF_ADHESION)
-    check_mean(samples / WORK_OF_ADHESION, "w_int" if unit == ADHESION else "reduced")
-    rms = float(np.std(samples)) / WORK_OF_ADHESION
-    return AdhesionMap(samples, pixel, rms**2 / 4, rms, corner)
+    works = _UNITS[unit] * values
+    _check_values(str(surface.name), works, WORK_OF_ADHESION)
+    check_mean(works / WORK_OF_ADHESION, "w_int" if unit == ADHESION else "reduced")
+    rms = float(np.std(works)) / WORK_OF_ADHESION
+    return AdhesionMap(works, pixel, rms**2 / 4, rms)
 
 
 def check_real(values: object) -> None:

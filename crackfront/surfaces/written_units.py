@@ -51,25 +51,15 @@ def si_value(text: str, unit: str, *, name: str) -> float:
     >>> round(si_value("63mJ/m2", "J/m^2", name="work of adhesion"), 12)
     0.063
     """
-    dimension = _NAMES[unit]
-    example = f"write a number and a unit of {dimension}, as in {_EXAMPLES[unit]}"
-    quantity = _QUANTITY.fullmatch(unicodedata.normalize("NFKC", text).translate(_SIGNS))
-    if _COMMA.search(text):
-        raise ValueError(
-            f"{name} is {text!r}, a number with a comma; write {_COMMA.sub('.', text)!r} if that "
-            "is meant"
-        )
-    if quantity is None:
-        raise ValueError(f"{name} is {text!r}, which is not a number with a unit; {example}")
-    if quantity[2] is None:
-        raise ValueError(f"{name} is {text!r}, without a unit; {example}")
+    example = f"write a number and a unit of {_NAMES[unit]}, as in {_EXAMPLES[unit]}"
+    number, written_unit = _number_and_unit(text, name, example)
     try:
-        value = _converted(float(quantity[1]), _plain(quantity[2]), unit)
+        value = _converted(number, _unit_for_pint(written_unit), unit)
     except ValueError as error:
         raise ValueError(f"{name} is {text!r}, whose unit {error}; {example}") from error
     if not (math.isfinite(value) and value > 0):
         raise ValueError(f"{name} is {text!r}; it must be positive and finite")
-    if quantity[2].startswith("mPa"):
+    if written_unit.startswith("mPa"):
         meant = text.replace("mPa", "MPa")
         raise ValueError(
             f"{name} is {text!r}, {value:g} Pa, too soft to be solid; was {meant!r} meant?"
@@ -78,14 +68,34 @@ def si_value(text: str, unit: str, *, name: str) -> float:
     return value
 
 
-def _plain(written: str) -> str:
-    """A unit as pint reads it, of one as people and the files of this package write it."""
-    signs = unicodedata.normalize("NFKC", written).translate(_SIGNS)
-    return _POWER.sub(r"\1^\2", _PRODUCT.sub("*", signs))
+def _number_and_unit(text: str, name: str, example: str) -> tuple[float, str]:
+    """Number and unit of a text; errors have the name of the quantity and an example."""
+    if _COMMA.search(text):
+        raise ValueError(
+            f"{name} is {text!r}, a number with a comma; write {_COMMA.sub('.', text)!r} if that "
+            "is meant"
+        )
+    quantity = _QUANTITY.fullmatch(_plain_signs(text))
+    if quantity is None:
+        raise ValueError(f"{name} is {text!r}, which is not a number with a unit; {example}")
+    if quantity[2] is None:
+        raise ValueError(f"{name} is {text!r}, without a unit; {example}")
+    return float(quantity[1]), quantity[2]
+
+
+def _plain_signs(text: str) -> str:
+    """A text with plain letters, digits and signs in place of their variants in Unicode."""
+    return unicodedata.normalize("NFKC", text).translate(_SIGNS)
+
+
+def _unit_for_pint(written: str) -> str:
+    """A unit in the notation of pint, from the notations of people and of this package's files."""
+    with_products = _PRODUCT.sub("*", _plain_signs(written))
+    return _POWER.sub(r"\1^\2", with_products)
 
 
 def unit_value(written: str, unit: str) -> float:
-    """Value of one unit in another of the same dimension; a ValueError where there is none.
+    """Value of a unit in another unit; ValueError if their dimensions differ.
 
     Examples
     --------
@@ -93,13 +103,13 @@ def unit_value(written: str, unit: str) -> float:
     0.001
     """
     try:
-        return _converted(1.0, _plain(written), unit)
+        return _converted(1.0, _unit_for_pint(written), unit)
     except ValueError as error:
         raise ValueError(f"the unit {written} cannot be converted to {unit}: it {error}") from error
 
 
 def is_unit(written: str, unit: str) -> bool:
-    """Whether a text is a unit of the same dimension as another one."""
+    """Whether a text is a unit of the same dimension as a unit."""
     try:
         unit_value(written, unit)
     except ValueError:
@@ -108,7 +118,7 @@ def is_unit(written: str, unit: str) -> bool:
 
 
 def _converted(value: float, written: str, unit: str) -> float:
-    """Value in a unit of a number in another one; a ValueError says what is wrong with that."""
+    """A number in a written unit, converted to a unit; a ValueError says why it cannot be."""
     import pint
 
     if _PIXELS.search(written):
@@ -133,14 +143,14 @@ def _registry() -> Any:
 
 
 _PREFIXES = {-12: "p", -9: "n", -6: "u", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"}
+"""Prefixes of units, by their powers of ten."""
 
 
 def prefixed(unit: str, *values: float, digits: int = 3) -> str:
-    """Values in a unit with the prefix that the first of them calls for.
+    """A value, and the ends of its interval if they are given, with the prefix that suits it.
 
-    They are a number, or a number and the ends of its interval, in an SI unit without a prefix, and
-    are written with so many significant digits. An interval that these digits do not show is left
-    out.
+    Values are in an SI unit without a prefix. They are written with so many significant digits; an
+    interval that these digits do not show is left out.
 
     Examples
     --------
@@ -149,10 +159,18 @@ def prefixed(unit: str, *values: float, digits: int = 3) -> str:
     >>> prefixed("N", 105.01e-6, 104.99e-6, 105.02e-6)
     '105 uN'
     """
-    has_size = abs(values[0]) > 0 and math.isfinite(values[0])
-    power = 3 * math.floor(math.log10(abs(values[0]) * (1 + 1e-9)) / 3) if has_size else 0
-    power = min(max(power, min(_PREFIXES)), max(_PREFIXES))
+    power = _prefix_power(values[0])
+    # The second format drops the zeros at the end: 2.10 becomes 2.1.
     first, *ends = (f"{float(f'{value / 10.0**power:.{digits}g}'):g}" for value in values)
-    is_shown = bool(ends) and math.isfinite(values[1]) and {*ends} != {first}
-    interval = f" ({ends[0]} to {ends[1]})" if is_shown else ""
-    return f"{first} {_PREFIXES[power]}{unit}{interval}"
+    text = f"{first} {_PREFIXES[power]}{unit}"
+    if ends and math.isfinite(values[1]) and (ends[0] != first or ends[1] != first):
+        return f"{text} ({ends[0]} to {ends[1]})"
+    return text
+
+
+def _prefix_power(value: float) -> int:
+    """Power of ten of the prefix that leaves one to three digits before the decimal point."""
+    if value == 0 or not math.isfinite(value):
+        return 0
+    power = 3 * math.floor(math.log10(abs(value) * (1 + 1e-9)) / 3)
+    return min(max(power, min(_PREFIXES)), max(_PREFIXES))

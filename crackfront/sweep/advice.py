@@ -34,7 +34,7 @@ class Expectation:
     disorder: float
     """w_rms / w_int."""
     size: float | None
-    """g, L_kappa over the Larkin length, of a sphere at its largest penetration; None of an
+    """g, L_kappa over the Larkin length, for a sphere at its largest penetration; None for an
     anisotropic spectrum, whose Larkin length depends on the direction of the front."""
     factor: float | None
     """k by the law; None near pull-off, where the edge is unstable, and if the law does not cover
@@ -50,32 +50,35 @@ class Expectation:
 
 def expectation(simulation: Simulation) -> Expectation:
     """What the realisations of a simulation are expected to find."""
-    kind, spectrum, energy = simulation.kind, simulation.spectrum, simulation.elastic_energy
-    schedule, disorder = simulation.schedule, 2 * math.sqrt(energy)
+    kind, energy, schedule = simulation.kind, simulation.elastic_energy, simulation.schedule
+    disorder = 2 * math.sqrt(energy)
     if not simulation.is_covered:
-        size = None
-        if spectrum.is_isotropic:
-            size = schedule.spring_at(1.0) / larkin_length(kind, spectrum, disorder)
-        return Expectation(disorder, size, None)
-    sizes = sizes_on_springs(kind, spectrum, energy, schedule.spring_at)
+        return Expectation(disorder, _size_of_isotropic(simulation, disorder), None)
+    sizes = sizes_on_springs(kind, simulation.spectrum, energy, schedule.spring_at)
     if not sizes.is_stable:
         return Expectation(disorder, schedule.spring_at(1.0) / sizes.larkin_length, None)
-    size, factor = sizes.smooth, straight_factors(kind, energy, sizes).both.value
+    factor = straight_factors(kind, energy, sizes).both.value
+    expected = Expectation(disorder, sizes.smooth, factor)
     if not isinstance(schedule, Pressed):
-        return Expectation(disorder, size, factor)
-
-    works, transient = _expected_works(simulation, factor), _transient(simulation, size)
-    expected = simulation.surface, works, transient
-    if schedule.steady_penetration(*expected, _DOUBTFUL_STATES) <= schedule.max_penetration:
-        return Expectation(disorder, size, factor)
-    return Expectation(
-        disorder,
-        size,
-        factor,
-        schedule.steady_penetration(*expected, _ENOUGH_STATES),
-        schedule.steadier_start(*expected, _ENOUGH_STATES),
-        schedule.steadier_travel(*expected, _ENOUGH_STATES),
+        return expected
+    works, transient = _expected_works(simulation, factor), _transient(simulation, sizes.smooth)
+    contact = simulation.surface, works, transient
+    if schedule.steady_penetration(*contact, _DOUBTFUL_STATES) <= schedule.max_penetration:
+        return expected
+    return replace(
+        expected,
+        needed_penetration=schedule.steady_penetration(*contact, _ENOUGH_STATES),
+        needed_start=schedule.steadier_start(*contact, _ENOUGH_STATES),
+        needed_travel=schedule.steadier_travel(*contact, _ENOUGH_STATES),
     )
+
+
+def _size_of_isotropic(simulation: Simulation, disorder: float) -> float | None:
+    """Size g without hysteresis; None for an anisotropic spectrum."""
+    kind, spectrum = simulation.kind, simulation.spectrum
+    if not spectrum.is_isotropic:
+        return None
+    return simulation.schedule.spring_at(1.0) / larkin_length(kind, spectrum, disorder)
 
 
 def _transient(simulation: Simulation, size: float) -> float:

@@ -9,6 +9,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+from crackfront.analysis.table import SweepRow
 from crackfront.core.variables import variables
 from crackfront.core.versions import PHYSICS_VERSION
 from crackfront.simulate.checksums import MERGED, forget_sums
@@ -56,7 +57,7 @@ def finish_shard(store: Store, sweep: Sweep, shard: Shard, origin: Provenance) -
     for number in remade:
         _remake(sweep, shard, located, number, columns)
     arithmetic = {*located.column("arithmetic").tolist()}
-    _merge(store.curve_folder(shard), shard.name, located, columns, origin)
+    _merge(store.curve_folder(shard), shard.name, located, columns, sweep.row_type, origin)
     forget_sums(store.folder)
     write_request(store.folder, shard_request(sweep, shard))
     write_shard(path, sweep, shard, columns, arithmetic, origin)
@@ -92,6 +93,7 @@ def _merge(
     name: str,
     located: LocatedRows,
     columns: dict[str, NDArray[Any]],
+    row: type[SweepRow],
     origin: Provenance,
 ) -> None:
     """Put all simulations of a shard into one file, and remove those that it replaces."""
@@ -104,7 +106,7 @@ def _merge(
     parts, order = [], []
     for number in used:
         chosen = located.place[located.file == number]
-        parts.append(selected(_with_all_columns(located.files[number].path), chosen))
+        parts.append(selected(_with_all_columns(located.files[number].path, row), chosen))
         order.append(np.flatnonzero(located.file.ravel() == number))
     merged = selected(concatenated(parts), np.argsort(np.concatenate(order)))
     merged = merged.assign(
@@ -119,13 +121,13 @@ def _merge(
             path.unlink()
 
 
-def _with_all_columns(path: Path) -> xr.Dataset:
-    """Dataset of a file of curves; columns that its older version lacks are NaN."""
+def _with_all_columns(path: Path, row: type[SweepRow]) -> xr.Dataset:
+    """Dataset of a file of curves; columns of a row that its older version lacks are NaN."""
     dataset = read_dataset(path)
     unknown = np.full(dataset.sizes[SIMULATION], np.nan)
     lacking = {
         item.name: labelled(item, unknown)
-        for item in variables(SweepRow, SIMULATION)
+        for item in variables(row, SIMULATION)
         if item.name not in dataset
     }
     return dataset.assign(lacking)

@@ -31,6 +31,9 @@ _DERIVED = "hysteresis.nc", "fit.nc"
 _MOST_EXPANSION = 1000
 """Largest ratio of the size of unpacked files to their archive; sweeps have about 2."""
 
+_PART_BYTES = 2**20
+"""Part of a file in an archive that is in memory at a time. (Units: byte)"""
+
 _UNREADABLE = BadZipFile, EOFError, NotImplementedError, RuntimeError, zlib.error
 """What a damaged, encrypted or unusual archive raises."""
 
@@ -106,13 +109,20 @@ def _archive_digests(archive: ZipFile) -> dict[str, str]:
     digests = {}
     for member in members:
         try:
-            with archive.open(member) as file:
-                digest = hashlib.file_digest(file, "sha256")  # type: ignore[arg-type]
-                digests[_name(member)] = digest.hexdigest()
+            digests[_name(member)] = _member_digest(archive, member)
         except _UNREADABLE:
             digests[_name(member)] = ""
     digests.pop(SUMS, None)
     return digests
+
+
+def _member_digest(archive: ZipFile, member: ZipInfo) -> str:
+    """SHA-256 of a file in an archive, which is read in parts, in hexadecimal digits."""
+    digest = hashlib.sha256()
+    with archive.open(member) as file:
+        while part := file.read(_PART_BYTES):
+            digest.update(part)
+    return digest.hexdigest()
 
 
 def _name(member: ZipInfo) -> str:
@@ -137,9 +147,10 @@ def write_sums(folder: Path) -> Path:
             raise ValueError(
                 f"{folder} has a file {name!r}, whose name no list can state; rename it"
             )
-        derived = is_sweep and (name in _DERIVED or path.parent == folder / "shards")
-        needs_digest = derived and path.suffix == ".nc"
-        if (needs_digest or stated_digest(path) is not None) and not is_whole(path):
+        is_derived = is_sweep and (name in _DERIVED or path.parent == folder / "shards")
+        must_state_digest = is_derived and path.suffix == ".nc"
+        states_digest = stated_digest(path) is not None
+        if (must_state_digest or states_digest) and not is_whole(path):
             raise ValueError(
                 f"{path} does not agree with its checksum; remove it, of curves also their file in "
                 "shards, and run make, which makes it again"

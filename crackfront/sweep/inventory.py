@@ -65,18 +65,18 @@ class Inventory:
     expected_seconds: float = 0.0
     """Processor time that was expected for what is stored. (Units: s)"""
 
-    def __add__(self, other: Inventory) -> Inventory:
-        """Inventory of the simulations of both."""
+    def __add__(self, further: Inventory) -> Inventory:
+        """Inventory of the simulations of two inventories."""
         return Inventory(
-            self.done + other.done,
-            self.failed + other.failed,
-            self.missing + other.missing,
-            self.older + other.older,
-            self.remade + other.remade,
-            self.changed + other.changed,
-            self.arithmetic | other.arithmetic,
-            self.cpu_seconds + other.cpu_seconds,
-            self.expected_seconds + other.expected_seconds,
+            done=self.done + further.done,
+            failed=self.failed + further.failed,
+            missing=self.missing + further.missing,
+            older=self.older + further.older,
+            remade=self.remade + further.remade,
+            changed=self.changed + further.changed,
+            arithmetic=self.arithmetic | further.arithmetic,
+            cpu_seconds=self.cpu_seconds + further.cpu_seconds,
+            expected_seconds=self.expected_seconds + further.expected_seconds,
         )
 
     @property
@@ -114,7 +114,7 @@ class Inventory:
 
 @dataclass(frozen=True, slots=True)
 class LocatedRows:
-    """Where files have the simulations of some series and consecutive realisations."""
+    """Places in files of the simulations of some series and consecutive realisations."""
 
     files: tuple[StoredRows, ...]
     series: tuple[str, ...]
@@ -149,7 +149,7 @@ class LocatedRows:
 def located_rows(
     files: Iterable[StoredRows], series: Sequence[str], realisations: range, max_sweeps: int
 ) -> LocatedRows:
-    """Where files have simulations at such a limit of sweeps, of this version of the physics."""
+    """Places in files of simulations of this version of the physics, with a limit of sweeps."""
     # Rows that need not be remade come first.
     usable = [rows for rows in files if rows.physics_version == PHYSICS_VERSION]
     usable.sort(key=lambda rows: rows.rows_version != ROWS_VERSION)

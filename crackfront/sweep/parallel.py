@@ -38,7 +38,7 @@ _SECONDS = 0.1
 """Longest time between two looks at signals and at what is to be written. (Units: s)"""
 
 _SHARED_MEMORY = "/dev/shm"
-"""Where MPI exchanges messages within a machine; too little there ends in a bus error."""
+"""Folder in which MPI exchanges messages within a machine; too little room is a bus error."""
 
 _SHARED_BYTES = 6e6
 """What MPICH takes there for each rank. (Units: byte)"""
@@ -189,37 +189,71 @@ class Ranks:
         here, when the tasks that run at the same time have ended.
         """
         if self.executor is None:
-            for task in tasks:
-                if stop_is_requested():
-                    return
-                yield task, keep(task, function(task, idle))
+            return _run_here(function, tasks, keep, idle)
+        return _run_on_ranks(self.executor, function, tasks, keep, idle)
+
+
+def _run_here(
+    function: Callable[[Task, Callable[[], None]], Result],
+    tasks: Sequence[Task],
+    keep: Callable[[Task, Result], Kept],
+    idle: Callable[[], None],
+) -> Generator[tuple[Task, Kept]]:
+    """Run tasks one after the other in this process, as :meth:`Ranks.run`."""
+    for task in tasks:
+        if stop_is_requested():
             return
-        running: dict[Future[Result], Task] = {
-            self.executor.submit(function, task, nothing): task for task in tasks
-        }
-        # Waiting for all of them would look at each whenever one ends.
-        ended: queue.SimpleQueue[Future[Result]] = queue.SimpleQueue()
-        for future in running:
-            future.add_done_callback(ended.put)
-        try:
-            while running and not stop_is_requested():
-                idle()
-                with contextlib.suppress(queue.Empty):
-                    future = ended.get(timeout=_SECONDS)
-                    task = running.pop(future)
-                    yield task, keep(task, future.result())
-        finally:
-            for future in running:
-                future.cancel()
-            while running:
-                # What it cannot store now is still there, and so are the results to come.
-                with contextlib.suppress(OSError):
-                    idle()
-                with contextlib.suppress(queue.Empty):
-                    future = ended.get(timeout=_SECONDS)
-                    task = running.pop(future)
-                    if not future.cancelled() and future.exception() is None:
-                        keep(task, future.result())
+        yield task, keep(task, function(task, idle))
+
+
+def _run_on_ranks(
+    executor: Executor,
+    function: Callable[[Task, Callable[[], None]], Result],
+    tasks: Sequence[Task],
+    keep: Callable[[Task, Result], Kept],
+    idle: Callable[[], None],
+) -> Generator[tuple[Task, Kept]]:
+    """Run tasks on other ranks, as :meth:`Ranks.run`."""
+    running = {executor.submit(function, task, nothing): task for task in tasks}
+    # A queue finds the next that has ended without a look at all of them.
+    ended: queue.SimpleQueue[Future[Result]] = queue.SimpleQueue()
+    for future in running:
+        future.add_done_callback(ended.put)
+    try:
+        while running and not stop_is_requested():
+            idle()
+            if next_ended := _next_ended(ended):
+                task = running.pop(next_ended)
+                yield task, keep(task, next_ended.result())
+    finally:
+        _keep_last_results(running, ended, keep, idle)
+
+
+def _next_ended(ended: queue.SimpleQueue[Future[Result]]) -> Future[Result] | None:
+    """The next task that has ended; None if a moment passes without one."""
+    try:
+        return ended.get(timeout=_SECONDS)
+    except queue.Empty:
+        return None
+
+
+def _keep_last_results(
+    running: dict[Future[Result], Task],
+    ended: queue.SimpleQueue[Future[Result]],
+    keep: Callable[[Task, Result], Kept],
+    idle: Callable[[], None],
+) -> None:
+    """Wait for tasks that have begun, and keep their results; cancel the others."""
+    for future in running:
+        future.cancel()
+    while running:
+        # If results cannot be written now, they are kept with those to come.
+        with contextlib.suppress(OSError):
+            idle()
+        if next_ended := _next_ended(ended):
+            task = running.pop(next_ended)
+            if not next_ended.cancelled() and next_ended.exception() is None:
+                keep(task, next_ended.result())
 
 
 ALONE = Ranks(None, 1)

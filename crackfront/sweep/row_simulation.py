@@ -37,7 +37,7 @@ class RowSimulation:
 
     @property
     def surface(self) -> DataArray:
-        """Its tile: `height(x, y)`, or `work_of_adhesion(x, y)` where the sweep has no heights.
+        """Its tile: `height(x, y)`, or `work_of_adhesion(x, y)` if the sweep lacks heights.
 
         The surface is in reduced units, as of :func:`crackfront.random_surface`.
         """

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from itertools import count
 from pathlib import Path
 from typing import Annotated, Any, TypeVar, get_args
@@ -74,22 +74,28 @@ def validated(path: Path, content: object, schema: type[Kind]) -> Kind:
     or out of range.
     """
     try:
-        first, *_ = path.read_text(encoding="utf-8").splitlines() or [""]
-        folder = path.resolve().parent
-        if first.startswith(_HOME):
-            folder = Path(first.removeprefix(_HOME))
-        return schema.model_validate(content, context=folder)
+        return schema.model_validate(content, context=_home(path))
     except ValidationError as error:
-        errors = error.errors(include_url=False)
-        # pydantic also calls a list with wrong entries too short.
-        around = {item["loc"][:depth] for item in errors for depth in range(len(item["loc"]))}
-        errors = [
-            item for item in errors if item["type"] != "too_short" or item["loc"] not in around
-        ]
+        errors = _without_consequences(error.errors(include_url=False))
         lines = [f"{path}: {_sentence(item, schema)}" for item in errors[:_MOST_SENTENCES]]
         if len(errors) > _MOST_SENTENCES:
             lines.append(f"{path}: and {len(errors) - _MOST_SENTENCES} more such keys and values")
         raise ConfigurationError("\n".join(lines)) from error
+
+
+def _home(path: Path) -> Path:
+    """Folder in which the relative paths of a configuration begin."""
+    with path.open(encoding="utf-8") as lines:
+        first = lines.readline().rstrip("\n")
+    return Path(first.removeprefix(_HOME)) if first.startswith(_HOME) else path.resolve().parent
+
+
+def _without_consequences(errors: Sequence[ErrorDetails]) -> list[ErrorDetails]:
+    """Errors without lists that pydantic calls too short only because their entries are wrong."""
+    wrong_inside = {item["loc"][:depth] for item in errors for depth in range(len(item["loc"]))}
+    return [
+        item for item in errors if item["type"] != "too_short" or item["loc"] not in wrong_inside
+    ]
 
 
 class _Constructor(SafeConstructor):
@@ -129,27 +135,7 @@ def yaml_mapping(path: Path) -> dict[str, Any]:
     ConfigurationError if the file cannot be read, is not a mapping, or is larger or deeper than
     what a person writes.
     """
-    try:
-        text = regular_file(path, _MOST_BYTES).read_text(encoding="utf-8")
-    except OSError as error:
-        raise ConfigurationError(f"{path} cannot be read: {error.strerror}") from error
-    except UnicodeDecodeError as error:
-        raise ConfigurationError(f"{path} is not a text in UTF-8; save it as UTF-8") from error
-    except ValueError as error:
-        raise ConfigurationError(str(error)) from error
-    try:
-        reader = YAML(typ="safe", pure=True)
-        reader.Constructor = _Constructor
-        content = _frozen(reader.load(text), count())
-    except MarkedYAMLError as error:
-        line = f" in line {error.problem_mark.line + 1}" if error.problem_mark else ""
-        raise ConfigurationError(f"{path} is not valid YAML{line}: {error.problem}") from error
-    except RecursionError as error:
-        raise ConfigurationError(
-            f"{path}: more than {_MOST_VALUES} values, or nested without end; write it shorter"
-        ) from error
-    except Exception as error:  # what constructors raise at dates and numbers that are none, too
-        raise ConfigurationError(f"{path} is not valid YAML: {error}") from error
+    content = _parsed(path, _text(path))
     if content is None:
         raise ConfigurationError(f"{path} is empty; write a configuration like config/test.yaml")
     if not isinstance(content, dict):
@@ -159,6 +145,35 @@ def yaml_mapping(path: Path) -> dict[str, Any]:
             "config/test.yaml"
         )
     return content
+
+
+def _text(path: Path) -> str:
+    """Text of a file; ConfigurationError if it cannot be read."""
+    try:
+        return regular_file(path, _MOST_BYTES).read_text(encoding="utf-8")
+    except OSError as error:
+        raise ConfigurationError(f"{path} cannot be read: {error.strerror}") from error
+    except UnicodeDecodeError as error:
+        raise ConfigurationError(f"{path} is not a text in UTF-8; save it as UTF-8") from error
+    except ValueError as error:
+        raise ConfigurationError(str(error)) from error
+
+
+def _parsed(path: Path, text: str) -> Any:
+    """Value of a YAML text; ConfigurationError, with the path of its file, if it is not valid."""
+    try:
+        reader = YAML(typ="safe", pure=True)
+        reader.Constructor = _Constructor
+        return _frozen(reader.load(text), count())
+    except MarkedYAMLError as error:
+        line = f" in line {error.problem_mark.line + 1}" if error.problem_mark else ""
+        raise ConfigurationError(f"{path} is not valid YAML{line}: {error.problem}") from error
+    except RecursionError as error:
+        raise ConfigurationError(
+            f"{path}: more than {_MOST_VALUES} values, or nested without end; write it shorter"
+        ) from error
+    except Exception as error:  # constructors raise various errors, as at impossible dates
+        raise ConfigurationError(f"{path} is not valid YAML: {error}") from error
 
 
 def _frozen(value: Any, counted: Iterator[int]) -> Any:

@@ -26,7 +26,7 @@ def check_distinct(name: str, values: Iterable[object]) -> None:
 
 
 def check_not_overruled(section: Section, decider: str, keys: Iterable[str]) -> None:
-    """Raise if a section has a key that another one decides."""
+    """Raise if a section has a key whose value follows from the key `decider`."""
     if overruled := [key for key in keys if getattr(section, key) is not None]:
         raise section_error(
             f"{decider} already decides {', '.join(overruled)}; remove one or the other"

@@ -189,12 +189,12 @@ class LoadSection(Section):
         """Penetrations to visit, lengths divided by a unit, or straight fronts."""
         if self.line is not None:
             return LineLoad(**self.line.model_dump(exclude={"springs"}))
-        assert self.max_penetration is not None, "required where there is no line"
+        assert self.max_penetration is not None, "required without a section line"
         max_penetration = self.max_penetration / vertical
         if self.steady is not None:
             start, travel = self.steady.start / vertical, self.steady.travel
             return SteadySchedule(start, max_penetration, travel, self.steady.error)
-        assert self.step is not None, "required where there is no section steady"
+        assert self.step is not None, "required without a section steady"
         return FullCycle(max_penetration, self.step / vertical)
 
 

@@ -172,7 +172,7 @@ def covering(
     No realisation is taken twice, and none beyond the requested number.
     """
     chosen, position = [], 0
-    # By their first realisation, of those with the same one the longest first.
+    # Sorted by their first realisation; the longest first if it is the same.
     for shard in sorted(shards, key=lambda shard: (shard.realisations[0], -shard.realisations[-1])):
         block = shard.realisations
         taken = range(max(position, block.start), min(block.stop, n_realisation))

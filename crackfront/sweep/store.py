@@ -124,7 +124,7 @@ class Store:
         return rows
 
     def located(self, sweep: Sweep, shard: Shard) -> LocatedRows:
-        """Where the files of curves have the simulations of a shard."""
+        """Places of the simulations of a shard in the files of curves."""
         return located_rows(
             self._stored_rows(shard.item, shard.realisations),
             sweep.series(shard.item),

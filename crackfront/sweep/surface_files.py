@@ -14,7 +14,7 @@ import numpy as np
 import xarray as xr
 
 from crackfront.core.arrays import Array
-from crackfront.core.units import WORK_OF_ADHESION, Scales
+from crackfront.core.units import WORK_OF_ADHESION, ReducedUnit, Scales
 from crackfront.core.variables import ADHESION, LATERAL, VERTICAL
 from crackfront.simulate.checksums import forget_sums
 from crackfront.simulate.labels import unit_attributes
@@ -51,9 +51,9 @@ def _parts(sweep: Sweep, item: NamedSpectrum) -> Iterator[xr.Dataset]:
 
 
 def _surface_dataset(simulation: Simulation, scales: Scales | None) -> xr.Dataset:
-    """Heights, where there are any, and works of adhesion of one surface."""
+    """Heights, if the simulation has them, and works of adhesion of one surface."""
     amplitude = f"e{simulation.elastic_energy:g}"
-    name, pixel = f"{amplitude}_r{simulation.realisation}", simulation.surface.pixel
+    name = f"{amplitude}_r{simulation.realisation}"
     adhesion = simulation_adhesion(simulation)
     about = {
         "elastic_energy": simulation.elastic_energy,
@@ -63,31 +63,30 @@ def _surface_dataset(simulation: Simulation, scales: Scales | None) -> xr.Datase
         "w_rms": adhesion.w_rms,
     }
     axes = f"x_{amplitude}", f"y_{amplitude}"
-    lateral, vertical, energy = (
-        (1.0, 1.0, 1.0)
-        if scales is None
-        else (scales.lateral, scales.vertical, scales.work_of_adhesion)
-    )
-
-    def variable(values: Array, unit: str, si_unit: str, text: str) -> xr.Variable:
-        """Variable of the tile with its unit, its moments, and the seed that gives it."""
-        units = unit_attributes(unit if scales is None else si_unit)
-        return xr.Variable(axes, values, units | about | _moments(values) | {"long_name": text})
-
     variables = {}
     if has_heights(simulation):
-        heights = vertical * surface_values(simulation.surface)
-        text = "height, positive at peaks"
-        variables[f"height_{name}"] = variable(heights, VERTICAL, "m", text)
-    values = energy / WORK_OF_ADHESION * adhesion.work_of_adhesion
-    text = "local work of adhesion"
-    variables[f"w_loc_{name}"] = variable(values, ADHESION, "J / m^2", text)
-    units = unit_attributes(LATERAL if scales is None else "m")
+        scale, units = _unit(VERTICAL, scales)
+        heights = scale * surface_values(simulation.surface)
+        attributes = units | about | _moments(heights) | {"long_name": "height, positive at peaks"}
+        variables[f"height_{name}"] = xr.Variable(axes, heights, attributes)
+    scale, units = _unit(ADHESION, scales)
+    works = scale / WORK_OF_ADHESION * adhesion.work_of_adhesion
+    attributes = units | about | _moments(works) | {"long_name": "local work of adhesion"}
+    variables[f"w_loc_{name}"] = xr.Variable(axes, works, attributes)
+    scale, units = _unit(LATERAL, scales)
+    pixel = scale * simulation.surface.pixel
     coordinates = {
-        axis: xr.Variable((axis,), lateral * pixel * (np.arange(count) - count / 2), units)
-        for axis, count in zip(axes, values.shape, strict=True)
+        axis: xr.Variable((axis,), pixel * (np.arange(count) - count / 2), units)
+        for axis, count in zip(axes, works.shape, strict=True)
     }
     return xr.Dataset(variables, coordinates)
+
+
+def _unit(unit: ReducedUnit, scales: Scales | None) -> tuple[float, dict[str, str]]:
+    """Value of a reduced unit in the unit that a file has, and attributes that state this unit."""
+    if scales is None:
+        return 1.0, unit_attributes(unit)
+    return unit.scale(scales), unit_attributes(unit.si)
 
 
 def _moments(values: Array) -> dict[str, float]:

@@ -22,8 +22,8 @@ from crackfront.simulate.simulation import Recorded, Simulation, simulation_of
 class NamedSpectrum:
     """A spectrum, lengths in the reduced lateral unit, and what the configuration calls it.
 
-    The ensemble says what its surfaces are besides the spectrum. Springs of so many units of the
-    load pull a straight front.
+    The ensemble makes its surfaces. `spring` is the length of the springs that pull a straight
+    front, in the unit of the load.
     """
 
     name: str

@@ -54,8 +54,9 @@ def error_costs(sweep: Sweep, errors: Sequence[float]) -> Iterator[ErrorCost]:
     ValueError if errors were not measured for a spectrum or an amplitude of the sweep.
     """
     for error in errors:
-        other = replace(sweep, numerics=replace(sweep.numerics, settings=None, error=error))
-        firsts = [first for item in other.spectra for first in other.one_per_amplitude(item)]
+        numerics = replace(sweep.numerics, settings=None, error=error)
+        with_error = replace(sweep, numerics=numerics)
+        firsts = [first for item in sweep.spectra for first in with_error.one_per_amplitude(item)]
         yield ErrorCost(
             error,
             sweep_cost((first, sweep.n_realisation) for first in firsts),

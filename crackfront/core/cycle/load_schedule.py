@@ -83,7 +83,7 @@ class LoadSchedule:
 def protocol(loads: Sequence[float], step: float = math.inf) -> Iterator[Load]:
     """Loads in their order, each with its direction; a load given twice in a row is a pause.
 
-    Where two are further apart than a step, equal steps lead from one to the next.
+    Equal steps lead from a load to the next if they are further apart than a step.
 
     Raises
     ------

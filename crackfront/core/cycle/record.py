@@ -142,8 +142,8 @@ class Recorder:
         self.front, self._turn = checkpoint.front, checkpoint.turn
 
     def _add(self, step: Step) -> None:
-        """Record a state."""
-        load, energy = step.load, math.nan
+        """Record the state at the end of a step, and show it to the observers."""
+        load = step.load
         if load.start is not None:
             self._turn = load.start
         elif self.states and self.states[-1].direction != load.direction:
@@ -153,15 +153,11 @@ class Recorder:
             self._jumps.add(self._field, step, before, self._solver)
         state = self._field.geometry.state(step.relaxation, load.value, load.direction, self._turn)
         if self._dissipated is not None:
-            if load.start is None and self.states:
-                energy = dissipated_energy(step.before, step.front, load.value, self._field)
-            elif load.start is None:
-                energy = -contact_energy(step.front, load.value, self._field)
-            self._dissipated.append(energy)
-        self.front = step.front
-        self.states.append(state)
+            self._dissipated.append(self._lost_energy(step))
         if self._fronts is not None:
             self._fronts.append(step.front)
+        self.front = step.front
+        self.states.append(state)
         for observer in self._observers:
             observer(self)
 
@@ -176,6 +172,15 @@ class Recorder:
         if last.direction != load.direction or last.least_travel < least_travel:
             return None
         return Load(getattr(last, self.load_name), last.direction)
+
+    def _lost_energy(self, step: Step) -> float:
+        """Energy that a step dissipates; NaN if a branch begins with it at a front of its own."""
+        load = step.load
+        if load.start is not None:
+            return math.nan
+        if not self.states:
+            return -contact_energy(step.front, load.value, self._field)
+        return dissipated_energy(step.before, step.front, load.value, self._field)
 
     @property
     def load_noun(self) -> str:

@@ -213,13 +213,17 @@ def polar_field(
             "4 angles are needed, or 1 angle for rings"
         )
     products = np.ascontiguousarray(radii * rays)
-    slopes = np.empty((0, 0))
-    if interpolation == "cubic":
-        # Ray by ray: the coefficients of all rays at once need seven times the memory.
-        slopes = np.empty_like(products)
-        for slope, product in zip(slopes, products, strict=True):
-            slope[:] = scipy.interpolate.CubicSpline(radii, product)(radii, 1)
+    slopes = _spline_slopes(radii, products) if interpolation == "cubic" else np.empty((0, 0))
     return RayField(sphere(len(rays)), radii.copy(), products, slopes)
+
+
+def _spline_slopes(radii: Array, products: Array) -> Array:
+    """Slopes of the splines of all rays, (n_site, n_sample), at their samples."""
+    # Ray by ray: the coefficients of all rays at once need seven times the memory.
+    slopes = np.empty_like(products)
+    for slope, product in zip(slopes, products, strict=True):
+        slope[:] = scipy.interpolate.CubicSpline(radii, product)(radii, 1)
+    return slopes
 
 
 def contact_field(
@@ -233,8 +237,9 @@ def contact_field(
 ) -> TileField:
     """Field of a sphere on a tile, which no front can leave up to a penetration.
 
-    By no passing, a front stays inside the circle in equilibrium with the tile's largest work of
-    adhesion; a tenth more allows for the overshoot of the splines between the points.
+    Fronts do not pass each other, so that a front stays inside the circle in equilibrium with the
+    tile's largest work of adhesion; a tenth more allows for the overshoot of the splines between
+    the points.
 
     Parameters
     ----------

@@ -1,7 +1,7 @@
 """Loads of straight fronts, over a whole period of their tile, and how a sweep chooses them.
 
-By no passing, the state after one period is the same state shifted as soon as the start is
-forgotten: a mean over the next period is the exact mean over the tile.
+Fronts do not pass each other, so that the state after one period is the same state shifted, as soon
+as the start is forgotten: a mean over the next period is the exact mean over the tile.
 """
 
 from __future__ import annotations

@@ -1,14 +1,14 @@
 """The steady parts of both branches alone, without the cycle around them.
 
-A branch begins at a circle that moves forward, not at first contact or far outside. By no passing,
-a front that starts at a circle is the same as one that comes from further behind as soon as that
-one has passed the circle everywhere: the start is forgotten exactly.
+A branch begins at a circle that moves forward, not at first contact or far outside. Fronts do not
+pass each other, so that this front is the same as a front from further behind as soon as the latter
+has passed the circle everywhere: the start is forgotten exactly.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -111,35 +111,67 @@ class SteadySchedule(SphereSchedule):
 
     def _loads(self, problem: Problem, recorder: Recorder) -> Iterator[Load]:
         """Loads of both branches, each chosen by the states recorded before it."""
-        field, correlation_length = problem.field, problem.correlation_length
-        step = self.travel * correlation_length * jkr.penetration_slope(self.start)
-        n_step = math.floor((self.max_penetration - self.start) / step)
-        near = jkr.equilibrium_radius(self.start) - correlation_length
-        circle = forward_circle(field, self.start, 1, near, correlation_length)
-        steady, shared = [], []
-        for k in range(n_step + 1):
-            yield Load(self.start + k * step, 1, circle if k == 0 else None)
+        step = self._step(problem.correlation_length)
+        steady: list[ContactState[float]] = []
+        circle_means: list[float] = []
+        for load in self._approach(problem, step):
+            yield load
             if recorder.status is not Status.CONVERGED:
                 return
-            if recorder.states[-1].least_travel < correlation_length:
-                continue
-            steady.append(recorder.states[-1])
-            shared.append(_circle_adhesion(field, recorder.states[-1].mean_radius))
-            states = columns(steady, ContactState)
-            front_part = branch_part(states.apparent_work_of_adhesion, np.array(shared))
-            spread = standard_error(
-                front_part, states.mean_radius, states.rms_radius, correlation_length
-            )
-            requested = self.standard_error * problem.elastic_energy
-            if len(steady) >= _FEWEST_TO_TURN and spread / math.sqrt(2) <= requested:
-                break
-        lowest = min((item.mean_radius for item in steady), default=math.inf)
-        last = recorder.states[-1]
-        penetration = _retraction_start(field, last)
-        near = last.mean_radius + correlation_length
-        circle = forward_circle(field, penetration, -1, near, correlation_length)
-        yield Load(penetration, -1, circle)
-        while recorder.status is Status.CONVERGED and recorder.states[-1].mean_radius >= lowest:
+            state = recorder.states[-1]
+            if state.least_travel >= problem.correlation_length:
+                steady.append(state)
+                circle_means.append(_circle_adhesion(problem.field, state.mean_radius))
+                if self._is_known_well(problem, steady, circle_means):
+                    break
+        lowest = min((state.mean_radius for state in steady), default=math.inf)
+        for load in self._retraction(problem, step, recorder.states[-1]):
+            yield load
+            is_over = recorder.states[-1].mean_radius < lowest
+            if recorder.status is not Status.CONVERGED or is_over:
+                return
+
+    def _step(self, correlation_length: float) -> float:
+        """Difference of penetrations from state to state (Units: reduced vertical length)."""
+        return self.travel * correlation_length * jkr.penetration_slope(self.start)
+
+    def _approach(self, problem: Problem, step: float) -> Iterator[Load]:
+        """Loads of the approach up to the largest penetration."""
+        length = problem.correlation_length
+        near = jkr.equilibrium_radius(self.start) - length
+        yield Load(self.start, 1, forward_circle(problem.field, self.start, 1, near, length))
+        n_step = math.floor((self.max_penetration - self.start) / step)
+        for k in range(1, n_step + 1):
+            yield Load(self.start + k * step, 1)
+
+    def _is_known_well(
+        self,
+        problem: Problem,
+        steady: Sequence[ContactState[float]],
+        circle_means: Sequence[float],
+    ) -> bool:
+        """Whether k has the requested standard error by the steady states of an approach.
+
+        `circle_means` are the means of w_loc on their circles (Units: w_int).
+        """
+        if len(steady) < _FEWEST_TO_TURN:
+            return False
+        states = columns(steady, ContactState)
+        front_part = branch_part(states.apparent_work_of_adhesion, np.array(circle_means))
+        spread = standard_error(
+            front_part, states.mean_radius, states.rms_radius, problem.correlation_length
+        )
+        # k is half of the difference of two branches, which scatter as much.
+        return spread / math.sqrt(2) <= self.standard_error * problem.elastic_energy
+
+    @staticmethod
+    def _retraction(problem: Problem, step: float, last: ContactState[float]) -> Iterator[Load]:
+        """Loads of the retraction from the last state of the approach, without end."""
+        penetration = _retraction_start(problem.field, last)
+        length = problem.correlation_length
+        near = last.mean_radius + length
+        yield Load(penetration, -1, forward_circle(problem.field, penetration, -1, near, length))
+        while True:
             penetration -= step
             yield Load(penetration, -1)
 
@@ -153,7 +185,7 @@ class SteadySchedule(SphereSchedule):
     def expected_motion(self, surface: RandomSurface) -> ExpectedMotion:
         """States of both branches until k has the requested standard error."""
         length = surface.correlation_length
-        step = self.travel * length * jkr.penetration_slope(self.start)
+        step = self._step(length)
         n_most = 1 + math.floor((self.max_penetration - self.start) / step)
         alike = length * integral_breadth(surface.kind, surface.spectrum)
         n_independent = 2 * math.pi * jkr.equilibrium_radius(self.start) / alike
@@ -270,9 +302,8 @@ def forward_circle(
         if drive > _LEAST_DRIVE * np.std(adhesion):
             return circle
         # The drive of a pinned front is at most k e_el, with w_rms^2 = 4 e_el w_int.
-        if beyond_pinning is None and drive > _LARGEST_FACTOR * np.var(adhesion) / (
-            4 * WORK_OF_ADHESION
-        ):
+        largest_pinning = _LARGEST_FACTOR * np.var(adhesion) / (4 * WORK_OF_ADHESION)
+        if beyond_pinning is None and drive > largest_pinning:
             beyond_pinning = radius
         if (
             beyond_pinning is not None
