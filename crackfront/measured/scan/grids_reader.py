@@ -6,8 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 from crackfront.measured.scan.library import library_part, library_scan
-from crackfront.measured.scan.points import Points
 
 
 @dataclass(frozen=True, slots=True)
@@ -15,8 +16,10 @@ class Grid:
     """Heights on a regular grid."""
 
     name: str
-    points: Points
-    """Sides in the unit of the reader; heights too, where their unit is a length."""
+    heights: np.ndarray[Any, Any]
+    """In the unit of the reader, where their unit is a length."""
+    size: tuple[float, ...] | None
+    """Sides in the unit of the reader; None where the file does not state them."""
     unit: str | None = None
     """Unit of the heights as the file has it, where it is not a length."""
 
@@ -44,9 +47,9 @@ class GridsReader:
                 self,
                 number,
                 name=grid.name,
-                dim=grid.points.heights.ndim,
-                nb_grid_pts=grid.points.heights.shape,
-                physical_sizes=grid.points.size,
+                dim=grid.heights.ndim,
+                nb_grid_pts=grid.heights.shape,
+                physical_sizes=grid.size,
                 unit=self.unit,
                 data_unit=grid.unit,
                 info=self.info or {},
@@ -59,7 +62,13 @@ class GridsReader:
         """The first of them."""
         return self.channels[0]
 
-    def topography(self, channel_index: int, unit: str | None = None) -> Any:
-        """Heights in the unit of the file, or in a named one."""
-        points = self.grids[channel_index].points
-        return library_scan(points.heights, points.size, unit=self.unit or unit, info=self.info)
+    def topography(
+        self,
+        channel_index: int,
+        unit: str | None = None,
+        physical_sizes: tuple[float, ...] | None = None,
+    ) -> Any:
+        """Heights, in the unit and with the sides of the file, or with named ones."""
+        grid = self.grids[channel_index]
+        sides = grid.size or physical_sizes
+        return library_scan(grid.heights, sides, unit=self.unit or unit, info=self.info)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 import zipfile
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,7 +12,7 @@ import numpy as np
 from crackfront.measured.options import ReadingOptions
 from crackfront.measured.scan.channels import Channel, channels_of, chosen_channel
 from crackfront.measured.scan.containers import contained_surfaces
-from crackfront.measured.scan.grids_reader import GridsReader
+from crackfront.measured.scan.grids_reader import Grid, GridsReader
 from crackfront.measured.scan.library import (
     errors_as_sentences,
     has_part,
@@ -127,13 +126,18 @@ def _reader(path: Path) -> Any:
 
 
 def _array_reader(path: Path) -> Any:
-    """The library's reader of a .npy that is complete, of its content in memory.
+    """Reader of a .npy by numpy.
 
-    The library leaves a file open, and takes what is missing at its end from unused memory.
+    The library takes what is missing at the end of one from unused memory.
     """
     with errors_as_sentences(path, "npy"):
-        np.load(path, mmap_mode="r", allow_pickle=False)
-        return library_part("IO.NPY").NPYReader(io.BytesIO(path.read_bytes()))
+        heights = np.load(path, allow_pickle=False)
+    if heights.ndim not in (1, 2) or heights.size == 0 or heights.dtype.kind not in "biuf":
+        raise ValueError(
+            f"{path} contains an array of {heights.dtype} numbers of shape {heights.shape}; save "
+            "the real heights of a map or of a line"
+        )
+    return GridsReader("npy", [Grid("Default", heights, None)], unit=None)
 
 
 def _library_reader(path: Path) -> Any:

@@ -29,7 +29,7 @@ _REASONS = (
         r"its values are in '\1', which is not a length, as of intensities; export the heights",
     ),
     (r"Could not find any topography data.*", "all of its channels lack a unit of length"),
-    (r"mmap length is greater than file size|EOF: .*", "it ends before its last number"),
+    (r"Failed to read all data for array.*|EOF: .*", "it ends before its last number"),
     (r"'NoneType' object .*", "a part of it is missing or damaged"),
 )
 """Reasons of the library, and what they say to one who has only the file."""
@@ -100,7 +100,7 @@ def _plain_reason(reason: str) -> str:
 
 def library_scan(
     heights: np.ndarray[Any, Any],
-    size: tuple[float, ...],
+    size: tuple[float, ...] | None,
     *,
     unit: str | None = "m",
     periodic: bool = False,

@@ -9,7 +9,7 @@ import numpy as np
 
 from crackfront.core.arguments import regular_file
 from crackfront.measured.scan.grids_reader import Grid
-from crackfront.measured.scan.points import Points, even_line
+from crackfront.measured.scan.points import even_line
 from crackfront.measured.scan.scan_files import check_points
 from crackfront.surfaces.written_units import unit_value
 
@@ -114,6 +114,6 @@ def _grid(path: Path, dataset: Any, name: str) -> Grid:
         values, size = values.T, size[::-1]
     unit = _unit(variable)
     try:
-        return Grid(name, Points(values * unit_value(unit or "", "m"), tuple(size)))
+        return Grid(name, values * unit_value(unit or "", "m"), tuple(size))
     except ValueError:
-        return Grid(name, Points(values, tuple(size)), unit)
+        return Grid(name, values, tuple(size), unit)

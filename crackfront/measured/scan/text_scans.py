@@ -11,7 +11,6 @@ from crackfront.measured.scan.grids_reader import Grid, GridsReader
 from crackfront.measured.scan.library import errors_as_sentences, in_metres, library_part
 from crackfront.measured.scan.points import (
     HeadKind,
-    Points,
     are_points,
     check_no_positions,
     point_columns,
@@ -59,7 +58,7 @@ def text_reader(path: Path, text: NumberTables) -> Any:
             if unit is None:
                 unit, factor = _stated_units(path, headings)
             points = read_points(table, kind)
-            grid = Grid("default", Points(points.heights * (factor or 1.0), points.size))
+            grid = Grid("default", points.heights * (factor or 1.0), points.size)
             return GridsReader("xyz", [grid], unit, info)
     for matrix in text.tables:
         check_no_positions(matrix)
