@@ -15,7 +15,7 @@ from crackfront.core.field.fields import tile_field
 from crackfront.core.field.rays import front_adhesion
 from crackfront.core.geometry.sphere import polar_field, sphere
 from crackfront.core.outcome import Status
-from crackfront.core.solver.relax import SOLVERS
+from crackfront.core.solver.relax import SOLVERS, Newton
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.synthesis import gaussian_field
 from crackfront.core.units import WORK_OF_ADHESION
@@ -138,27 +138,6 @@ def test_apparent_adhesion_is_the_mean_adhesion_along_the_front(solver, seed, n_
 
 
 @every_solver
-def test_a_cycle_goes_on_from_any_state_to_the_same_bits(solver):
-    field, schedule = noisy_field(7), LoadSchedule(0.6, 0.15)
-    checkpoints = []
-
-    def run(**options):
-        recorder = Recorder(fronts=True, energy=True, **options)
-        return run_cycle(field, schedule, SOLVERS[solver](), recorder)
-
-    undisturbed = run(observers=[lambda recording: checkpoints.append(recording.checkpoint())])
-    assert len(checkpoints) == undisturbed.states.penetration.size
-    for checkpoint in checkpoints:
-        resumed = run(resume=checkpoint)
-        assert resumed.end_load == undisturbed.end_load
-        assert resumed.pull_off_energy == undisturbed.pull_off_energy
-        for name in ("fronts", "dissipated_energy"):
-            assert np.array_equal(getattr(resumed, name), getattr(undisturbed, name))
-        for name in ("force", "least_travel", "updates"):
-            assert np.array_equal(getattr(resumed.states, name), getattr(undisturbed.states, name))
-
-
-@every_solver
 @given(seed=st.integers(0, 2**32 - 1))
 def test_the_contact_is_never_smaller_in_retraction_than_in_approach(solver, seed):
     record = run_cycle(noisy_field(seed), LoadSchedule(0.8, 0.1), SOLVERS[solver]())
@@ -171,14 +150,14 @@ def test_the_contact_is_never_smaller_in_retraction_than_in_approach(solver, see
 # --- rough spheres
 
 
-def rough_branches(energy, seed, solver):
+def rough_branches(energy, seed):
     """Means of the apparent adhesion in retraction and approach, and the measured energy."""
     cutoff, n_point = 0.1, 160
     spectrum = SelfAffineSpectrum(cutoff, cutoff, 0.8).with_elastic_energy(energy)
     heights = gaussian_field(spectrum, n_point, 20 * cutoff, np.random.default_rng(seed))
     adhesion = rough_adhesion(heights, 20 * cutoff / n_point)
     field = tile_field(adhesion, sphere(256), cutoff / 12, 2.8)
-    record = run_cycle(field, LoadSchedule(1.4, 0.05), SOLVERS[solver](1e-6))
+    record = run_cycle(field, LoadSchedule(1.4, 0.05), Newton(1e-6))
     assert record.status is Status.LOST_CONTACT
     steady = (record.states.penetration > 0.2) & (record.states.penetration < 0.7)
     retraction, approach = (
@@ -188,12 +167,11 @@ def rough_branches(energy, seed, solver):
     return retraction, approach, adhesion.e_el
 
 
-@every_solver
 @pytest.mark.parametrize("seed", [0, slow(1)])
-def test_hysteresis_grows_with_roughness_and_stays_below_perturbation_theory(solver, seed):
+def test_hysteresis_grows_with_roughness_and_stays_below_perturbation_theory(seed):
     hysteresis = []
     for requested in (0.002, 0.02, 0.05, 0.1):
-        retraction, approach, energy = rough_branches(requested, seed, solver)
+        retraction, approach, energy = rough_branches(requested, seed)
         hysteresis.append(retraction - approach)
         # k = 4 is the limit of weak disorder and infinite size; this sphere is small.
         assert retraction - approach < 2 * 4 * energy

@@ -116,9 +116,6 @@ def test_a_smooth_sphere_has_the_jkr_radius_for_any_number_of_sites(solver, n_an
         assert np.allclose(outcome.front, radius, rtol=0, atol=2e-12)
 
 
-# --- exact answers: axisymmetric disorder, a scalar equation
-
-
 # --- no passing, and what follows from it
 
 
