@@ -423,19 +423,6 @@ def test_any_command_that_is_told_to_end_says_so_with_the_same_exit_code(
     assert signal.getsignal(signal.SIGTERM) is signal.SIG_DFL
 
 
-def test_the_help_loads_nothing_that_computes():
-    code = """
-import sys
-from crackfront.cli import Commands, main
-main(["--help"], standalone_mode=False)
-heavy = {"numpy", "scipy", "numba", "xarray", "mpi4py"}
-print(heavy & set(sys.modules), file=sys.stderr)
-"""
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, check=True, text=True)
-    assert "predict" in done.stdout
-    assert done.stderr == "set()\n"
-
-
 @pytest.mark.slow
 def test_the_library_changes_no_setting_of_the_program_that_imports_it():
     code = """

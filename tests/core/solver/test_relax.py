@@ -102,20 +102,6 @@ def noisy_tile(seed, n_point=24, pixel=0.12, amplitude=0.3):
     return AdhesionMap(WORK_OF_ADHESION * (1 + amplitude * noise), pixel, 0.0, 0.0)
 
 
-# --- exact answers: the smooth sphere
-
-
-@every_solver
-@pytest.mark.parametrize("n_angle", [1, 4, 5, 7, 8, 13, 31, 32])
-def test_a_smooth_sphere_has_the_jkr_radius_for_any_number_of_sites(solver, n_angle):
-    radii = 0.05 * np.arange(1, 51)
-    field = polar_field(radii, np.full((50, n_angle), WORK_OF_ADHESION))
-    for penetration, radius in [(0.0, (8 / 3) ** (1 / 3)), (1.0, 1.783484193282)]:
-        outcome = relax(np.full(n_angle, 0.05), penetration, 1, field, SOLVERS[solver](1e-14))
-        assert outcome.status is Status.CONVERGED
-        assert np.allclose(outcome.front, radius, rtol=0, atol=2e-12)
-
-
 # --- no passing, and what follows from it
 
 
