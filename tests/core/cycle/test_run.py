@@ -52,38 +52,6 @@ def rings(radii, ring, n_angle):
     return polar_field(radii, WORK_OF_ADHESION * np.repeat(ring[:, None], n_angle, axis=1))
 
 
-def ring_hysteresis(period, n_per_period, solver, n_angle=1):
-    spacing = period / n_per_period
-    radii = spacing * np.arange(1, int(2.05 / spacing))
-    field = rings(radii, 1 + 0.2 * np.sin(2 * np.pi * radii / period), n_angle)
-    record = run_cycle(field, LoadSchedule(1.2, 0.0025), SOLVERS[solver]())
-    window = (record.states.penetration > 0.3 - 1e-9) & (record.states.penetration < 0.7 + 1e-9)
-    means = [
-        record.states.apparent_work_of_adhesion[window & branch(record, direction)].mean()
-        for direction in (-1, 1)
-    ]
-    return means[0] - means[1]
-
-
-@every_solver
-@pytest.mark.parametrize("n_angle", [1, slow(16)])
-@pytest.mark.parametrize(
-    ("period", "n_per_period", "hysteresis", "digits"),
-    [(0.005, 128, 0.3886, 1e-4), (0.1, 256, 0.238, 1.5e-3)],
-)
-def test_rings_have_the_tabulated_hysteresis(
-    solver, period, n_per_period, hysteresis, digits, n_angle
-):
-    ring_works = ring_hysteresis(period, n_per_period, solver, n_angle)
-    assert ring_works == pytest.approx(hysteresis, abs=digits)
-
-
-@every_solver
-def test_wide_rings_have_no_instability_and_no_hysteresis(solver):
-    # No instability for d > 2 pi delta / S, about 0.5 at these radii.
-    assert ring_hysteresis(0.7, 700, solver) == pytest.approx(0.0, abs=1e-4)
-
-
 @every_solver
 @pytest.mark.parametrize("n_angle", [1, 16])
 def test_rings_follow_the_running_extrema_of_the_equilibrium_penetration(solver, n_angle):

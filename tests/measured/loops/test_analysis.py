@@ -181,19 +181,6 @@ def test_a_loop_without_noise_is_that_of_its_works():
     assert result.w_retr.value == pytest.approx(W_RETR, rel=1e-9)
 
 
-def test_a_force_of_the_other_sign_is_refused_with_what_to_check():
-    whole = loop(0)
-    with pytest.raises(ValueError, match="at the largest displacement, and has the wrong sign"):
-        analyse_loop(Recording(-whole.force, None, whole.displacement), Rig(RADIUS, MODULUS))
-    for modulus in (None, MODULUS):
-        with pytest.raises(ValueError, match="has the wrong sign; displacement and force are posi"):
-            measured_loop(
-                {"force": -whole.force, "radius": whole.radius},
-                radius=RADIUS,
-                contact_modulus=modulus,
-            )
-
-
 def test_the_force_may_rise_after_its_least_value_in_retraction():
     """At a fixed displacement a contact is lost beyond the largest pulling force."""
     radius = np.concatenate([np.linspace(35e-6, 90e-6, 60), np.linspace(90e-6, 30e-6, 60)])
