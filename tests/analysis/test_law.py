@@ -135,6 +135,14 @@ def test_k_of_an_array_of_fronts_is_that_of_each_front(breadth):
             assert error == pytest.approx(getattr(front, name), rel=1e-6)
 
 
+@pytest.mark.parametrize(("kind", "mean"), [("roughness", 1 - 0.8**2 / 4), ("chemical", 1.0)])
+def test_the_negative_share_is_the_part_of_gaussian_works_of_adhesion_below_zero(rng, kind, mean):
+    works = mean + 0.8 * rng.standard_normal(10**6)
+    assert pinning_factor(0.8, 5.0, kind).negative_share == pytest.approx(
+        np.mean(works < 0), abs=2e-3
+    )
+
+
 def test_a_measured_k_is_extrapolated_by_the_ratio_of_the_law(law):
     ratio = infinite_ratio(0.2, 3.0)
     ends = law_value(law.coefficients, 0.2, np.array([np.inf, 3.0]))

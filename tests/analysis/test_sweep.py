@@ -165,6 +165,11 @@ def test_a_constant_midpoint_shift_is_found_and_is_improbable():
     by_chance = 1 - (1 - 2 * stdtr(3, -fit.midpoint_largest)) ** 15
     assert fit.midpoint_probability == pytest.approx(by_chance)
     assert np.all(fit.spectra.midpoint_slope.low > 1)
+    # A shift at an amplitude that the fit leaves out is not found.
+    shift = np.where(AMPLITUDES[-1] == AMPLITUDES, 0.05, 0.0)[:, None]
+    outside = replace(table, w_appr=table.w_appr - shift, w_retr=table.w_retr - shift)
+    ends = {"lowest_elastic_energy": AMPLITUDES[0], "highest_elastic_energy": AMPLITUDES[-2]}
+    assert fit_sweep(outside, **ends, n_bootstrap=400).midpoint_probability > 0.01
 
 
 def test_the_probability_of_a_midpoint_is_uniform_if_the_law_is_exact(rng):

@@ -303,12 +303,12 @@ def test_a_cycle_tells_in_a_line_what_it_found_and_draws_it(rough_surface, tmp_p
     assert float(written_cycle.e_el) == pytest.approx(0.05, rel=0.3)
 
 
-def stopped_cycle(monkeypatch, signal_number, *arguments):
+def stopped_cycle(monkeypatch, *arguments):
     """Result of a cycle that is told to end at its seventh state."""
 
     def interrupted(recorder):
         if len(recorder.states) == 7:
-            signal.raise_signal(signal_number)
+            signal.raise_signal(signal.SIGTERM)
 
     with monkeypatch.context() as patched:
         shown = nullcontext(interrupted)
@@ -319,21 +319,18 @@ def stopped_cycle(monkeypatch, signal_number, *arguments):
 
 
 @pytest.mark.usefixtures("_heeded_signals")
-@pytest.mark.parametrize("signal_number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
-def test_a_cycle_that_is_told_to_end_goes_on_to_the_same_bits(
-    rough_surface, tmp_path, monkeypatch, signal_number
-):
+def test_a_cycle_that_is_told_to_end_goes_on_to_the_same_bits(rough_surface, tmp_path, monkeypatch):
     options = ("--record", "fronts", "--record", "energy")
     whole = cycle(rough_surface, tmp_path, *options)
     assert whole.exit_code == 0
     undisturbed = xr.load_dataset(tmp_path / "out.nc")
 
-    stopped = stopped_cycle(monkeypatch, signal_number, rough_surface, tmp_path, *options)
+    stopped = stopped_cycle(monkeypatch, rough_surface, tmp_path, *options)
     assert stopped.exit_code == StoppedError.exit_code
     kept = tmp_path / "out.checkpoint.nc"
-    assert stopped.stderr == (
-        f"Interrupted. 7 states are stored in {kept}; run the same command to continue\n"
-    )
+    [told] = stopped.stderr.splitlines()
+    for words in ("7 states", str(kept), "the same command"):
+        assert words in told
     again = cycle(rough_surface, tmp_path, *options)
     assert again.exit_code == 0
     assert f"going on from {kept}, after state 7" in again.stderr
@@ -345,7 +342,7 @@ def test_a_cycle_that_is_told_to_end_goes_on_to_the_same_bits(
 @pytest.fixture
 def kept_states(rough_surface, tmp_path, monkeypatch, _heeded_signals):
     """States that a cycle has kept."""
-    stopped_cycle(monkeypatch, signal.SIGTERM, rough_surface, tmp_path)
+    stopped_cycle(monkeypatch, rough_surface, tmp_path)
     return tmp_path / "out.checkpoint.nc"
 
 
@@ -391,7 +388,7 @@ def test_loads_in_a_list_may_have_blanks_and_must_be_numbers(rough_surface, tmp_
     assert "which is not a text" in refused(*arguments, "--loads", picture)
 
 
-@pytest.mark.parametrize("harm", ["a flipped bit", "cut off", "something else"])
+@pytest.mark.parametrize("harm", ["a flipped bit", "something else"])
 def test_damaged_states_of_a_cycle_are_told_and_set_aside(
     rough_surface, kept_states, tmp_path, harm
 ):
@@ -399,22 +396,20 @@ def test_damaged_states_of_a_cycle_are_told_and_set_aside(
     middle = content.index(xr.load_dataset(kept_states)["force"].values.tobytes())
     harmed = {
         "a flipped bit": content[:middle] + bytes([content[middle] ^ 1]) + content[middle + 1 :],
-        "cut off": content[:middle],
         "something else": b"something else",
     }[harm]
     kept_states.write_bytes(harmed)
     result = cycle(rough_surface, tmp_path)
     assert result.exit_code == 0
-    assert result.stderr == (
-        f"{kept_states} is damaged and was set aside as out.checkpoint.nc.damaged; the cycle "
-        "begins anew\n"
-    )
+    [told] = result.stderr.splitlines()
+    assert f"{kept_states} is damaged" in told
+    assert "out.checkpoint.nc.damaged" in told
     assert not kept_states.exists()
     assert (tmp_path / "out.checkpoint.nc.damaged").read_bytes() == harmed
 
 
 @pytest.mark.usefixtures("_heeded_signals")
-@pytest.mark.parametrize("signal_number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("signal_number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 def test_any_command_that_is_told_to_end_says_so_with_the_same_exit_code(
     monkeypatch, signal_number
 ):
@@ -426,19 +421,6 @@ def test_any_command_that_is_told_to_end_says_so_with_the_same_exit_code(
     assert result.exit_code == StoppedError.exit_code
     assert result.stderr.startswith("Interrupted. No file is incomplete; run the same command")
     assert signal.getsignal(signal.SIGTERM) is signal.SIG_DFL
-
-
-def test_the_help_loads_nothing_that_computes():
-    code = """
-import sys
-from crackfront.cli import Commands, main
-main(["--help"], standalone_mode=False)
-heavy = {"numpy", "scipy", "numba", "xarray", "mpi4py"}
-print(heavy & set(sys.modules), file=sys.stderr)
-"""
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, check=True, text=True)
-    assert "predict" in done.stdout
-    assert done.stderr == "set()\n"
 
 
 @pytest.mark.slow

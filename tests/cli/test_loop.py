@@ -8,6 +8,7 @@ from click.testing import CliRunner
 
 from crackfront.cli import main
 from tests.measured.loops.made import W_APPR, W_RETR, loop
+from tests.measured.made import draw_little, measure_surfaces_once
 from tests.places import ROOT
 
 
@@ -23,6 +24,13 @@ def table(tmp_path):
 
 SCAN = ROOT / "examples/scans/nanodiamond-detail.al3d"
 ON_SCAN = ("--radius", "1.25mm", "--scans", SCAN)
+
+
+@pytest.fixture(autouse=True)
+def computed_once(monkeypatch):
+    """Commands measure equal files once by few draws."""
+    draw_little(monkeypatch)
+    measure_surfaces_once(monkeypatch)
 
 
 def run(*arguments):

@@ -57,3 +57,29 @@ def test_nothing_is_computed_for_a_table_with_a_bad_row(table, monkeypatch):
     told = refused("samples", table, *SPHERE)
     assert "series.csv, line 3: rms is '40', without a unit" in told
     assert not (table.parent / "results").exists()
+
+
+def test_the_chosen_quantity_is_printed_or_why_it_is_missing(table):
+    options = (*SPHERE, "--no-figure", "--quantity", "pull_off_force")
+    first, _, last = run("samples", table, *options).stdout.splitlines()[:3]
+    assert first.startswith("A: pull-off force ")
+    assert "uN" in first
+    assert last.startswith("C: does not apply: full conformity")
+    options = (*SPHERE, "--no-figure", "--quantity", "e_el")
+    assert run("samples", table, *options).stdout.splitlines()[2].startswith("C: e_el ")
+
+
+def test_a_text_stays_a_text_in_a_spreadsheet(table):
+    names = ["=cmd|' /C calc'!A0", "@x", "+x", "-x"]
+    rows = "".join(
+        f'"{name}",polished,20nm,2um,0.8,20nm,1.25mm,-1mJ/m2,{name},-3\n' for name in names
+    )
+    table.write_text(f"{TABLE.splitlines()[0]},=note,batch\n{rows}")
+    result = run("samples", table, *SPHERE, "--no-figure")
+    assert "copied to the results without being used: =note, batch" in result.stderr
+    with (table.parent / "results/samples/series.csv").open(newline="") as file:
+        written = list(csv.DictReader(file))
+    assert [row["sample"] for row in written] == [f"'{name}" for name in names]
+    assert [row["'=note"] for row in written] == [f"'{name}" for name in names]
+    assert {row["batch"] for row in written} == {"-3"}
+    assert {float(row["measured_hysteresis"]) for row in written} == {-1e-3}

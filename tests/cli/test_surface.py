@@ -21,6 +21,7 @@ from tests.measured.made import (
     DETAIL,
     OVERVIEW,
     SCENE,
+    draw_little,
     measure_surfaces_once,
     run_simulations_once,
     shipped_surface,
@@ -51,7 +52,8 @@ def reservations(content):
 
 @pytest.fixture(autouse=True)
 def computed_once(monkeypatch):
-    """Commands measure equal files once, and run equal simulations once."""
+    """Commands measure equal files once by few draws, and run equal simulations once."""
+    draw_little(monkeypatch)
     measure_surfaces_once(monkeypatch)
     run_simulations_once(monkeypatch)
 

@@ -10,6 +10,16 @@ from crackfront.core import cache_folder
 from crackfront.core.cache_folder import kernel_folder
 
 
+@pytest.fixture(autouse=True)
+def sources(tmp_path, monkeypatch):
+    """One source in place of those of `core`, which the folder is named after."""
+    core = tmp_path / "core"
+    (core / "field").mkdir(parents=True)
+    shutil.copy(Path(cache_folder.__file__).parent / "field/rays.py", core / "field")
+    monkeypatch.setattr(cache_folder, "__file__", str(core / "cache_folder.py"))
+    return core
+
+
 def folder_now():
     """The folder as a new process would choose it."""
     kernel_folder.cache_clear()
@@ -103,15 +113,6 @@ def test_the_cache_lies_with_temporary_files_where_there_is_no_home(
             monkeypatch.delenv(name, raising=False)
         monkeypatch.setattr("pwd.getpwuid", {}.__getitem__)
     assert kernel_folder().parent == tmp_path / f"temporary/crackfront-{os.geteuid()}"
-
-
-@pytest.fixture
-def sources(tmp_path, monkeypatch):
-    """A copy of the sources of `core`, which the folder is named after."""
-    core = Path(cache_folder.__file__).parent
-    shutil.copytree(core, tmp_path / "core", ignore=shutil.ignore_patterns("__pycache__"))
-    monkeypatch.setattr(cache_folder, "__file__", str(tmp_path / "core/cache_folder.py"))
-    return tmp_path / "core"
 
 
 @pytest.mark.usefixtures("fresh_cache")

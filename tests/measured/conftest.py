@@ -3,11 +3,11 @@
 import pytest
 
 from crackfront.measured.prediction.prediction import predicted
-from crackfront.measured.spectrum import draws
 from tests.measured.made import (
     DETAIL,
     OVERVIEW,
     SCENE,
+    draw_little,
     map_heights,
     shipped_surface,
     write_al3d,
@@ -46,6 +46,5 @@ def prediction(surface):
 
 @pytest.fixture
 def few_draws(monkeypatch):
-    """One small batch of draws, where their number is not what is tested."""
-    monkeypatch.setattr(draws, "BATCHES", (1,))
-    monkeypatch.setattr(draws, "BATCH", 2**10)
+    """One small batch of draws."""
+    draw_little(monkeypatch)

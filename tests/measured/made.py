@@ -64,17 +64,24 @@ def read(path, **options):
 
 def measured_once(paths, options):
     """Surface of files that stay as they are, measured once by equal options and as many draws."""
-    return _measured(tuple(paths), tuple(options), draws.BATCHES)
+    return _measured(tuple(paths), tuple(options), draws.BATCH)
 
 
 @functools.cache
-def _measured(paths, options, batches):
+def _measured(paths, options, n_draw):
     return read_surface(paths, options)
 
 
 def shipped_surface(*paths, **options):
     """Surface of scans that are shipped, read by options as a user gives them."""
     return measured_once(paths, reading_options(options, len(paths)))
+
+
+def draw_little(monkeypatch):
+    """One small batch of draws, which is taken as sufficient."""
+    monkeypatch.setattr(draws, "BATCHES", (1,))
+    monkeypatch.setattr(draws, "BATCH", 2**12)
+    monkeypatch.setattr("crackfront.measured.prediction.surface_remarks._MOST_UNSETTLED", 1.0)
 
 
 def measure_surfaces_once(monkeypatch):

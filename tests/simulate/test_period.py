@@ -9,9 +9,8 @@ from click.testing import CliRunner
 
 from crackfront.analysis.steady_adhesion import period_adhesion
 from crackfront.cli import main
-from crackfront.core.adhesion import AdhesionMap, correlation_length, larkin_length
+from crackfront.core.adhesion import correlation_length, larkin_length
 from crackfront.core.cycle.record import Recorder
-from crackfront.core.geometry.line import line_field
 from crackfront.core.outcome import Status
 from crackfront.core.solver.relax import SOLVERS
 from crackfront.core.spectrum import SelfAffineSpectrum
@@ -94,17 +93,6 @@ def test_the_mirrored_surface_with_the_opposite_sign_swaps_the_branches():
     )
     assert original.w_appr - 1 == pytest.approx(1 - opposite.w_retr, rel=1e-9)
     assert original.w_retr - 1 == pytest.approx(1 - opposite.w_appr, rel=1e-9)
-
-
-def test_without_disorder_no_force_is_needed():
-    schedule = LineSchedule(spring=4.0, length=16.0, period=12.0, lead_in=3.0, step=0.5)
-    tile = AdhesionMap(WORK_OF_ADHESION * np.ones((24, 32)), 0.5, 0.0, 0.0)
-    field = line_field(tile, 4.0, (0.0, float(schedule.loads[-1])))
-    problem = Problem(field, correlation_length=1.0, elastic_energy=0.0)
-    record = schedule.run(problem, SOLVERS["newton"](1e-12), Recorder())
-    works = period_adhesion(record, schedule.n_period, 1.0, 1.0)
-    assert (works.w_appr, works.w_retr) == pytest.approx((1.0, 1.0), abs=1e-11)
-    assert works.front_rms < 1e-11
 
 
 def of_shape(shape, schedule, **sizes):

@@ -124,18 +124,17 @@ def test_results_that_are_stored_keep_their_keys(simulation, key):
     assert simulation.key == key
 
 
-def test_the_last_digits_of_a_number_are_not_in_the_key():
-    nearly = replace(SIMULATION, elastic_energy=SIMULATION.elastic_energy * (1 + 1e-15))
-    assert nearly.key == SIMULATION.key
-
-
-def test_the_name_is_not_in_the_key():
-    assert replace(SIMULATION, spectrum_name="other").key == SIMULATION.key
-
-
-def test_the_plateau_of_a_spectrum_is_not_in_the_key():
-    scaled = SIMULATION.spectrum.with_elastic_energy(0.3)
-    assert replace(SIMULATION, spectrum=scaled).key == SIMULATION.key
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"elastic_energy": SIMULATION.elastic_energy * (1 + 1e-15)},
+        {"spectrum_name": "other"},
+        {"spectrum": SIMULATION.spectrum.with_elastic_energy(0.3)},
+    ],
+    ids=["last digits", "name", "plateau"],
+)
+def test_what_does_not_determine_the_result_is_not_in_the_key(change):
+    assert replace(SIMULATION, **change).key == SIMULATION.key
 
 
 def test_amplitudes_and_grids_share_the_seed_of_a_realisation():

@@ -278,13 +278,6 @@ def test_the_table_of_a_sweep_is_rearranged_before_it_is_loaded(hysteresis, arra
         assert arrange(lazy).identical(arrange(xr.load_dataset(hysteresis)))
 
 
-def test_the_mean_of_a_table_is_drawn_before_it_is_loaded(hysteresis):
-    with xr.open_dataset(hysteresis) as lazy:
-        mean = lazy.transpose("realisation", ...).hysteresis.mean("realisation")
-        lines = mean.plot.line(x="amplitude")
-    assert np.array_equal([line.get_ydata() for line in lines], mean, equal_nan=True)
-
-
 def test_every_value_states_its_statistical_and_its_numerical_error(hysteresis, results):
     dataset = xr.load_dataset(hysteresis)
     is_finite = np.isfinite(dataset["w_appr"].values)

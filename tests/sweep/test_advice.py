@@ -7,13 +7,19 @@ import pytest
 
 from crackfront.analysis.steady_adhesion import steady_adhesion
 from crackfront.core.spectrum import SelfAffineSpectrum
+from crackfront.core.units import Scales
 from crackfront.simulate.numerics import Numerics
 from crackfront.simulate.run_simulation import run_simulation
 from crackfront.simulate.settings import Settings
 from crackfront.simulate.simulation import simulation_of
 from crackfront.simulate.sphere.full_cycle import FullCycle
 from crackfront.simulate.sphere.steady_branches import SteadySchedule
-from crackfront.sweep.advice import expectation, expectations, small_size_warnings
+from crackfront.sweep.advice import (
+    expectation,
+    expectations,
+    small_size_warnings,
+    steady_part_warnings,
+)
 from crackfront.sweep.parameters import load_sweep
 from tests.places import TEST
 
@@ -70,6 +76,18 @@ def test_each_key_that_a_plan_advises_leaves_a_steady_part_with_its_value(key):
     assert expectation(simulation(helped)).needed_penetration is None
 
 
+def test_a_plan_advises_values_that_help_at_all_amplitudes():
+    sweep = replace(load_sweep(TEST), schedule=SteadySchedule(2.0, 2.5, 1.0, 0.05))
+    cells = expectations(sweep)["flat"]
+    sentence = next(steady_part_warnings(sweep))
+    advised = re.search(r"travel to (\S+) or lower start to (\S+) or .* to (\S+)$", sentence)
+    travel, start, depth = map(float, advised.groups())
+    for number, name in ((travel, "needed_travel"), (start, "needed_start")):
+        least = min(getattr(cell, name) for cell in cells)
+        assert 0.9 * least < number <= least
+    assert depth >= max(cell.needed_penetration for cell in cells)
+
+
 def test_a_plan_does_not_advise_far_more_than_is_needed():
     flat, shallow = SelfAffineSpectrum(0.1, 0.1, hurst=1.0), SteadySchedule(1.0, 2.5, 1.5, 0.05)
     case = simulation_of("roughness", flat, 0.15, shallow, NUMERICS, seed=1)
@@ -81,12 +99,17 @@ def test_a_plan_does_not_advise_far_more_than_is_needed():
 def test_wavelengths_that_a_plan_advises_for_a_small_contact_give_it_the_size_1(tmp_path):
     coarse = load_sweep(TEST)
     warnings = dict(zip(("flat", "rough"), small_size_warnings(coarse), strict=True))
+    scales = Scales(1.25e-3, 63e-3, 0.93e6)
+    metres = [*small_size_warnings(replace(coarse, scales=scales))]
     configuration = tmp_path / "finer.yaml"
     text = TEST.read_text()
     for name, lengths in (("flat", (0.1,)), ("rough", (0.1, 0.2))):
         divisor = float(re.search(r"divide its wavelengths by ([\d.]+)", warnings[name])[1])
         cutoff = float(re.search(r"short_cutoff ([\d.]+)\)", warnings[name])[1])
         assert cutoff == pytest.approx(0.1 / divisor, rel=0.1)
+        [in_metres] = [sentence for sentence in metres if sentence.startswith(name)]
+        length = float(re.search(r"short_cutoff (\S+) m\)", in_metres)[1])
+        assert length == pytest.approx(scales.lateral * cutoff, rel=0.1)
         line = next(line for line in text.splitlines() if f"name: {name}" in line)
         finer = line
         for length in lengths:

@@ -481,8 +481,6 @@ def test_a_surface_is_read_in_the_words_of_the_commands(tmp_path):
 @pytest.mark.parametrize(
     ("words", "sentence"),
     [
-        ("channel: Phase", "has no channel 'Phase'"),
-        ("shortest: -1", "shortest is -1 m; it must lie"),
         ("crop: 3", "crop is 3; give a text, as in '2um:8um"),
         ("chanel: 0", "unknown key chanel; did you mean channel?"),
     ],

@@ -2,8 +2,6 @@
 
 import json
 import re
-import subprocess
-import sys
 from dataclasses import replace
 from pathlib import Path
 
@@ -290,20 +288,11 @@ def test_files_of_surfaces_state_their_skewness(tmp_path):
         assert variable.attrs["excess_kurtosis"] == pytest.approx(moment(variable.values, 4) - 3)
 
 
-def test_skewed_surfaces_are_the_same_in_every_process(tmp_path):
-    path = configuration(tmp_path, SKEWED)
-    code = (
-        "import sys\n"
-        "from pathlib import Path\n"
-        "from crackfront.simulate.tiles import surface_values\n"
-        "from crackfront.sweep.parameters import load_sweep\n"
-        "surface = next(load_sweep(Path(sys.argv[1])).simulations()).surface\n"
-        "print(surface_values(surface).tobytes().hex())\n"
-    )
-    printed = subprocess.run(
-        [sys.executable, "-c", code, path], check=True, capture_output=True, text=True, timeout=600
-    )
-    assert bytes.fromhex(printed.stdout) == surface_values(first_surface(path)).tobytes()
+def test_a_skewed_surface_keeps_its_heights(tmp_path):
+    heights = surface_values(first_surface(configuration(tmp_path, SKEWED)))
+    # A change of these numbers changes the skewed surfaces of all sweeps.
+    kept = [0.0320237903888325, 0.04809745408877467, 0.02841162851443033]
+    assert heights[0, :3] == pytest.approx(kept, rel=1e-9)
 
 
 @pytest.mark.parametrize(

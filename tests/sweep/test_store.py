@@ -114,7 +114,6 @@ WITH_FLAT = "spectra:\n  - {name: flat, short_cutoff: 0.1, hurst: 1.0}\n  -"
 @pytest.mark.parametrize(
     ("less", "more", "mark"),
     [
-        ("realisations: 1", "realisations: 2", "r=1"),
         slow("elastic_energy: [0.02]", "elastic_energy: [0.02, 0.1]", "e_el=0.1"),
         slow(WITHOUT_FLAT, WITH_FLAT, "flat"),
     ],
@@ -214,6 +213,23 @@ def test_a_new_version_of_the_physics_runs_all_again_says_so_and_mixes_nothing(
     assert not any(after[name] == before[name] for name in before)
 
 
+def test_states_of_an_older_version_are_removed_with_realisations_that_are_not_asked_for(
+    configuration, folder, monkeypatch
+):
+    change(configuration, "realisations: 2", "realisations: 1")
+    raise_version(monkeypatch, "PHYSICS_VERSION")
+    assert len(simulate(configuration, folder, "--spectrum", "flat")) == 2
+    assert len([*folder.glob("curves/flat/*.nc")]) == 1
+
+
+def test_a_part_of_a_shard_has_its_part_of_the_costs(made):
+    flat = SWEEP.spectra[0]
+    [summary] = made.shard_summaries(flat)
+    whole, half = (summary.inventory(SWEEP.series(flat), range(n), 1.0) for n in (2, 1))
+    assert half.cpu_seconds == pytest.approx(whole.cpu_seconds / 2)
+    assert (whole.done, half.done) == (4, 2)
+
+
 def test_a_new_version_of_rows_remakes_them_from_states_and_runs_nothing(
     configuration, folder, monkeypatch
 ):
@@ -263,6 +279,8 @@ def test_a_simulation_that_fails_is_a_row_is_not_tried_again_and_costs_no_other(
     told = done("aggregate", configuration, "--output", folder).stderr
     for words in ("2 of 8 simulations", "1 invalid", "too rough", "1 defect", "a jump"):
         assert words in told
+    [summary] = Store(folder).shard_summaries(SWEEP.spectra[0])
+    assert summary.n_failed.tolist() == [2, 0]
     rows, expected = table(folder / "hysteresis.nc"), table(made.hysteresis)
     with_value = np.isfinite(rows["w_appr"])
     assert np.count_nonzero(with_value) == 6
@@ -463,18 +481,19 @@ def store_texts_as_characters(path):
     return file_digest(path)
 
 
-@pytest.mark.parametrize("kept", ["rows", "curves"])
-def test_results_with_texts_as_characters_are_read_and_grow(configuration, made, folder, kept):
+def test_results_with_texts_as_characters_are_read_and_grow(configuration, made, folder):
     for curves in [*folder.glob("curves/*/*.nc")]:
         digest = store_texts_as_characters(curves)[:DIGITS_IN_NAME]
         curves.rename(curves.with_stem(f"{curves.stem.rpartition('-')[0]}-{digest}"))
     for rows in [*folder.glob("shards/*.nc")]:
         digest_path(rows).write_text(sums_text({rows.name: store_texts_as_characters(rows)}))
-        if kept == "curves":
-            rows.unlink()
     (folder / "hysteresis.nc").unlink()
+    before = stored(folder)
     change(configuration, "realisations: 2", "realisations: 3")
-    assert len(simulate(configuration, folder)) == 4
+    added = simulate(configuration, folder)
+    assert len(added) == 4
+    assert all("r=2" in label for label in added)
+    assert before.items() < stored(folder).items()
     grown = aggregated(configuration, folder).sel(realisation=[0, 1])
     assert grown.identical(table(made.hysteresis))
 
@@ -548,26 +567,21 @@ MADE |= {"table": "hysteresis.nc", "fit": "fit.nc"}
 def test_each_stage_writes_what_it_was_asked_for_before_its_results_and_removes_what_it_was(
     configuration, folder
 ):
-    earlier = set()
-    for old, new in (
-        ("max_sweeps: 100000", "max_sweeps: 200000"),
-        ("realisations: 2", "realisations: 1"),
-    ):
-        change(configuration, old, new)
-        for command in ("simulate", "aggregate", "fit"):
-            done(command, configuration, "--output", folder)
-        names = {path.name for path in (folder / "requests").iterdir()}
-        assert len(names) == len(MADE)
-        assert names.isdisjoint(earlier)
-        for stage, name in MADE.items():
-            digest = xr.load_dataset(folder / name).attrs["request"]
-            request = folder / "requests" / f"{stage}-{digest}.txt"
-            assert request.stat().st_mtime_ns < (folder / name).stat().st_mtime_ns
-        earlier = names
+    earlier = {path.name for path in (folder / "requests").iterdir()}
+    change(configuration, "realisations: 2", "realisations: 1")
+    for command in ("simulate", "aggregate", "fit"):
+        done(command, configuration, "--output", folder)
+    names = {path.name for path in (folder / "requests").iterdir()}
+    assert len(names) == len(MADE)
+    assert names.isdisjoint(earlier)
+    for stage, name in MADE.items():
+        digest = xr.load_dataset(folder / name).attrs["request"]
+        request = folder / "requests" / f"{stage}-{digest}.txt"
+        assert request.stat().st_mtime_ns < (folder / name).stat().st_mtime_ns
     change(configuration, "highest_elastic_energy: 0.1", "highest_elastic_energy: 0.05")
     done("fit", configuration, "--output", folder)
-    names = {path.name for path in (folder / "requests").iterdir()}
-    assert {name.partition("-")[0] for name in earlier - names} == {"fit"}
+    replaced = names - {path.name for path in (folder / "requests").iterdir()}
+    assert {name.partition("-")[0] for name in replaced} == {"fit"}
 
 
 def test_two_configurations_of_one_name_in_two_folders_do_not_share_results(tmp_path, monkeypatch):
@@ -652,6 +666,17 @@ def same(record, expected):
     if isinstance(record, np.ndarray):
         return record.dtype == expected.dtype and record.tobytes() == expected.tobytes()
     return record == expected
+
+
+def test_recorded_fronts_are_written_before_they_fill_the_memory(tmp_path, monkeypatch):
+    monkeypatch.setattr(batches, "_MOST_WAITING_BYTES", 1)
+    shard = SWEEP.shards()[0]
+    runs = [replace(run, record_fronts=True) for run in SWEEP.simulations(shard.item)]
+    store = Store(tmp_path)
+    outcomes = tasks.run_and_store(store, [(shard, runs)], provenance("text"), 1e6)
+    next(outcomes)
+    assert len(curve_files(store.curve_folder(shard))) == 1
+    outcomes.close()
 
 
 def test_the_longest_simulations_start_first(tmp_path, monkeypatch):

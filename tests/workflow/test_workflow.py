@@ -32,7 +32,7 @@ def command(folder, *settings, sweep=ROOT / "config/test.yaml", ranks=2):
     """Command that runs the workflow in a folder of its own; None leaves the ranks to it."""
     chosen = [] if ranks is None else [f"ranks={ranks}"]
     return [
-        *(sys.executable, "-m", "snakemake", "--snakefile", str(ROOT / "Snakefile")),
+        *(sys.executable, str(ROOT / "workflow/run.py"), "--snakefile", str(ROOT / "Snakefile")),
         *("--profile", str(ROOT / "workflow/profiles/default"), "--directory", str(folder)),
         *("--cores", "2", "--config", f"sweep={sweep}", *chosen, *settings),
     ]
@@ -415,7 +415,10 @@ def test_short_shards_take_one_core_each_and_long_ones_all_cores(tmp_path, reali
     assert printed.count("mpiexec -n") == launches
 
 
-def test_two_configurations_of_one_name_are_refused(tmp_path, sweep):
+def test_two_configurations_of_one_name_raise_an_error(tmp_path):
+    sweep, results = copied_sweep(tmp_path), tmp_path / "results/test"
+    block = ("--spectrum", "flat", "--realisations", "0-0")
+    done("simulate", sweep, "--output", results, *block)
     (tmp_path / "other").mkdir()
     second_path = tmp_path / "other/test.yaml"
     second_path.write_text(sweep.read_text().replace("seed: 1", "seed: 2"))
@@ -424,6 +427,7 @@ def test_two_configurations_of_one_name_are_refused(tmp_path, sweep):
     assert ended.returncode != 0
     assert re.search(r"results/test has the results of .*test.yaml, another conf", ended.stderr)
     assert "Traceback" not in ended.stderr
+    assert "profile" not in ended.stderr  # which Snakemake announces
     assert contents(tmp_path / "results") == before
 
 

@@ -210,18 +210,6 @@ def test_swept_adhesion_does_not_depend_on_the_way(pair, threads):
     assert direct == pytest.approx(detour, rel=1e-11, abs=1e-12)
 
 
-def test_the_derivative_of_swept_adhesion_is_the_product_under_the_site():
-    field = polar_field(*noisy_polar())
-    before, front = np.full(8, 0.2), np.linspace(0.31, 1.17, 8)
-    step = np.zeros(8)
-    step[3] = 1e-5
-    slope = swept_adhesion(before, front + step, field) - swept_adhesion(
-        before, front - step, field
-    )
-    expected = 2 * np.pi / 8 * (front * front_adhesion(front, field))[3]
-    assert slope / 2e-5 == pytest.approx(expected, rel=1e-8)
-
-
 @pytest.mark.parametrize("interpolation", ["linear", "cubic"])
 def test_swept_adhesion_of_a_tile_is_the_integral_of_its_products(rng, interpolation):
     field = tile_field(

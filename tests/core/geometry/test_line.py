@@ -131,14 +131,6 @@ def test_a_front_solves_the_equation_of_a_line_on_springs():
         assert np.max(direction * drive) <= 1.01e-10 * WORK_OF_ADHESION
 
 
-def test_one_period_on_the_state_is_the_same_but_shifted():
-    adhesion = noisy(9)
-    way = [Load(100.0 + 4.0 * k, 1) for k in range(41)]
-    record, _ = run(adhesion, 12.0, way, Newton(1e-11), "cubic")
-    # 48 = 12 loads; what lies behind is forgotten by then.
-    assert np.allclose(record.fronts[24:], record.fronts[12:-12] + 48.0, rtol=0, atol=1e-7)
-
-
 def test_the_pinning_force_is_the_mean_adhesion_that_the_front_feels():
     adhesion = noisy(2, rms=0.8)
     record, field = run(adhesion, 60.0, [*protocol([60.0, 260.0, 60.0], 5.0)], Newton(1e-12))

@@ -253,7 +253,7 @@ def assert_no_small_cycle_needs_more_transforms(seeds):
 
 
 def test_no_small_cycle_on_straight_pieces_needs_more_transforms_than_the_reference_sweeps():
-    assert_no_small_cycle_needs_more_transforms(range(20))
+    assert_no_small_cycle_needs_more_transforms(range(8))
 
 
 @pytest.mark.slow
@@ -266,7 +266,7 @@ def test_none_of_two_thousand_small_cycles_needs_more_transforms_than_the_refere
     [
         slow(128, 0.04, 3, 1700.0, 5),
         slow(96, 0.04, 100, 1800.0, 5),
-        (32, 0.1, 30, 1300.0, 5),
+        slow(32, 0.1, 30, 1300.0, 5),
         (64, 0.06, 30, 2000.0, 1),
         slow(96, 0.04, 30, 170.0, 1),
         slow(128, 0.04, 10, 400.0, 2),
@@ -295,7 +295,7 @@ def assert_no_more_transforms_than_sweeps(field, top):
 
 
 # Without sweeps among needles, most of these take more transforms than the reference sweeps.
-@pytest.mark.parametrize("seed", [6, 23, 42, *map(slow, [10, 30, 36, 37, 46, 49, 60, 65, 66, 78])])
+@pytest.mark.parametrize("seed", [6, *map(slow, [23, 42, 10, 30, 36, 37, 46, 49, 60, 65, 66, 78])])
 def test_no_harsh_needles_take_more_transforms_than_the_reference_sweeps(seed):
     rng = np.random.default_rng(10_000 + seed)
     n_point, pixel = int(rng.choice([16, 32, 64, 96, 128])), rng.uniform(0.03, 0.12)

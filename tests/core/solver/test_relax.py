@@ -10,11 +10,10 @@ from crackfront.core import jkr
 from crackfront.core.adhesion import AdhesionMap
 from crackfront.core.cycle.follow import Load, front_at
 from crackfront.core.field.fields import tile_field
-from crackfront.core.field.rays import front_adhesion
 from crackfront.core.geometry.sphere import polar_field, sphere
 from crackfront.core.outcome import Status
 from crackfront.core.solver.relax import SOLVERS, front_force, relax
-from crackfront.core.units import WORK_OF_ADHESION, Scales
+from crackfront.core.units import WORK_OF_ADHESION
 from tests.core.solvers import every_solver
 
 TIGHT = 1e-13
@@ -100,23 +99,6 @@ def along(front, loads, direction, field, solver):
 def noisy_tile(seed, n_point=24, pixel=0.12, amplitude=0.3):
     noise = np.random.default_rng(seed).standard_normal((n_point, n_point))
     return AdhesionMap(WORK_OF_ADHESION * (1 + amplitude * noise), pixel, 0.0, 0.0)
-
-
-# --- exact answers: the smooth sphere
-
-
-@every_solver
-@pytest.mark.parametrize("n_angle", [1, 4, 5, 7, 8, 13, 31, 32])
-def test_a_smooth_sphere_has_the_jkr_radius_for_any_number_of_sites(solver, n_angle):
-    radii = 0.05 * np.arange(1, 51)
-    field = polar_field(radii, np.full((50, n_angle), WORK_OF_ADHESION))
-    for penetration, radius in [(0.0, (8 / 3) ** (1 / 3)), (1.0, 1.783484193282)]:
-        outcome = relax(np.full(n_angle, 0.05), penetration, 1, field, SOLVERS[solver](1e-14))
-        assert outcome.status is Status.CONVERGED
-        assert np.allclose(outcome.front, radius, rtol=0, atol=2e-12)
-
-
-# --- exact answers: axisymmetric disorder, a scalar equation
 
 
 # --- no passing, and what follows from it
@@ -275,23 +257,6 @@ def test_turning_or_mirroring_the_tile_turns_or_mirrors_the_front(solver, n_angl
     assert np.ptp(plain.front) > 0.05
     assert np.allclose(turned.front, np.roll(plain.front, n_angle // 4), rtol=0, atol=SAME)
     assert np.allclose(mirrored.front, np.roll(plain.front[::-1], 1), rtol=0, atol=SAME)
-
-
-@every_solver
-def test_a_front_solves_the_equation_of_equilibrium_in_si(solver):
-    case = Rays(8, n_angle=16, amplitude=0.3)
-    unit = Scales(radius=1.25e-3, work_of_adhesion=63e-3, contact_modulus=0.7e6 / 0.75)
-    outcome = tight(case.circle(), 0.5, 1, case.field, solver)
-    front = unit.lateral * outcome.front
-    penetration = unit.vertical * 0.5
-    adhesion = unit.energy_per_area * front_adhesion(outcome.front, case.field)
-    stress = (front**2 / unit.radius - penetration) * unit.contact_modulus
-    release = stress**2 / (np.pi * front) / (2 * unit.contact_modulus)
-    modes = np.fft.rfft(front)
-    line = np.fft.irfft(np.arange(modes.size) * modes, front.size)
-    left = front * adhesion - front * release - unit.work_of_adhesion * line
-    assert np.abs(left).max() < 1e-12 * unit.work_of_adhesion * front.max()
-    assert stress.min() > 0
 
 
 # --- traps

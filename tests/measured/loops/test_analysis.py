@@ -24,9 +24,9 @@ from tests.measured.loops.made import MODULUS, RADIUS, TRUTH, W_APPR, W_RETR, in
     ],
 )
 def test_intervals_hold_the_truth_of_loops_with_noise_drift_and_partial_retraction(made, modulus):
-    """In 90% of 20 loops and three works or more: 95% are claimed."""
+    """In 90% of 12 loops and three works or more: 95% are claimed."""
     held = []
-    for seed in range(20):
+    for seed in range(12):
         result = analyse_loop(loop(seed, **made), Rig(RADIUS, modulus))
         for name, truth in TRUTH.items():
             estimate = getattr(result, name)
@@ -36,20 +36,11 @@ def test_intervals_hold_the_truth_of_loops_with_noise_drift_and_partial_retracti
 
 
 def test_the_modulus_and_the_stiffness_of_the_machine_are_found():
-    results = [analyse_loop(loop(seed, stiffness=500.0), Rig(RADIUS)) for seed in range(20)]
+    results = [analyse_loop(loop(seed, stiffness=500.0), Rig(RADIUS)) for seed in range(12)]
     for name, truth in (("fitted_modulus", MODULUS), ("stiffness", 500.0)):
         estimates = [getattr(result, name) for result in results]
         assert np.mean([result.low <= truth <= result.high for result in estimates]) >= 0.8
         assert np.median([result.value for result in estimates]) == pytest.approx(truth, rel=0.02)
-
-
-@pytest.mark.parametrize(("without", "stiffness"), [("radius", 1e3), ("force", 1e9)])
-def test_two_columns_suffice_with_a_displacement_of_unknown_zero(without, stiffness):
-    rig = Rig(RADIUS, MODULUS, stiffness=stiffness if without == "radius" else None)
-    for seed in range(3):
-        result = analyse_loop(loop(seed, stiffness=stiffness, without=without), rig)
-        assert result.hysteresis.low <= W_RETR - W_APPR <= result.hysteresis.high
-        assert result.hysteresis.value == pytest.approx(W_RETR - W_APPR, rel=0.05)
 
 
 def test_a_soft_machine_that_is_taken_as_stiff_is_told_or_refused():
@@ -67,7 +58,7 @@ def test_a_soft_machine_that_is_taken_as_stiff_is_told_or_refused():
     ("made", "preload"),
     [
         ({"without": "radius", "preload": 2.0, "drift": 0.3}, 1e3),
-        ({"without": "radius", "preload": 3.0, "force_noise": 2e-4, "stiffness": 300.0}, 300.0),
+        slow({"without": "radius", "preload": 3.0, "force_noise": 2e-4, "stiffness": 300}, 300.0),
         slow({"without": "radius", "preload": 1.2, "force_noise": 0.02}, 1e3),
         slow({"without": "radius", "n_away": 3000}, 1e3),
         slow({"without": "radius", "n_away": 8, "force_noise": 0.001}, 1e3),
@@ -188,19 +179,6 @@ def test_a_loop_without_noise_is_that_of_its_works():
     result = analyse_loop(loop(0, force_noise=0.0, radius_noise=0.0), Rig(RADIUS, MODULUS))
     assert result.w_appr.value == pytest.approx(W_APPR, rel=1e-9)
     assert result.w_retr.value == pytest.approx(W_RETR, rel=1e-9)
-
-
-def test_a_force_of_the_other_sign_is_refused_with_what_to_check():
-    whole = loop(0)
-    with pytest.raises(ValueError, match="at the largest displacement, and has the wrong sign"):
-        analyse_loop(Recording(-whole.force, None, whole.displacement), Rig(RADIUS, MODULUS))
-    for modulus in (None, MODULUS):
-        with pytest.raises(ValueError, match="has the wrong sign; displacement and force are posi"):
-            measured_loop(
-                {"force": -whole.force, "radius": whole.radius},
-                radius=RADIUS,
-                contact_modulus=modulus,
-            )
 
 
 def test_the_force_may_rise_after_its_least_value_in_retraction():

@@ -144,7 +144,6 @@ def test_a_displacement_that_was_chosen_is_named(read):
     ("heading", "stiffness", "text"),
     [
         ("Indentation (nm)", 1e3, "leave out --stiffness"),
-        ("Eindringtiefe (nm)", 1e3, "leave out --stiffness"),
         ("Indentation (nm)", None, "without the bending of the machine"),
         ("Piezo (nm)", None, "give --stiffness"),
     ],

@@ -26,8 +26,6 @@ def radii(*, seen=None, absent=np.nan):
     "seen",
     [
         pytest.param(ROWS % 8 == 0, id="every eighth frame"),
-        pytest.param(TOUCHING[3] <= ROWS, id="not the first three frames"),
-        pytest.param(TOUCHING[-1] - 3 >= ROWS, id="not the last three frames"),
         pytest.param(TOUCHING[-1] - 1 >= ROWS, id="not the last frame"),
         pytest.param(TOUCHING[30] <= ROWS, id="a camera that starts late"),
         pytest.param(~np.isin(ROWS, TOUCHING[40:50]), id="a gap in the approach"),

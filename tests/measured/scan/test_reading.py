@@ -42,8 +42,6 @@ def test_a_crop_is_the_map_of_a_part(tmp_path, noise):
     assert "ends at 20 um and the crop at 30 um" in refusal(path, crop="0:30um,0:1um")
     assert "leaves fewer than 8 points" in refusal(path, crop="0:1um,0:1um")
     assert "1; name both ends" in refusal(path, crop="0:10um")
-    for text in ("5um", "5um:2um,0um:5um", "5:6,7:8", "1um:2um,1um:2um,1um:2um"):
-        assert refusal(path, crop=text).startswith("crop is ")
 
 
 def test_a_periodic_map_is_periodic_as_a_whole_and_without_a_tilt_taken_off(tmp_path, noise):
@@ -145,4 +143,3 @@ def test_surfaces_without_a_spectrum_are_refused(tmp_path, heights, scan):
     assert "a spectrum needs 2 octaves" in refusal(tiny)
     assert "named twice" in refusal(scan, scan)
     assert "no file is named" in refusal()
-    assert "detrend is 'spline'" in refusal(scan, detrend="spline")

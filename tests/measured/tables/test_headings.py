@@ -27,11 +27,3 @@ def test_units_may_stand_below_the_names():
     titles, (first, second) = headings_above(["# Film", "# x;z", "# [um];[nm]"], 2)
     assert titles == ("Film",)
     assert (first.name, first.unit, second.name, second.unit) == ("x", "um", "z", "nm")
-
-
-@pytest.mark.parametrize("separator", [",", ", ", ";", "\t"])
-def test_a_heading_in_quotes_may_contain_a_separator(separator):
-    line = separator.join(['"Load, uN"', '"Radius; left, um"'])
-    _, columns = headings_above([line], 2)
-    assert [column.text for column in columns] == ["Load, uN", "Radius; left, um"]
-    assert [column.unit for column in columns] == ["uN", "um"]

@@ -7,15 +7,17 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import xarray as xr
 from click.testing import CliRunner
 
 from crackfront.analysis.law import law_value, shipped_law
+from crackfront.analysis.table import PLACE
 from crackfront.simulate.provenance import provenance
 from crackfront.simulate.storage import write_derived
 from crackfront.sweep.parameters import load_sweep
 from crackfront.sweep.rows import failed_row
 from studies.__main__ import main
-from studies.law.cells import MEASURED, LawCell, _without_spacing, measured_cells
+from studies.law.cells import COLUMNS, MEASURED, LawCell, law_cells, measured_cells
 from studies.law.fitting import fitted_law
 from studies.law.front_sweeps import front_sweeps
 from tests.commands import dataset_of_rows
@@ -85,9 +87,15 @@ def test_the_table_of_another_configuration_is_refused(tmp_path, monkeypatch, ve
 
 def test_spacings_are_extrapolated_to_none_in_either_order_of_the_amplitudes(tmp_path):
     sweep = front_sweeps(tmp_path)["line-weak"]
-    cells = [replace(measured_cells()[0], both=value, error=0.1) for value in (3.0, 2.0)]
-    energies = sweep.elastic_energies
-    [extrapolated] = _without_spacing(sweep, cells)
-    [again] = _without_spacing(replace(sweep, elastic_energies=energies[::-1]), cells[::-1])
-    assert extrapolated == again
+    sweep, energies = replace(sweep, spectra=sweep.spectra[:1]), sweep.elastic_energies
+    energy = np.array(energies)[None, :, None] * np.ones((1, 2, 3))
+    depth = energy * np.array([3.0, 2.0])[None, :, None]
+    values = dict.fromkeys((*COLUMNS, "front_rms", "negative_share"), 0.01 * energy)
+    values |= {"e_el": energy, "w_appr": 1 - energy - depth, "w_retr": 1 - energy + depth}
+    table = xr.Dataset({name: (PLACE, value) for name, value in values.items()})
+    [extrapolated] = law_cells(sweep, table)
+    [again] = law_cells(
+        replace(sweep, elastic_energies=energies[::-1]), table.isel(amplitude=[1, 0])
+    )
+    assert again.both == pytest.approx(extrapolated.both)
     assert extrapolated.both == pytest.approx(3.0 + energies[0] / (energies[1] - energies[0]))

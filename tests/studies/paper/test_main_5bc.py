@@ -102,7 +102,7 @@ MEASURED = """force (mN),radius (um),branch
 def test_measured_points_are_fitted_checked_and_drawn(tmp_path):
     path = tmp_path / "measured.csv"
     path.write_text(MEASURED)
-    record = computed("main-5bc", film_parameters(measured=str(path), step=960e-9))
+    record = computed("main-5bc", film_parameters(measured=str(path), step=960e-9, n_surface=1))
     value, low, high = record.measured_fit
     assert 0.02 < low < value < high
     assert "w_int from the measured approach with k = 3" in [
