@@ -10,7 +10,7 @@ import numpy as np
 from crackfront.core.arrays import Array
 from studies.accuracy import measured_loops
 from studies.accuracy.averages import held_out_coverage, sampling_errors
-from studies.accuracy.energies import KINDS, measured_scan
+from studies.accuracy.energies import KINDS, scan_energy, synthetic_surface
 from studies.accuracy.energy_balance import cycle, energies
 from studies.accuracy.movement import movement
 from studies.accuracy.predictions import comparisons
@@ -89,7 +89,7 @@ def _energy_balance() -> Mapping[str, Number]:
 
 def _scans() -> Mapping[str, Number]:
     """e_el of a scan over its true value; ends of intervals move by 2% of their width at most."""
-    ratio = measured_scan(KINDS[0], 0).ratio
+    ratio = scan_energy(synthetic_surface(KINDS[0], 0)).ratio
     reason = "2% of the interval, which is what other seeds change (Movement)"
     error = 0.02 * (ratio.high - ratio.low)
     return {
@@ -101,7 +101,7 @@ def _scans() -> Mapping[str, Number]:
 
 def _movement() -> Mapping[str, Number]:
     """Largest movement of an interval with seeds, digits and draws."""
-    moved = movement([scan.measurement for scan in measured_scan(KINDS[0], 0).surface.scans])
+    moved = movement([scan.measurement for scan in synthetic_surface(KINDS[0], 0).scans])
     return {
         name: Number(100 * float(ends.max()), error, "% of the interval", reason)
         for name, ends, error, reason in (

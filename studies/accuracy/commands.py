@@ -127,7 +127,7 @@ def energies(scans: int, keep: bool) -> None:
     ]
     scans_by_kind = defaultdict(list)
     for kind, number in with_progress(all_scans, len(all_scans), "scans"):
-        scans_by_kind[kind].append(synthetic.measured_scan(kind, number))
+        scans_by_kind[kind].append(synthetic.scan_energy(synthetic.synthetic_surface(kind, number)))
     parts = {
         name: synthetic.energy_table({kind: scans_by_kind[kind] for kind in kinds})
         for name, kinds in tables.items()
@@ -145,7 +145,7 @@ def movement(scans: tuple[Path, ...], keep: bool) -> None:
     SCANS are read one by one; without any, one synthetic scan of each kind is taken.
     """
     surfaces = {str(scan): list(read_measurements([scan])) for scan in scans} or {
-        kind.name: [scan.measurement for scan in synthetic.measured_scan(kind, 0).surface.scans]
+        kind.name: [scan.measurement for scan in synthetic.synthetic_surface(kind, 0).scans]
         for kind in synthetic.KINDS
     }
     shown = with_progress(surfaces.items(), len(surfaces), "scans")

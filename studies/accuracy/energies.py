@@ -95,11 +95,13 @@ class Kind:
 
 
 @dataclass(frozen=True, slots=True)
-class MeasuredScan:
-    """Mean square half-derivative as measured from a scan, relative to the true one."""
+class ScanEnergy:
+    """e_el as measured from a scan."""
 
     ratio: Estimate[float]
-    surface: MeasuredSurface
+    """Relative to the true one."""
+    measured_share: float
+    """Part of it in the band of trusted waves."""
 
     @property
     def covers(self) -> bool:
@@ -261,13 +263,17 @@ _HARDEST = "roll-off of two sides, H = 1"
 """Kind of scans whose intervals contain the truth least often."""
 
 
-def measured_scan(kind: Kind, number: int) -> MeasuredScan:
-    """A scan of a kind as `crackfront predict` evaluates it."""
+def synthetic_surface(kind: Kind, number: int) -> MeasuredSurface:
+    """Surface of a scan of a kind, as `crackfront predict` evaluates it."""
     key = _key(kind, number)
     rng = np.random.default_rng(np.random.SeedSequence(SEED, spawn_key=key))
-    surface = _lines(kind, rng) if kind.is_line else _map(kind, rng)
+    return _lines(kind, rng) if kind.is_line else _map(kind, rng)
+
+
+def scan_energy(surface: MeasuredSurface) -> ScanEnergy:
+    """e_el of a synthetic surface."""
     ratio = surface.half_derivative.each(lambda value: value / MEAN_SQUARE)
-    return MeasuredScan(ratio, surface)
+    return ScanEnergy(ratio, float(surface.joint.shares.measured))
 
 
 def _key(kind: Kind, number: int) -> tuple[int, ...]:
@@ -315,13 +321,13 @@ def _lines(kind: Kind, rng: np.random.Generator) -> MeasuredSurface:
         return measured_surface(read_measurements(paths, ReadingOptions(unit="um")))
 
 
-def energy_table(energies: Mapping[Kind, Sequence[MeasuredScan]]) -> str:
+def energy_table(energies: Mapping[Kind, Sequence[ScanEnergy]]) -> str:
     """e_el of all scans relative to the true one, and how often the intervals contain it."""
     rows = []
     for kind, scans in energies.items():
         ratios = _ratios(scans)
         factor = np.median([scan.factor for scan in scans])
-        measured = np.median([scan.surface.joint.shares.measured for scan in scans])
+        measured = np.median([scan.measured_share for scan in scans])
         resolved = "yes" if kind.resolved else "no"
         rows.append(
             f"{kind.name} | {resolved} | {np.median(ratios):.2f} | "
@@ -342,17 +348,17 @@ def energy_table(energies: Mapping[Kind, Sequence[MeasuredScan]]) -> str:
     )
 
 
-def _ratios(scans: Sequence[MeasuredScan]) -> Array:
+def _ratios(scans: Sequence[ScanEnergy]) -> Array:
     """e_el of scans over the true one."""
     return np.array([scan.ratio.value for scan in scans])
 
 
-def _coverage(scans: Sequence[MeasuredScan]) -> float:
+def _coverage(scans: Sequence[ScanEnergy]) -> float:
     """Share of the intervals that contain the truth."""
     return float(np.mean([scan.covers for scan in scans]))
 
 
-def hardest_coverage(energies: Mapping[Kind, Sequence[MeasuredScan]]) -> Number:
+def hardest_coverage(energies: Mapping[Kind, Sequence[ScanEnergy]]) -> Number:
     """Share of the intervals that contain the truth, of the scans that show their roll-off least.
 
     The error is half of the 95% interval of the binomial distribution, taken as normal.

@@ -15,7 +15,8 @@ from studies.accuracy.energies import (
     KINDS,
     PIXEL,
     SIDE,
-    measured_scan,
+    scan_energy,
+    synthetic_surface,
 )
 
 
@@ -33,14 +34,14 @@ def surface_of():
         with pytest.MonkeyPatch.context() as patch:
             patch.setattr(draws, "BATCHES", (1,))
             patch.setattr(draws, "BATCH", 2**10)
-            return measured_scan(kind(name), 0)
+            return synthetic_surface(kind(name), 0)
 
     return name_and_seed
 
 
 def ends(result):
     """Causes of the ends of the first scan, and these in pixels and sides."""
-    low, high = result.surface.scans[0].band.ends
+    low, high = result.scans[0].band.ends
     return low.cause, low.wavelength / PIXEL, high.cause, SIDE / high.wavelength
 
 
@@ -64,16 +65,14 @@ def test_waves_that_a_tip_shapes_are_not_trusted_and_continued(surface_of):
     cause, pixels, *_ = ends(result)
     assert cause == "tip"
     assert 4 < pixels < 60
-    assert result.covers
-    recorded, estimated = result.surface.recorded, result.surface.half_derivative
+    assert scan_energy(result).covers
+    recorded, estimated = result.recorded, result.half_derivative
     assert 0.1 * estimated.value < recorded.value < estimated.value
-    assert any(
-        "of e_el is measured" in remark.sentence for remark in spectrum_remarks(result.surface)
-    )
+    assert any("of e_el is measured" in remark.sentence for remark in spectrum_remarks(result))
 
 
 def test_grooves_are_no_shifted_rows_and_told(surface_of):
-    [scan] = surface_of("self-affine, H = 0.8").surface.scans
+    [scan] = surface_of("self-affine, H = 0.8").scans
     heights = scan.measurement.heights
     assert scan.band.periodic[0] <= 0.5
     grooves = 3 * heights.std() * np.sin(2 * np.pi * 12 * np.arange(len(heights)) / len(heights))
@@ -86,7 +85,7 @@ def test_grooves_are_no_shifted_rows_and_told(surface_of):
 
 
 def test_the_noise_of_a_scan_is_found_and_ends_its_band(surface_of, rng):
-    [scan] = surface_of("self-affine, H = 0.8").surface.scans
+    [scan] = surface_of("self-affine, H = 0.8").scans
     heights = scan.measurement.heights
     noise = 0.6 * heights.std() * rng.standard_normal(heights.shape)
     band = analysed_scan(replace(scan.measurement, heights=heights + noise)).band
@@ -97,7 +96,7 @@ def test_the_noise_of_a_scan_is_found_and_ends_its_band(surface_of, rng):
 
 
 def test_shifted_rows_are_found_and_left_out(surface_of, rng):
-    surface = surface_of("self-affine, H = 0.8").surface
+    surface = surface_of("self-affine, H = 0.8")
     [scan] = surface.scans
     heights = scan.measurement.heights
     shifts = 0.5 * heights.std() * rng.standard_normal((1, heights.shape[1]))
@@ -114,16 +113,16 @@ def test_form_that_levelling_leaves_is_found(surface_of):
     cause, _, reason, sides = ends(surface_of("form that is left"))
     assert (cause, reason) == ("pixels", "form")
     assert 2.5 < sides < 6
-    assert surface_of("form that is left").ratio.value == pytest.approx(1, abs=0.3)
+    assert scan_energy(surface_of("form that is left")).ratio.value == pytest.approx(1, abs=0.3)
 
 
 def test_a_density_that_ends_is_not_continued(surface_of):
     result = surface_of("end at four pixels")
-    assert result.surface.joint.spectrum.short_cutoff == pytest.approx(4 * PIXEL, rel=0.15)
+    assert result.joint.spectrum.short_cutoff == pytest.approx(4 * PIXEL, rel=0.15)
 
 
 def test_scans_that_agree_join_and_those_that_do_not_are_told(surface_of):
-    [scan] = surface_of("self-affine, H = 0.8").surface.scans
+    [scan] = surface_of("self-affine, H = 0.8").scans
     path = scan.measurement.path.with_name("other.al3d")
     rough = replace(scan.measurement, heights=3 * scan.measurement.heights, path=path)
     joint = joint_spectrum([scan, analysed_scan(rough)], numbers=(1,))
@@ -141,21 +140,21 @@ def test_scans_that_agree_join_and_those_that_do_not_are_told(surface_of):
 
 
 def test_limits_that_are_named_stand_in_place_of_those_that_are_found(surface_of):
-    [scan] = surface_of("self-affine, H = 0.8").surface.scans
+    [scan] = surface_of("self-affine, H = 0.8").scans
     band = analysed_scan(scan.measurement, shortest=8 * PIXEL, longest=SIDE / 3).band
     assert [limit.cause for limit in band.ends] == ["named", "named"]
     assert [limit.wavelength for limit in band.ends] == [8 * PIXEL, SIDE / 3]
 
 
 def test_a_shortest_wave_that_no_points_hold_is_refused(surface_of):
-    [scan] = surface_of("self-affine, H = 0.8").surface.scans
+    [scan] = surface_of("self-affine, H = 0.8").scans
     assert analysed_scan(scan.measurement, shortest=2 * PIXEL).band.shortest.cause == "named"
     with pytest.raises(ValueError, match=r"--shortest is .*; name that or more"):
         analysed_scan(scan.measurement, shortest=1.9 * PIXEL)
 
 
 def test_a_band_of_less_than_an_octave_is_refused(surface_of):
-    [scan] = surface_of("self-affine, H = 0.8").surface.scans
+    [scan] = surface_of("self-affine, H = 0.8").scans
     with pytest.raises(ValueError, match=r"less than an octave; use a better scan, or name"):
         analysed_scan(scan.measurement, shortest=SIDE / 3)
 
@@ -165,7 +164,7 @@ def test_intervals_of_distorted_scans_hold_the_truth(surface_of):
         *("self-affine, H = 0.8", "optic, Gaussian", "noise", "rows that are shifted"),
         *("end at four pixels", "oblong pixels", "missing points"),
     )
-    results = [surface_of(name) for name in names]
+    results = [scan_energy(surface_of(name)) for name in names]
     assert all(result.ratio.low > 0 for result in results)
     assert np.mean([result.covers for result in results]) > 0.85
     assert np.median([abs(result.ratio.value - 1) for result in results]) < 0.2
@@ -173,7 +172,7 @@ def test_intervals_of_distorted_scans_hold_the_truth(surface_of):
 
 def test_surfaces_that_are_not_gaussian_are_told_and_known_less_well(surface_of):
     film, deep, scanned = (
-        surface_of(name).surface.scans[0]
+        surface_of(name).scans[0]
         for name in ("self-affine, H = 0.8", "deep scratches", "deep scratches, tip of 1 um")
     )
     assert film.unevenness == 0.0
@@ -188,7 +187,11 @@ def test_surfaces_that_are_not_gaussian_are_told_and_known_less_well(surface_of)
 
 @pytest.mark.slow
 def test_intervals_of_two_hundred_scans_hold_the_truth():
-    every = [(kind, measured_scan(kind, number)) for kind in KINDS for number in range(12)]
+    every = [
+        (kind, scan_energy(synthetic_surface(kind, number)))
+        for kind in KINDS
+        for number in range(12)
+    ]
     assert len(every) > 200
     assert np.median([abs(scan.ratio.value - 1) for _, scan in every]) < 0.2
     assert np.mean([scan.covers for _, scan in every]) >= 0.9

@@ -11,7 +11,7 @@ from crackfront.measured.prediction.prediction import check_and_predict
 from crackfront.measured.spectrum import draws, quadrature
 from crackfront.measured.spectrum.draws import ORDERS, mean_squares
 from crackfront.measured.spectrum.measured_surface import measured_surface
-from studies.accuracy.energies import KINDS, measured_scan
+from studies.accuracy.energies import KINDS, synthetic_surface
 from tests.commands import slow
 from tests.measured.made import DETAIL, OVERVIEW, SCENE, shipped_surface
 
@@ -40,7 +40,7 @@ BY_NIGHT = (
 )
 FILES = {"detail": [DETAIL], "overview": [OVERVIEW], "both": [DETAIL, OVERVIEW]}
 MEASURED = {name: lambda files=files: shipped_surface(*files) for name, files in FILES.items()} | {
-    kind.name: lambda kind=kind: measured_scan(kind, 0).surface
+    kind.name: lambda kind=kind: synthetic_surface(kind, 0)
     for kind in KINDS
     if kind.name in BY_NIGHT
 }
