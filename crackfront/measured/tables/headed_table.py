@@ -69,9 +69,10 @@ def table_of_numbers(path: Path) -> Table:
     names = _names(lines[filled[place - 1]], separator, n_column) if place else []
     headings = tuple(map(heading, names))
     if place > 1 and names and are_units(names):
-        named = _names(lines[filled[place - 2]], separator, len(names))
-        if len(named) == len(names):
-            headings = headings_with_units(named, names)
+        units = names
+        names = _names(lines[filled[place - 2]], separator, len(units))
+        if len(names) == len(units):
+            headings = headings_with_units(names, units)
     rows = list(_rows(path, lines, first, separator))
     _check_rows(path, rows, separator, len(headings))
     return _table(path, rows, separator, headings)
@@ -241,11 +242,14 @@ def _names(line: str, separator: str | None, n_column: int) -> list[str]:
 
 def _is_row(cells: Sequence[str], names: Sequence[str]) -> bool:
     """Whether cells are two numbers or more, or below headings a number next to empty cells."""
-    is_value = [is_number(cell) or (cell != "" and is_without_value(cell)) for cell in cells]
-    is_all = sum(is_value) == sum(map(bool, cells))
-    has_names = _has_names(cells, names) and not any(map(is_number, names))
-    fewest = 1 if is_all and has_names and len(cells) > 1 else 2
-    return sum(is_value) >= fewest and (is_all or has_names)
+    n_filled = sum(cell != "" for cell in cells)
+    n_value = sum(is_number(cell) or (cell != "" and is_without_value(cell)) for cell in cells)
+    has_headings = _has_names(cells, names) and not any(map(is_number, names))
+    if n_value < n_filled:
+        return n_value >= 2 and has_headings
+    if has_headings and len(cells) > 1:
+        return n_value >= 1
+    return n_value >= 2
 
 
 def _has_names(cells: Sequence[str], names: Sequence[str]) -> bool:

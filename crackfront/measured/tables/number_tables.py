@@ -273,21 +273,25 @@ def _plain_cells(cells: Sequence[str]) -> list[str]:
 
 def _with_point(path: Path, place: int, line: str, sign: str | None) -> str:
     """A line above rows with points as decimals; its numbers must not have two readings."""
-    named = _NUMBER_OF_NAME.search(line)
-    if named is None:
+    match = _NUMBER_OF_NAME.search(line)
+    if match is None:
         return line
-    text = named[1]
-    n_comma, n_point = text.count(","), text.count(".")
-    may_be_thousands = _THOUSANDS.fullmatch(text) is not None
-    if not n_comma and (n_point > 1 or sign != "," or not may_be_thousands):
-        return line  # A number as every reader understands it, a date or a version.
-    if n_comma == 1 and not n_point and (sign == "," or (sign is None and not may_be_thousands)):
-        start, end = named.span(1)
-        return line[:start] + text.replace(",", ".") + line[end:]
-    wrong = "the rows have points" if sign == "." else "it has two readings"
+    number = match[1]
+    n_comma, n_point = number.count(","), number.count(".")
+    may_be_thousands = _THOUSANDS.fullmatch(number) is not None
+    if n_comma == 0:
+        is_date_or_version = n_point > 1
+        if is_date_or_version or sign != "," or not may_be_thousands:
+            return line
+    elif n_comma == 1 and n_point == 0:
+        is_decimal_comma = sign == "," or (sign is None and not may_be_thousands)
+        if is_decimal_comma:
+            start, end = match.span(1)
+            return line[:start] + number.replace(",", ".") + line[end:]
+    problem = "the rows have points" if sign == "." else "it has two readings"
     raise ValueError(
-        f"{path}, line {place + 1}: the number is {text!r}, and {wrong}; write the head and the "
-        "rows with points, as in 20.9"
+        f"{path}, line {place + 1}: the number is {number!r}, and {problem}; write the head and "
+        "the rows with points, as in 20.9"
     )
 
 
