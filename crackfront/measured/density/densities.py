@@ -227,10 +227,10 @@ def stripes(waves: Periodogram, shortest: float) -> tuple[int, ...]:
     number = np.bincount(bins[off_axes], count[off_axes], n_bin)
     axes = []
     for axis, step in enumerate(waves.steps):
-        chosen = waves.near_axis(axis) & inside & (wavevector > (_FIRST_ON_AXIS - 0.5) * step)
-        chosen &= number[bins] > 0
-        ratio = waves.power[chosen] * number[bins[chosen]] / power[bins[chosen]]
-        modes = np.sum(count[chosen]) / (2 * waves.dependence)
+        near_axis = waves.near_axis(axis) & inside & (wavevector > (_FIRST_ON_AXIS - 0.5) * step)
+        near_axis &= number[bins] > 0
+        ratio = waves.power[near_axis] * number[bins[near_axis]] / power[bins[near_axis]]
+        modes = np.sum(count[near_axis]) / (2 * waves.dependence)
         if modes < 4:
             continue
         # The median, because grooves are a single strong wave. Powers are distributed
@@ -261,12 +261,12 @@ def periodic_part(waves: Periodogram, shortest: float, longest: float) -> tuple[
 
 
 def energy_share(
-    waves: Periodogram, chosen: NDArray[np.bool_], shortest: float, longest: float
+    waves: Periodogram, selected: NDArray[np.bool_], shortest: float, longest: float
 ) -> float:
     """Part of e_el within bounds in some of the waves."""
     inside = _between(waves.wavevector, 2 * np.pi / longest, 2 * np.pi / shortest)
     energy = np.where(inside, waves.count * waves.power * waves.wavevector, 0.0)
-    return float(np.sum(energy, where=chosen) / np.sum(energy))
+    return float(np.sum(energy, where=selected) / np.sum(energy))
 
 
 def anisotropy(waves: Periodogram, shortest: float) -> tuple[float, float]:

@@ -138,41 +138,57 @@ def steady_part(loop: CalibratedLoop, contact: Contact, touching: Branches) -> S
 
     Raises ValueError if a contact is larger than the sphere, or too few rows are averaged.
     """
-    radius, sphere_radius, window = contact.radius, loop.rig.radius, loop.rig.window
+    radius, window = contact.radius, loop.rig.window
     approach, retraction = (rows[np.isfinite(contact.work_of_adhesion[rows])] for rows in touching)
-    in_contact = np.concatenate([approach, retraction])
-    if in_contact.size and np.max(radius[in_contact]) > sphere_radius:
-        largest = prefixed("m", float(np.max(radius[in_contact])))
+    in_contact = radius[np.concatenate([approach, retraction])]
+    _check_below_sphere(in_contact, loop.rig.radius)
+    has_both = all(rows.size for rows in touching)
+    # The row of the turn belongs to both branches.
+    if has_both and min(approach.size, retraction.size) <= 1:
+        raise ValueError("the loop lacks an approach or a retraction in contact; record both")
+    if window is None:
+        averaged, window = _steady_rows(radius, approach, retraction)
+        branch = "that both pass after" if has_both else "after"
+        range_of_radii = f"{branch} the edge has travelled"
+        advice = "retract further, record more rows, check the modulus, or name a --window"
+    else:
+        averaged = within(radius, (approach, retraction), window)
+        range_of_radii = "within the window"
+        low, high = (prefixed("m", float(end(in_contact))) for end in (np.min, np.max))
+        advice = f"choose another one; the radii are {low} to {high}"
+    _check_enough_rows(touching, averaged, range_of_radii, advice)
+    return SteadyPart((approach, retraction), averaged, window)
+
+
+def _check_below_sphere(radii: Array, sphere_radius: float) -> None:
+    """Raise if a contact is larger than the sphere."""
+    if radii.size and np.max(radii) > sphere_radius:
+        largest = prefixed("m", float(np.max(radii)))
         raise ValueError(
             f"the contact radius reaches {largest} on a sphere of "
             f"{prefixed('m', sphere_radius)}; check the units of both"
         )
-    present = [name for name, rows in zip(_BRANCH_NAMES, touching, strict=True) if rows.size]
-    # The row of the turn belongs to both branches.
-    if min(approach.size, retraction.size) <= 1 and len(present) == 2:
-        raise ValueError("the loop lacks an approach or a retraction in contact; record both")
-    if window is None:
-        averaged, window = _steady_rows(radius, approach, retraction)
-        where = "that both pass after the edge has travelled"
-        if len(present) == 1:
-            where = "after the edge has travelled"
-        advice = "retract further, record more rows, check the modulus, or name a --window"
-    else:
-        averaged = within(radius, (approach, retraction), window)
-        where = "within the window"
-        low, high = (prefixed("m", float(end(radius[in_contact]))) for end in (np.min, np.max))
-        advice = f"choose another one; the radii are {low} to {high}"
-    counts = [rows.size for rows, touched in zip(averaged, touching, strict=True) if touched.size]
-    if min(counts) < _FEWEST_ROWS:
-        numbers = " and ".join(map(str, counts)) if any(counts) else "no"
-        verb, per_branch = ("have", " each") if len(present) == 2 else ("has", "")
-        if max(counts) >= _FEWEST_ROWS:
-            advice += ", or evaluate the other branch alone by --segment"
-        raise ValueError(
-            f"{' and '.join(present)} {verb} {numbers} rows at contact radii {where}; "
-            f"{_FEWEST_ROWS}{per_branch} are needed, so {advice}"
-        )
-    return SteadyPart((approach, retraction), averaged, window)
+
+
+def _check_enough_rows(
+    touching: Branches, averaged: Branches, range_of_radii: str, advice: str
+) -> None:
+    """Raise if a branch that touches has too few rows to average."""
+    counts = {
+        name: rows.size
+        for name, rows, touched in zip(_BRANCH_NAMES, averaged, touching, strict=True)
+        if touched.size
+    }
+    if min(counts.values()) >= _FEWEST_ROWS:
+        return
+    numbers = " and ".join(map(str, counts.values())) if any(counts.values()) else "no"
+    verb, per_branch = ("have", " each") if len(counts) == 2 else ("has", "")
+    if max(counts.values()) >= _FEWEST_ROWS:
+        advice += ", or evaluate the other branch alone by --segment"
+    raise ValueError(
+        f"{' and '.join(counts)} {verb} {numbers} rows at contact radii {range_of_radii}; "
+        f"{_FEWEST_ROWS}{per_branch} are needed, so {advice}"
+    )
 
 
 def _steady_rows(

@@ -50,10 +50,10 @@ def chosen_loop(recording: Recording, number: int | None) -> Recording:
     if number is None and n_loop == 1:
         return recording
     if number is None or not 1 <= number <= n_loop:
-        chosen = "" if number is None else f" and lacks number {number}"
+        absent = "" if number is None else f" and lacks number {number}"
         loops = counted(n_loop, "loop")
         raise ValueError(
-            f"the recording contains {loops}{chosen}; choose one, 1 to {n_loop}, by --loop "
+            f"the recording contains {loops}{absent}; choose one, 1 to {n_loop}, by --loop "
             "(loop_number)"
         )
     between = [_row_between(smooth_path, rows, *pair) for pair in itertools.pairwise(turns)]

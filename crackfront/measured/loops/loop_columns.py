@@ -34,13 +34,13 @@ Places = dict[str, int]
 """Place of each column in the table, by its name in a loop."""
 
 
-def column_places(table: Table, named: Mapping[str, str]) -> tuple[Places, ...]:
+def column_places(table: Table, names: Mapping[str, str]) -> tuple[Places, ...]:
     """Places of the columns of a loop: once, or for approach and retraction side by side.
 
     Parameters
     ----------
     table : Table
-    named : mapping
+    names : mapping
         Headings of columns that have other names than usual: of `force`, `radius`, `displacement`.
 
     Raises
@@ -48,7 +48,7 @@ def column_places(table: Table, named: Mapping[str, str]) -> tuple[Places, ...]:
     ValueError
         If a named column does not exist, or several columns may be meant.
     """
-    candidates = {name: _candidates(table, named, name) for name in UNITS}
+    candidates = {name: _candidates(table, names, name) for name in UNITS}
     candidates = {name: places for name, places in candidates.items() if places}
     n_branch = max(map(len, candidates.values()), default=1)
     if n_branch == 2 and _are_branches(table, candidates):
@@ -78,19 +78,19 @@ def unused_displacement(table: Table, places: Places) -> str:
     return ""
 
 
-def _candidates(table: Table, named: Mapping[str, str], name: str) -> list[int]:
+def _candidates(table: Table, names: Mapping[str, str], name: str) -> list[int]:
     """Columns that may be one column of a loop, in the order of the table."""
-    requested = {column: text.strip().lower() for column, text in named.items()}
+    requested = {column: text.strip().lower() for column, text in names.items()}
     written = [{heading.text.lower(), heading.plain_name} for heading in table.headings]
     if name in requested:
-        places = [n for n, names in enumerate(written) if requested[name] in names]
+        places = [n for n, texts in enumerate(written) if requested[name] in texts]
         if not places:
             raise ValueError(
-                f"{table.path} lacks a column {named[name]!r}; its headings are "
+                f"{table.path} lacks a column {names[name]!r}; its headings are "
                 f"{listed(table.headings)}"
             )
         return places
-    free = [n for n, names in enumerate(written) if not names & {*requested.values()}]
+    free = [n for n, texts in enumerate(written) if not texts & {*requested.values()}]
     places = [n for n in free if _is_named(table.headings[n], _NAMES[name])]
     if name == "displacement" and not places:
         places = [n for n in free if _is_named(table.headings[n], _PIEZO)]

@@ -20,7 +20,7 @@ from crackfront.measured.tables.parsed_table import Table
 from crackfront.surfaces.written_units import is_unit, unit_value
 
 
-def read_recording(path: Path, named: Mapping[str, str], units: Mapping[str, str]) -> Recording:
+def read_recording(path: Path, names: Mapping[str, str], units: Mapping[str, str]) -> Recording:
     """Read the columns of a loop from a table.
 
     Parameters
@@ -29,7 +29,7 @@ def read_recording(path: Path, named: Mapping[str, str], units: Mapping[str, str
         Text with a line of headings: separated by tabs, semicolons, commas or spaces, with decimal
         points or commas, in any encoding that scans may have; lines before the headings are
         skipped.
-    named : mapping
+    names : mapping
         Headings of columns that have other names than usual: of `force`, `radius`, `displacement`.
     units : mapping
         Units of columns whose headings have none.
@@ -47,7 +47,7 @@ def read_recording(path: Path, named: Mapping[str, str], units: Mapping[str, str
         If the file cannot be opened.
     """
     table = _table(path)
-    blocks = column_places(table, named)
+    blocks = column_places(table, names)
     used = blocks[0]
     for name in units:
         if name not in used:
@@ -169,7 +169,7 @@ def _converted(name: str, heading: Heading, values: Array, unit: str) -> Array:
 
 def _is_area(name: str, heading: Heading, unit: str) -> bool:
     """Whether a column of radii has areas, by its heading or, if this is not clear, its unit."""
-    named = heading.plain_name
-    if name != "radius" or re.search("radius|diameter|durchmesser", named):
+    column_name = heading.plain_name
+    if name != "radius" or re.search("radius|diameter|durchmesser", column_name):
         return False
-    return bool(re.search("area|fläche|flaeche", named)) or is_unit(unit, "m^2")
+    return bool(re.search("area|fläche|flaeche", column_name)) or is_unit(unit, "m^2")

@@ -67,10 +67,10 @@ class Recording:
                 "not be negative, so check whether two headings are exchanged"
             )
 
-    def rows(self, chosen: slice) -> Recording:
+    def rows(self, places: slice) -> Recording:
         """Some successive rows."""
         force, radius, displacement = (
-            None if column is None else column[chosen]
+            None if column is None else column[places]
             for column in (self.force, self.radius, self.displacement)
         )
         return replace(self, force=force, radius=radius, displacement=displacement)

@@ -116,10 +116,10 @@ def _name_scans(figure: Figure | SubFigure, panels: Sequence[Axes]) -> None:
 def _name_curve(axes: Axes) -> None:
     """Explain the curve of a density below it."""
     handles, names = axes.get_legend_handles_labels()
-    chosen = [place for place, name in enumerate(names) if name in _CURVES]
+    curves = [place for place, name in enumerate(names) if name in _CURVES]
     axes.legend(
-        [handles[place] for place in chosen],
-        [names[place] for place in chosen],
+        [handles[place] for place in curves],
+        [names[place] for place in curves],
         loc="lower left",
         **ON_WHITE,
     )
@@ -225,18 +225,18 @@ def _draw_isotropic(axes: Axes, surface: MeasuredSurface, _: Prediction) -> None
     axes.plot(shown, spectrum.density(shown), color=BLACK, label=_SPECTRUM, zorder=4)
     axes.set_ylim(0.02 * np.min(low), 5 * np.max(high))
     _add_scales(axes, surface)
-    _draw_limits(axes, surface, named=False)
+    _draw_limits(axes, surface, with_causes=False)
     _name_curve(axes)
 
 
-def _draw_limits(axes: Axes, surface: MeasuredSurface, *, named: bool) -> None:
-    """Ends of the trusted bands, with their causes if `named`."""
+def _draw_limits(axes: Axes, surface: MeasuredSurface, *, with_causes: bool) -> None:
+    """Ends of the trusted bands, and their causes if `with_causes`."""
     for index, scan in enumerate(surface.scans):
         colour = spectrum_colour(index)
         for limit in scan.band.ends:
             wavevector = 2 * np.pi / limit.wavelength
             axes.axvline(wavevector, color=colour, linewidth=0.5, dashes=(2, 2), zorder=1)
-            if not named:
+            if not with_causes:
                 continue
             alignment, shift = "left", 1.5
             if wavevector > _LATE_LIMIT * axes.get_xlim()[1]:
@@ -263,7 +263,7 @@ def _draw_profiles(axes: Axes, surface: MeasuredSurface, _: Prediction) -> None:
     axes.plot(wavevector, projection, color=BLACK, label=_PROJECTION, zorder=4)
     low, high = axes.get_ylim()
     axes.set_ylim(low, high * (high / low) ** (0.15 * len(surface.scans)))
-    _draw_limits(axes, surface, named=True)
+    _draw_limits(axes, surface, with_causes=True)
     axes.set_ylabel(PROFILE_LABEL)
     _name_curve(axes)
 

@@ -73,9 +73,9 @@ def series_figure(points: Sequence[SeriesPoint], name: str) -> Figure:
         axes.margins(y=0.12)
         axes.set_xlim(-0.6, len(points) - 0.4)
         axes.set_ylim(bottom=min(0.0, axes.get_ylim()[0]))
-        named = points if len(points) <= _MOST_NAMED else ()
-        names = [point.name for point in named]
-        axes.set_xticks(range(len(named)), names, rotation=45, ha="right")
+        labelled = points if len(points) <= _MOST_NAMED else ()
+        names = [point.name for point in labelled]
+        axes.set_xticks(range(len(labelled)), names, rotation=45, ha="right")
         axes.tick_params(axis="x", top=False, length=0)
         _add_legend(axes, groups, any(math.isfinite(point.measured.value) for point in points))
         explain(figure, _explanation(points, _BOUNDS.get(name, "")))

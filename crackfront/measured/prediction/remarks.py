@@ -94,8 +94,8 @@ class Verdict:
 
     def with_severity(self, *severities: Severity) -> tuple[Remark, ...]:
         """Remarks with some severities, the most severe first."""
-        chosen = [remark for remark in self.remarks if remark.severity in severities]
-        return tuple(by_severity(chosen))
+        remarks = [remark for remark in self.remarks if remark.severity in severities]
+        return tuple(by_severity(remarks))
 
     @property
     def outcome(self) -> Outcome:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -100,15 +100,8 @@ def adhesion_by_law(surface: Surface, scales: Scales, adhesion_error: float = 0.
         excess=central.excess,
         w_appr=_branch("approach", -1.0, central, by_energy, by_adhesion),
         w_retr=_branch("retraction", 1.0, central, by_energy, by_adhesion),
-        hysteresis=_hysteresis(
-            lambda at_energy: at_energy.corrected(at_energy.factors.both),
-            central,
-            by_energy,
-            by_adhesion,
-        ),
-        front_hysteresis=_hysteresis(
-            lambda at_energy: at_energy.factors.both, central, by_energy, by_adhesion
-        ),
+        hysteresis=_hysteresis(central, by_energy, by_adhesion, is_corrected=True),
+        front_hysteresis=_hysteresis(central, by_energy, by_adhesion, is_corrected=False),
     )
 
 
@@ -175,21 +168,29 @@ def _branch(
 
 
 def _hysteresis(
-    corrected_factor: Callable[[_FactorsAtEnergy], Estimate[float]],
-    central: _FactorsAtEnergy,
-    *varied: Sequence[_FactorsAtEnergy],
+    central: _FactorsAtEnergy, *varied: Sequence[_FactorsAtEnergy], is_corrected: bool
 ) -> Estimate[float]:
-    """Hysteresis 2 k e_el, with relative errors of independent causes in quadrature."""
-    factor = corrected_factor(central)
-    return _in_quadrature(
-        math.log(2 * factor.value * central.energy),
-        [_log(2 * end * central.energy) for end in (factor.low, factor.high)],
-        *(
-            [_log(2 * corrected_factor(point).value * point.energy) for point in points]
-            for points in varied
-            if points
-        ),
-    ).each(math.exp)
+    """Hysteresis 2 k e_el, with relative errors of independent causes in quadrature.
+
+    The excess of the crack front is divided out if `is_corrected`.
+    """
+
+    def factor_at(at_energy: _FactorsAtEnergy) -> Estimate[float]:
+        factor = at_energy.factors.both
+        return at_energy.corrected(factor) if is_corrected else factor
+
+    def logarithm(factor: float, energy: float) -> float:
+        return _log(2 * factor * energy)
+
+    factor = factor_at(central)
+    by_factor = [logarithm(end, central.energy) for end in (factor.low, factor.high)]
+    by_cause = [
+        [logarithm(factor_at(point).value, point.energy) for point in points]
+        for points in varied
+        if points
+    ]
+    value = math.log(2 * factor.value * central.energy)
+    return _in_quadrature(value, by_factor, *by_cause).each(math.exp)
 
 
 def least_work_of_adhesion(surface: Surface, scales: Scales) -> float:

@@ -257,8 +257,10 @@ def _check_single_surface(values: SampleOptions, row: Mapping[str, Any]) -> None
         "rms": bool(named_options(SelfAffineOptions, row)),
     }
     if sum(ways.values()) != 1:
-        named = " and ".join(name for name, is_named in ways.items() if is_named) or "nothing"
-        raise ValueError(f"the surface is given by {named}; name its scans, or its psd, or its rms")
+        present = " and ".join(name for name, is_named in ways.items() if is_named) or "nothing"
+        raise ValueError(
+            f"the surface is given by {present}; name its scans, or its psd, or its rms"
+        )
 
 
 def _check_effect(

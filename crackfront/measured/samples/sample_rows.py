@@ -75,12 +75,12 @@ def sample_rows(path: Path, names: Collection[str]) -> list[SampleRow]:
 def _table_rows(path: Path, names: Collection[str]) -> Iterator[SampleRow]:
     """Line and content of every row of a text with headings."""
     table = table_of_texts(path)
-    where = f"{path}, line {len(table.above) + 1}"
-    columns = [_name_and_unit(column, names, where) for column in table.headings]
+    location = f"{path}, line {len(table.above) + 1}"
+    columns = [_name_and_unit(column, names, location) for column in table.headings]
     counts = Counter(name for name, _ in columns if name)
     for name, count in counts.items():
         if count > 1:
-            raise ValueError(f"{where}: two columns are called {name!r}; rename one of them")
+            raise ValueError(f"{location}: two columns are called {name!r}; rename one of them")
     cells_of_rows = [
         {name: cell for (name, _), cell in zip(columns, cells, strict=True) if name and cell}
         for cells in table.cells.to_numpy()
@@ -135,7 +135,7 @@ def _numbers(table: Table, rows: Sequence[dict[str, str]]) -> Iterator[tuple[int
                 yield line, name, cell
 
 
-def _name_and_unit(column: Heading, names: Collection[str], where: str) -> tuple[str, str]:
+def _name_and_unit(column: Heading, names: Collection[str], location: str) -> tuple[str, str]:
     """Name of an option and unit in a heading, or any other heading as it is.
 
     The unit must not begin with a number.
@@ -145,7 +145,7 @@ def _name_and_unit(column: Heading, names: Collection[str], where: str) -> tuple
         return column.text, ""
     if re.match(r"[-+.,]?\d", column.unit):
         raise ValueError(
-            f"{where}: the unit of the column {column.name!r} is {column.unit!r}, which begins "
+            f"{location}: the unit of the column {column.name!r} is {column.unit!r}, which begins "
             "with a number; write a unit alone, as in mJ/m2, and the cells in it"
         )
     return name, column.unit
@@ -163,8 +163,8 @@ def _yaml_samples(path: Path) -> list[Any]:
     except UnicodeDecodeError as error:
         raise ValueError(f"{path} is not a text in UTF-8; store it as UTF-8") from error
     except MarkedYAMLError as error:
-        where = "" if error.problem_mark is None else f", line {error.problem_mark.line + 1}"
-        raise ValueError(f"{path}{where}: this is not YAML: {error.problem}; correct it") from error
+        line = "" if error.problem_mark is None else f", line {error.problem_mark.line + 1}"
+        raise ValueError(f"{path}{line}: this is not YAML: {error.problem}; correct it") from error
     except (YAMLError, ValueError) as error:
         # A sign that YAML does not allow, or a date or a number that cannot be read.
         raise ValueError(f"{path} is not YAML: {str(error).splitlines()[0]}; correct it") from error
@@ -186,16 +186,16 @@ def _yaml_rows(path: Path, names: Collection[str]) -> Iterator[SampleRow]:
     """Line and content of every sample of a YAML file."""
     for row in _yaml_samples(path):
         line = row.lc.line + 1
-        where = f"{path}, line {line}"
+        location = f"{path}, line {line}"
         options: dict[str, Any] = {}
         further: dict[str, str] = {}
         for key, value in row.items():
             if value is None:
                 continue
-            name, unit = _name_and_unit(heading(str(key)), names, where)
+            name, unit = _name_and_unit(heading(str(key)), names, location)
             if not _is_flat(value):
                 raise ValueError(
-                    f"{where}: {name} is a value of many parts; write one value, or a list"
+                    f"{location}: {name} is a value of many parts; write one value, or a list"
                 )
             if name not in names:
                 further[name] = str(value)

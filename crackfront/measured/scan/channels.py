@@ -77,12 +77,12 @@ def _default(reader: Any) -> int | None:
     if reader.format() not in _BARE_ARRAYS or len(channels) < 2:
         return int(reader.default_channel.index) if channels else None
     lengths = [channel for channel in channels if _kind(channel) == "height"]
-    named = [
+    likely = [
         channel
         for channel in lengths
         if _HEIGHTS.search(channel.name) and not is_doubtful(channel.name)
     ]
-    height_channels = named or (lengths if reader.format() == "nc" else [])
+    height_channels = likely or (lengths if reader.format() == "nc" else [])
     return int(height_channels[0].index) if len(height_channels) == 1 else None
 
 
@@ -99,22 +99,22 @@ def chosen_channel(path: Path, reader: Any, requested: str | None) -> tuple[Any,
             f"{path}, read as {reader.format()}, lacks an array of numbers in two dimensions that "
             "may have heights; export the heights as one, not intensities or a picture alone"
         )
-    chosen = _requested(path, channels, requested)
-    if chosen.quantity != "height":
+    description = _requested(path, channels, requested)
+    if description.quantity != "height":
         height_channels = [channel for channel in channels if channel.quantity == "height"]
         raise ValueError(
-            f"{path}: channel {chosen.name!r} contains {chosen.quantity}, not heights; "
+            f"{path}: channel {description.name!r} contains {description.quantity}, not heights; "
             + (_choice(height_channels) if height_channels else "export the channel of the heights")
         )
-    several = f", {chosen.number} of {len(channels)}" if len(channels) > 1 else ""
-    [channel] = [channel for channel in reader.channels if channel.index == chosen.number]
+    several = f", {description.number} of {len(channels)}" if len(channels) > 1 else ""
+    [channel] = [channel for channel in reader.channels if channel.index == description.number]
     n_object = _stated_by_sur(channel, "nb_objects")
     n_heights = sum(channel.quantity == "height" for channel in channels)
     if n_heights > 1 and reader.format() not in _BARE_ARRAYS:
         several += f" ({n_heights} of heights; --channel chooses)"
     if n_object > 1:
         several += f", the first of {n_object} objects in the file"
-    return channel, f"{chosen.name!r}{several}"
+    return channel, f"{description.name!r}{several}"
 
 
 def _requested(path: Path, channels: Sequence[Channel], requested: str | None) -> Channel:
@@ -127,14 +127,14 @@ def _requested(path: Path, channels: Sequence[Channel], requested: str | None) -
                 f"the heights; {_choice(channels)}"
             )
         return default
-    named = [channel for channel in channels if channel.name == requested]
-    named = named or [channel for channel in channels if str(channel.number) == requested]
-    if len(named) != 1:
+    matches = [channel for channel in channels if channel.name == requested]
+    matches = matches or [channel for channel in channels if str(channel.number) == requested]
+    if len(matches) != 1:
         raise ValueError(
-            f"{path} has {'several channels' if named else 'no channel'} {requested!r}; "
+            f"{path} has {'several channels' if matches else 'no channel'} {requested!r}; "
             f"{_choice(channels)}"
         )
-    return named[0]
+    return matches[0]
 
 
 def _is_tiff(path: Path) -> bool:

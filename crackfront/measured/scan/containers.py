@@ -163,15 +163,15 @@ def chosen_surface(
             f"{path} contains {len(surfaces)} surfaces; choose one by number or name with "
             f"--surface: {listed}"
         )
-    named = [surface for surface in surfaces if requested is None or surface.name == requested]
-    if not named and requested is not None and requested.isdecimal():
-        named = list(surfaces[int(requested) : int(requested) + 1])
-    if len(named) != 1:
-        many = "several surfaces" if named else "no surface"
+    matches = [surface for surface in surfaces if requested is None or surface.name == requested]
+    if not matches and requested is not None and requested.isdecimal():
+        matches = list(surfaces[int(requested) : int(requested) + 1])
+    if len(matches) != 1:
+        many = "several surfaces" if matches else "no surface"
         raise ValueError(
             f"{path} has {many} {requested!r}; choose by number with --surface: {listed}"
         )
-    return named[0]
+    return matches[0]
 
 
 def stated_length(path: Path, member: ContainedMeasurement, name: InstrumentLength) -> float | None:

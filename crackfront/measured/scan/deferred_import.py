@@ -44,8 +44,7 @@ def import_without_executing(name: str) -> None:
 def import_without_mpi() -> None:
     """Import NuMPI with its own stub of MPI, as NuMPI does without mpi4py.
 
-    A .npy is read by all ranks of its communicator together, of which one alone would wait for
-    ever; and MPI may fail to start on nodes without jobs.
+    MPI may fail to start on nodes without jobs.
     """
     name = "NuMPI"
     if name in sys.modules or (spec := importlib.util.find_spec(name)) is None:

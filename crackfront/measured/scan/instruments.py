@@ -98,8 +98,8 @@ def _with_heights(level: Any, heights: np.ndarray[Any, Any], info: dict[str, Any
 @silenced()
 def is_stated(path: Path, channel: str | None) -> tuple[bool, bool]:
     """Whether a file states the unit and the sides of a channel."""
-    chosen, _ = chosen_channel(path, _reader(path), channel)
-    return chosen.unit is not None, is_sized(chosen)
+    stated, _ = chosen_channel(path, _reader(path), channel)
+    return stated.unit is not None, is_sized(stated)
 
 
 @silenced()

@@ -24,6 +24,9 @@ _ROUNDING = 0.6
 _MOST_ROUNDING = 0.25
 """Rounding of positions, in spacings, up to which places without a point are found."""
 
+_OFF_LINE = 1e-3
+"""Distance of points from an oblique line, in mean spacings along it, that is rounding."""
+
 _SAME_PLACE = 0.1
 """Distance of neighbours on the grid, in the largest one, that is scatter at one place."""
 
@@ -170,14 +173,21 @@ def _line_columns(columns: Sequence[Cells]) -> list[Cells] | None:
     x, y = first.astype(float), second.astype(float)
     if _is_index(first) and len(set(second)) > 1:
         return [second, heights]
-    if not np.ptp(y) > 0 or not np.ptp(x) > 0:
-        return [first if np.ptp(x) > 0 else second, heights]
-    ends = x[[0, -1]], y[[0, -1]]
-    off = (x - x[0]) * np.ptp(ends[1]) - np.abs(y - y[0]) * np.ptp(ends[0])
-    if np.any(np.abs(off) > 1e-3 * np.ptp(x) * np.ptp(y) / len(x)):
+    if not np.ptp(x) > 0:
+        return [second, heights]
+    if not np.ptp(y) > 0:
+        return [first, heights]
+    if not _is_line(x, y):
         return None
-    along = np.sign(x - x[0]) * np.hypot(x - x[0], y - y[0])
-    return [_texts(along), heights]
+    distances = np.sign(x - x[0]) * np.hypot(x - x[0], y - y[0])
+    return [_texts(distances), heights]
+
+
+def _is_line(x: Array, y: Array) -> bool:
+    """Whether points lie between the first and the last one on a line at an angle to both axes."""
+    length_x, length_y = abs(x[-1] - x[0]), abs(y[-1] - y[0])
+    departure = np.abs((x - x[0]) * length_y - np.abs(y - y[0]) * length_x)
+    return not np.any(departure > _OFF_LINE * np.ptp(x) * np.ptp(y) / len(x))
 
 
 def _is_index(cells: Cells) -> bool:
@@ -202,10 +212,10 @@ def _on_grid(
     if np.bincount(flat).max() > 1:
         order = np.argsort(flat, kind="stable")
         twice = order[1:][np.diff(flat[order]) == 0][0]
-        where = ", ".join(cells[twice] for cells in places)
+        position = ", ".join(cells[twice] for cells in places)
         raise ValueError(
-            f"{path} names the position {where} twice, or with too few digits; export each point "
-            "once, with more digits"
+            f"{path} names the position {position} twice, or with too few digits; export each "
+            "point once, with more digits"
         )
     grid: np.ma.MaskedArray[Any, Any] = np.ma.array(np.zeros(math.prod(counts)), mask=True)
     grid[flat] = heights
@@ -231,42 +241,66 @@ def _axis(path: Path, name: str, cells: Cells) -> tuple[NDArray[np.int64], float
         )
     order = np.argsort(values, kind="stable")
     positions, rounding = values[order], rounding[order]
-    gaps = np.diff(positions)
-    cluster = np.concatenate([[0], np.cumsum(gaps > _SAME_PLACE * gaps.max(initial=0.0))])
-    centres = np.bincount(cluster, positions) / np.bincount(cluster)
+    place, centres = _distinct(positions)
     if len(centres) < 2:
         return np.zeros(len(cells), dtype=np.int64), 0.0
-    counted = np.arange(len(centres))
-    slope, off = _line_through(counted, centres, positions, cluster)
-    allowed = _ROUNDING * rounding + _UNEVEN * slope
-    index = counted
-    if np.any(off > allowed):
-        index = _places_with_gaps(centres)
-        step, off_places = _line_through(index, centres, positions, cluster)
-        if (
-            index[-1] + 1 > len(index) / _FEWEST_ALONG
-            or rounding.max() > _MOST_ROUNDING * step
-            or np.any(off_places > _ROUNDING * rounding + _UNEVEN * step)
-        ):
-            worst = int(np.argmax(off - allowed))
-            raise ValueError(
-                f"{path}: the points are not equally spaced: neighbours along {name} are "
-                f"{np.diff(centres).min():.3g} to {np.diff(centres).max():.3g} apart, and "
-                f"{texts[order][worst]} is {off[worst] / slope:.2g} spacings from its place; "
-                "interpolate the heights at equal steps, or export more digits if these are rounded"
-            )
-        slope = step
+    index = np.arange(len(centres))
+    step, distances = _line_through(index, centres, positions, place)
+    allowed = _ROUNDING * rounding + _UNEVEN * step
+    if np.any(distances > allowed):
+        grid = _grid_with_gaps(centres, positions, place, rounding)
+        if grid is None:
+            farthest = int(np.argmax(distances - allowed))
+            n_spacing = distances[farthest] / step
+            raise _uneven_error(path, name, centres, texts[order][farthest], n_spacing)
+        index, step = grid
     places = np.empty(len(texts), dtype=np.int64)
-    places[order] = index[cluster]
-    return places[inverse], slope
+    places[order] = index[place]
+    return places[inverse], step
+
+
+def _distinct(positions: Array) -> tuple[NDArray[np.int64], Array]:
+    """Which of the distinct places each ascending position belongs to, and their mean positions."""
+    gaps = np.diff(positions)
+    is_next = gaps > _SAME_PLACE * gaps.max(initial=0.0)
+    place = np.concatenate([[0], np.cumsum(is_next)])
+    return place, np.bincount(place, positions) / np.bincount(place)
+
+
+def _grid_with_gaps(
+    centres: Array, positions: Array, place: NDArray[np.int64], rounding: Array
+) -> tuple[NDArray[np.int64], float] | None:
+    """Numbers of places on a grid that lacks points, and its spacing; None if there is none."""
+    index = _places_with_gaps(centres)
+    step, distances = _line_through(index, centres, positions, place)
+    if (
+        index[-1] + 1 > len(index) / _FEWEST_ALONG
+        or rounding.max() > _MOST_ROUNDING * step
+        or np.any(distances > _ROUNDING * rounding + _UNEVEN * step)
+    ):
+        return None
+    return index, step
+
+
+def _uneven_error(
+    path: Path, name: str, centres: Array, position: str, n_spacing: float
+) -> ValueError:
+    """Error at places that are not equally spaced, with the position that departs most."""
+    gaps = np.diff(centres)
+    return ValueError(
+        f"{path}: the points are not equally spaced: neighbours along {name} are "
+        f"{gaps.min():.3g} to {gaps.max():.3g} apart, and {position} is {n_spacing:.2g} spacings "
+        "from its place; interpolate the heights at equal steps, or export more digits if these "
+        "are rounded"
+    )
 
 
 def _line_through(
-    index: NDArray[np.int64], centres: Array, positions: Array, cluster: NDArray[np.int64]
+    index: NDArray[np.int64], centres: Array, positions: Array, place: NDArray[np.int64]
 ) -> tuple[float, Array]:
     """Spacing of places that have been numbered, and distances of the positions from them."""
-    slope, start = np.polyfit(index, centres, 1)
-    return float(slope), np.abs(positions - start - slope * index[cluster])
+    step, start = np.polyfit(index, centres, 1)
+    return float(step), np.abs(positions - start - step * index[place])
 
 
 def _places_with_gaps(centres: Array) -> NDArray[np.int64]:

@@ -107,12 +107,12 @@ def _chosen_series(path: Path, tables: Sequence[Table], requested: str | None) -
             )
         [series] = tables
     else:
-        chosen = [table for table, name in zip(tables, names, strict=True) if name == requested]
-        if not chosen and requested.isdecimal() and 0 < int(requested) <= len(tables):
-            chosen = [tables[int(requested) - 1]]
-        if len(chosen) != 1:
+        matches = [table for table, name in zip(tables, names, strict=True) if name == requested]
+        if not matches and requested.isdecimal() and 0 < int(requested) <= len(tables):
+            matches = [tables[int(requested) - 1]]
+        if len(matches) != 1:
             raise ValueError(f"{path} lacks a series {requested!r}; its series are {listed}")
-        [series] = chosen
+        [series] = matches
     further = " ".join(heading.text for heading in series.headings[2:])
     if series.n_column < 2 or (series.n_column > 2 and not _FURTHER_COLUMN.search(further)):
         raise ValueError(

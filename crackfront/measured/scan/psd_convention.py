@@ -165,13 +165,14 @@ def _abscissa(series: Table, unit: str, options: PsdOptions) -> tuple[PsdAbsciss
         raise ValueError(
             f"{path} states no unit of its first column; name both, as in --psd-units 1/um,um^3"
         )
-    plain = _uncounted(unit)
-    if _DEGREES.search(plain) or not is_unit(plain, "m" if abscissa == "wavelength" else "1/m"):
+    uncounted = _uncounted(unit)
+    dimension_of_abscissa = "m" if abscissa == "wavelength" else "1/m"
+    if _DEGREES.search(uncounted) or not is_unit(uncounted, dimension_of_abscissa):
         raise ValueError(
             f"{path}: the unit of the first column is {unit!r}, which is not one of a {abscissa}; "
             "name both, as in --psd-units 1/um,um^3"
         )
-    return abscissa, plain
+    return abscissa, uncounted
 
 
 def _uncounted(unit: str) -> str:
@@ -202,12 +203,12 @@ def dimension(unit: str, powers: Sequence[int]) -> int:
 def _kind(path: Path, words: str, unit: str, options: PsdOptions) -> tuple[PsdKind, float]:
     """What the density is of, and its unit in SI."""
     power = dimension(unit, (3, 4))
-    named: PsdKind | None = None
+    written: PsdKind | None = None
     if re.search(r"q\s*/\s*(π|pi)\s*+[×x*]?\s*2d", words):
-        named = "q2d"
+        written = "q2d"
     elif re.search(r"radial|\bw[_ ]?r\b", words) and power == 3:
-        named = "radial"
-    kind = options.psd_kind or named or ("1d" if power == 3 else "2d")
+        written = "radial"
+    kind = options.psd_kind or written or ("1d" if power == 3 else "2d")
     if (kind == "2d") != (power == 4):
         raise ValueError(
             f"{path}: a density of kind {kind} does not have the unit {unit}; name another of "

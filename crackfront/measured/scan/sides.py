@@ -61,19 +61,19 @@ def _corrected_sides(
             "is wrong, so name the sides, as in --size "
             f"{','.join(f'{side:g}' for side in stated)} --unit um"
         )
-    named = length_unit("--unit", options.unit)
-    return _named_sides(path, _sides(path, options.size, len(stated)), named)
+    unit = length_unit("--unit", options.unit)
+    return _named_sides(path, _sides(path, options.size, len(stated)), unit)
 
 
-def _unit(path: Path, name: str, stated: str | None, named: str | None) -> str:
+def _unit(path: Path, name: str, stated: str | None, requested: str | None) -> str:
     """Unit of length that a file states, or that an option names; both may not differ."""
-    if stated is None and named is None:
+    if stated is None and requested is None:
         raise ValueError(
             f"{path}, read as {name}, states no unit of length; name it, as in --unit um"
         )
-    unit = None if named is None else length_unit("--unit", named)
+    unit = None if requested is None else length_unit("--unit", requested)
     if stated is not None and unit is not None and unit != length_unit("", stated):
-        raise ValueError(f"{path} states its own unit, {stated}; leave --unit {named} out")
+        raise ValueError(f"{path} states its own unit, {stated}; leave --unit {requested} out")
     return str(unit if stated is None else stated)
 
 
@@ -99,11 +99,11 @@ def _completed_sides(
     advice = f"name both in {unit}, as in --size {side:g},{side:g}"
     if options.size is None:
         raise ValueError(f"{problem}, and not the other; {advice}")
-    named = _sides(path, options.size, channel.dim)
-    is_same = math.isclose(named[0], side, rel_tol=_SAME_SIDE)
+    sides = _sides(path, options.size, channel.dim)
+    is_same = math.isclose(sides[0], side, rel_tol=_SAME_SIDE)
     if not is_same and _are_possible(in_metres(unit, side)):
-        raise ValueError(f"{problem}, and --size names {named[0]:g} {unit} for it; {advice}")
-    return _named_sides(path, named, unit)
+        raise ValueError(f"{problem}, and --size names {sides[0]:g} {unit} for it; {advice}")
+    return _named_sides(path, sides, unit)
 
 
 def length_unit(option: str, unit: str) -> str:
@@ -119,13 +119,13 @@ def length_unit(option: str, unit: str) -> str:
     raise ValueError(f"{option} {unit} is not a unit of length; name one, as in um")
 
 
-def _sides(path: Path, named: tuple[float, ...], n_side: int) -> tuple[float, ...]:
+def _sides(path: Path, size: tuple[float, ...], n_side: int) -> tuple[float, ...]:
     """Sides of a scan that are named, one number for a square."""
-    sides = named * n_side if len(named) == 1 else named
+    sides = size * n_side if len(size) == 1 else size
     if len(sides) != n_side:
         raise ValueError(
             f"{path} has {counted(n_side, 'dimension')} and the size that is named "
-            f"{len(named)}; name one length for each, as in --size 50,40, or one for a square"
+            f"{len(size)}; name one length for each, as in --size 50,40, or one for a square"
         )
     return sides
 

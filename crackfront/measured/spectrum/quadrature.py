@@ -288,9 +288,9 @@ def _likeliest(likelihood: Likelihood, inner: Array, outer: Array) -> Array:
         new, new_slopes, new_information = likelihood.expansion(trial, outer[active])
         better = new < value[active]
         gain = value[active] - new
-        chosen = active[better]
-        inner[chosen], value[chosen] = trial[better], new[better]
-        slopes[chosen], information[chosen] = new_slopes[better], new_information[better]
+        improved = active[better]
+        inner[improved], value[improved] = trial[better], new[better]
+        slopes[improved], information[improved] = new_slopes[better], new_information[better]
         damping[active] *= np.where(better, 0.2, 10.0)
         settled = (better & (gain < _SETTLED)) | (damping[active] > 1e6)
         active = active[~settled]

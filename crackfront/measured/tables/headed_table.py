@@ -24,12 +24,9 @@ from crackfront.measured.tables.number_cells import (
     is_commented_row,
     is_number,
     is_without_value,
-    without_quoted,
 )
 from crackfront.measured.tables.parsed_table import Table
-
-_SEPARATORS = ("\t", ";", ",", None)
-"""Separators of cells, None for blanks."""
+from crackfront.measured.tables.separators import fitting_separator, separator_of_headings
 
 _BLANKS = (r"\s{2,}", r"\s+")
 """Blanks between headings, which may have single blanks in them."""
@@ -72,9 +69,10 @@ def table_of_numbers(path: Path) -> Table:
     names = _names(lines[filled[place - 1]], separator, n_column) if place else []
     headings = tuple(map(heading, names))
     if place > 1 and names and are_units(names):
-        named = _names(lines[filled[place - 2]], separator, len(names))
-        if len(named) == len(names):
-            headings = headings_with_units(named, names)
+        units = names
+        names = _names(lines[filled[place - 2]], separator, len(units))
+        if len(names) == len(units):
+            headings = headings_with_units(names, units)
     rows = list(_rows(path, lines, first, separator))
     _check_rows(path, rows, separator, len(headings))
     return _table(path, rows, separator, headings)
@@ -113,7 +111,7 @@ def table_of_texts(path: Path) -> Table:
     first = len(above)
     if first == len(lines):
         return _table(path, iter(()), ",", ())
-    separator = stated[1] if stated else max("\t;,", key=without_quoted(lines[first]).count)
+    separator = stated[1] if stated else separator_of_headings(lines[first])
     rows = _rows(path, lines, first, separator)
     _, names = next(rows)
     return replace(_table(path, rows, separator, tuple(map(heading, names))), above=above)
@@ -199,21 +197,39 @@ def _rows(
 
 def _layout(path: Path, lines: Sequence[str]) -> tuple[str | None, int]:
     """Separator of a table, None for blanks, and the place of its first row of numbers."""
-    for separator in _SEPARATORS:
-        for place, line in enumerate(lines[:_MOST_LINES_ABOVE]):
-            cells = cells_between(line, separator)
-            names = _names(lines[place - 1], separator, len(cells)) if place else []
-            if not _is_row(cells, names):
-                continue
-            # A decimal comma is not a separator: both cells of 1,5 would be numbers.
-            if separator != "," or _has_names(cells, names):
-                return separator, place
-            break
-    raise ValueError(
-        f"{path} lacks a line with two numbers or more below a line of headings; write one heading "
-        "for each column, as in Force (uN),Contact radius (um), and semicolons between cells with "
-        "decimal commas"
-    )
+
+    def fits(separator: str) -> bool:
+        place = _first_row(lines, separator)
+        # A decimal comma is not a separator: both cells of 1,5 would be numbers.
+        return place is not None and (
+            separator != "," or _has_names(*_row_and_names(lines, place, separator))
+        )
+
+    separator = fitting_separator(fits)
+    place = _first_row(lines, separator)
+    if place is None:
+        raise ValueError(
+            f"{path} lacks a line with two numbers or more below a line of headings; write one "
+            "heading for each column, as in Force (uN),Contact radius (um), and semicolons between "
+            "cells with decimal commas"
+        )
+    return separator, place
+
+
+def _first_row(lines: Sequence[str], separator: str | None) -> int | None:
+    """Place of the first row of numbers between separators."""
+    for place in range(min(len(lines), _MOST_LINES_ABOVE)):
+        if _is_row(*_row_and_names(lines, place, separator)):
+            return place
+    return None
+
+
+def _row_and_names(
+    lines: Sequence[str], place: int, separator: str | None
+) -> tuple[list[str], list[str]]:
+    """Cells of a line, and of the line above it."""
+    cells = cells_between(lines[place], separator)
+    return cells, _names(lines[place - 1], separator, len(cells)) if place else []
 
 
 def _names(line: str, separator: str | None, n_column: int) -> list[str]:
@@ -226,11 +242,14 @@ def _names(line: str, separator: str | None, n_column: int) -> list[str]:
 
 def _is_row(cells: Sequence[str], names: Sequence[str]) -> bool:
     """Whether cells are two numbers or more, or below headings a number next to empty cells."""
-    is_value = [is_number(cell) or (cell != "" and is_without_value(cell)) for cell in cells]
-    is_all = sum(is_value) == sum(map(bool, cells))
-    has_names = _has_names(cells, names) and not any(map(is_number, names))
-    fewest = 1 if is_all and has_names and len(cells) > 1 else 2
-    return sum(is_value) >= fewest and (is_all or has_names)
+    n_filled = sum(cell != "" for cell in cells)
+    n_value = sum(is_number(cell) or (cell != "" and is_without_value(cell)) for cell in cells)
+    has_headings = _has_names(cells, names) and not any(map(is_number, names))
+    if n_value < n_filled:
+        return n_value >= 2 and has_headings
+    if has_headings and len(cells) > 1:
+        return n_value >= 1
+    return n_value >= 2
 
 
 def _has_names(cells: Sequence[str], names: Sequence[str]) -> bool:

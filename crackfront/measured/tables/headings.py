@@ -103,14 +103,14 @@ def headings_above(
         Lines that are not headings, without signs of comments; a heading for each column, none
         if no line has one for each.
     """
-    plain = [_MARKUP.sub("", line.strip().lstrip(_COMMENT_SIGNS)) for line in lines]
-    plain = [line for line in plain if line.strip(" -=")]
-    last = heading_cells(plain[-1], n_column) if plain else ()
-    if len(plain) > 1 and last and are_units(last):
-        names = heading_cells(plain[-2], n_column)
+    texts = [_MARKUP.sub("", line.strip().lstrip(_COMMENT_SIGNS)) for line in lines]
+    texts = [line for line in texts if line.strip(" -=")]
+    last = heading_cells(texts[-1], n_column) if texts else ()
+    if len(texts) > 1 and last and are_units(last):
+        names = heading_cells(texts[-2], n_column)
         below = headings_with_units(names or ("",) * n_column, last)
-        return tuple(plain[: -2 if names else -1]), below
-    return tuple(plain[:-1] if last else plain), tuple(map(heading, last))
+        return tuple(texts[: -2 if names else -1]), below
+    return tuple(texts[:-1] if last else texts), tuple(map(heading, last))
 
 
 def heading_cells(
@@ -140,16 +140,16 @@ def heading_cells(
 
 def are_units(cells: Sequence[str]) -> bool:
     """Whether all cells of a line are units, in brackets or not, or say that there is none."""
-    plain = [cell.strip("[]() ") for cell in cells]
-    return any(plain) and all(cell in _WITHOUT_UNIT or is_measured(cell) for cell in plain)
+    units = [cell.strip("[]() ") for cell in cells]
+    return any(units) and all(cell in _WITHOUT_UNIT or is_measured(cell) for cell in units)
 
 
 def headings_with_units(names: Sequence[str], units: Sequence[str]) -> tuple[Heading, ...]:
     """Headings whose units have a line of their own."""
-    plain = (unit.strip("[]() ") for unit in units)
+    bare_units = (unit.strip("[]() ") for unit in units)
     return tuple(
         Heading(name.strip(), name.strip(), "" if unit in _WITHOUT_UNIT else unit)
-        for name, unit in zip(names, plain, strict=True)
+        for name, unit in zip(names, bare_units, strict=True)
     )
 
 

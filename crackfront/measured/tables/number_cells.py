@@ -1,19 +1,13 @@
-"""Cells of a line: their separator, and which of them are numbers."""
+"""Cells of a line, and which of them are numbers."""
 
 from __future__ import annotations
 
-import contextlib
-import csv
-import itertools
 import re
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 COMMENT = "#"
 """What a comment begins with."""
-
-Splitter = Callable[[str], list[str]]
-"""Splits a line into its cells."""
 
 _NUMBER = re.compile(r"[-+]?(?:\d++[.,]?\d*+|[.,]\d++)(?:[eE][-+]?\d+)?")
 """A number with a decimal point or comma; possessive, so of linear cost."""
@@ -26,13 +20,11 @@ _ROW = re.compile(
 )
 """A line of nothing but numbers, separators and missing values; possessive, so of linear cost."""
 
-_SAMPLE = 1000
-"""Rows by which the separator is chosen."""
+QUOTED = re.compile(r'"[^"]*"')
+"""A cell in quotes, whose separators do not count."""
 
-_BLANKS_OR_SIGNS = re.compile(r"[\s,;]+")
-_COMMA_BEFORE_BLANK = re.compile(r",(?=\s|$)")
-_QUOTED = re.compile(r'"([^"]*)"')
-_DECIMAL_COMMA = re.compile(r"[-+]?\d*,\d+(?:[eE][-+]?\d+)?|[-+]?\d+,")
+_BETWEEN_BLANKS = re.compile(r'"[^"]*"|\S+')
+"""A cell between blanks, which may contain blanks if it stands in quotes."""
 
 
 def is_number(cell: str) -> bool:
@@ -103,19 +95,17 @@ def cells_between(line: str, separator: str | None) -> list[str]:
     >>> cells_between('"Load, uN", Radius', ",")
     ['Load, uN', 'Radius']
     """
-    cells = line.split(separator)
-    if separator is not None and '"' in line:
-        cells = [line]
-        if separator in without_quoted(line):
-            # A cell that is too long for csv is not a number or a heading.
-            with contextlib.suppress(csv.Error):
-                cells = next(csv.reader([line], delimiter=separator, skipinitialspace=True))
-    return [cell.strip().strip('"') for cell in cells]
-
-
-def without_quoted(line: str) -> str:
-    """A line without its cells in quotes, whose separators do not count."""
-    return _QUOTED.sub("", line)
+    if '"' not in line:
+        return [cell.strip() for cell in line.split(separator)]
+    if separator is None:
+        cells = _BETWEEN_BLANKS.findall(line)
+    else:
+        cells, start = [], 0
+        for part in QUOTED.sub(lambda quoted: "_" * len(quoted[0]), line).split(separator):
+            end = start + len(part)
+            cells.append(line[start:end])
+            start = end + 1
+    return [cell.strip().strip('"').strip() for cell in cells]
 
 
 def decimal_sign(path: Path, numbers: Iterable[tuple[int, Iterable[str]]]) -> str | None:
@@ -158,67 +148,6 @@ def decimal_sign(path: Path, numbers: Iterable[tuple[int, Iterable[str]]]) -> st
     )
 
 
-def splitter(lines: Iterable[str]) -> Splitter:
-    """What splits the lines of a text into cells, by the separators in most rows of numbers."""
-    rows = list(itertools.islice((line for line in lines if _looks_like_row(line)), _SAMPLE))
-
-    def most(has: Callable[[str], object]) -> bool:
-        return 2 * sum(map(bool, map(has, rows))) > len(rows)
-
-    if most(lambda row: '"' in row):
-        between = "".join(map(without_quoted, rows)).strip()
-        separator = between[0] if between else " "
-        return lambda line: [cell.strip() for cell in next(csv.reader([line], delimiter=separator))]
-    if most(lambda row: ";" in row):
-        return _split_at(";", rows)
-    if not most(lambda row: "," in row):
-        return str.split
-    if not most(lambda row: len(row.split()) > 1):
-        # One comma a line and no points: two columns of whole numbers, or decimals of one column.
-        is_one_column = most(lambda row: row.count(",") == 1 and "." not in row)
-        if is_one_column and not _is_monotonic([row.partition(",")[0] for row in rows]):
-            return str.split
-        return _split_at(",", rows)
-    if most(_COMMA_BEFORE_BLANK.search):
-        if any("," in _COMMA_BEFORE_BLANK.sub(" ", row) for row in rows):
-            return lambda line: _COMMA_BEFORE_BLANK.sub(" ", line).split()
-        return _split_at(",", rows)
-    if most(lambda row: any(map(_DECIMAL_COMMA.fullmatch, row.split()))):
-        return str.split
-    return _split_at_any
-
-
-def _looks_like_row(line: str) -> bool:
+def is_row_of_numbers(line: str) -> bool:
+    """Whether a line has nothing but numbers, separators and missing values."""
     return _ROW.fullmatch(line) is not None and any(map(str.isdigit, line))
-
-
-def _split_at_any(line: str) -> list[str]:
-    return [cell for cell in _BLANKS_OR_SIGNS.split(line) if cell]
-
-
-def _split_at(separator: str, rows: Sequence[str]) -> Splitter:
-    """What splits lines at a separator, without the columns that are empty in all of the rows."""
-    split = [[cell.strip() for cell in row.split(separator)] for row in rows]
-    if any(len(cell.split()) > 1 for cells in split for cell in cells):
-        return _split_at_any
-    width = max(map(len, split))
-    n_empty = 0
-    while n_empty < width and not any("".join(row[width - n_empty - 1 :]) for row in split):
-        n_empty += 1
-
-    def cells(line: str) -> list[str]:
-        parts = list(map(str.strip, line.split(separator)))
-        while parts and not parts[-1] and len(parts) > width - n_empty:
-            parts.pop()
-        return parts if any(parts) else []
-
-    return cells
-
-
-def _is_monotonic(cells: Sequence[str]) -> bool:
-    """Whether whole numbers ascend or descend all along."""
-    try:
-        steps = [int(after) - int(before) for before, after in itertools.pairwise(cells)]
-    except ValueError:
-        return True
-    return all(step > 0 for step in steps) or all(step < 0 for step in steps)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import collections
-import csv
+import itertools
 import re
 import statistics
 from collections.abc import Iterator, Sequence
@@ -17,15 +17,17 @@ from crackfront.measured.tables.encodings import decoded
 from crackfront.measured.tables.headings import headings_above
 from crackfront.measured.tables.number_cells import (
     COMMENT,
+    cells_between,
     commented_cells,
     commented_row_error,
     decimal_sign,
     is_commented_row,
     is_number,
+    is_row_of_numbers,
     is_without_value,
-    splitter,
 )
 from crackfront.measured.tables.parsed_table import Table
+from crackfront.measured.tables.separators import separator_of_numbers
 
 if TYPE_CHECKING:
     from pandas import DataFrame
@@ -37,6 +39,11 @@ _NUMBER_OF_NAME = re.compile(
 
 _THOUSANDS = re.compile(r"[-+]?\d{1,3}(?:[.,]\d{3})+")
 """A number whose decimal sign may as well separate thousands."""
+
+_SIGN_AND_BLANK = re.compile(r"[,;](?=\s|$)")
+
+_ENOUGH_ROWS = 1000
+"""Rows by which the separator is chosen."""
 
 _FEWEST_COLUMNS = 5
 """Columns from which a first column, or row, of consecutive numbers counts the others."""
@@ -131,7 +138,7 @@ def number_tables(path: Path) -> NumberTables | None:
     ------
     ValueError
         If a row is damaged or begins as a comment, or numbers have two decimal signs; it names the
-        line. Or if a quote is not closed.
+        line.
     OSError
         If the file cannot be opened.
     """
@@ -139,11 +146,7 @@ def number_tables(path: Path) -> NumberTables | None:
     if text is None:
         return None
     lines = text.split("\n")
-    split = splitter(lines)
-    try:
-        table = [split(line) for line in lines]
-    except csv.Error as error:
-        raise ValueError(f"{path}: {error}; close all quotes, or leave them out") from error
+    table = _split(lines)
     kinds = _kinds(table)
     if set(kinds) == {"text"}:
         return None
@@ -163,6 +166,30 @@ def number_tables(path: Path) -> NumberTables | None:
         start = places[-1] + 1
     below = (_with_point(path, start + n, line, sign) for n, line in enumerate(lines[start:]))
     return NumberTables(tuple(tables), tuple(below))
+
+
+def _split(lines: Sequence[str]) -> list[list[str]]:
+    """Cells of every line, without the empty ones behind the last column."""
+    rows = list(itertools.islice(filter(is_row_of_numbers, lines), _ENOUGH_ROWS))
+    separator = separator_of_numbers(rows)
+    if separator is None:
+        # Blanks may follow other separators, as in 1,5, 2,5 and 1 2 3;
+        return [cells_between(_SIGN_AND_BLANK.sub(" ", line), None) for line in lines]
+    n_column = max(_n_filled(cells_between(row, separator)) for row in rows)
+    table = []
+    for line in lines:
+        cells = cells_between(line, separator)
+        n_filled = _n_filled(cells)
+        table.append(cells[: max(n_column, n_filled)] if n_filled else [])
+    return table
+
+
+def _n_filled(cells: Sequence[str]) -> int:
+    """Number of cells up to the last one that is not empty."""
+    n_cell = len(cells)
+    while n_cell and not cells[n_cell - 1]:
+        n_cell -= 1
+    return n_cell
 
 
 def _kinds(table: Sequence[Sequence[str]]) -> list[_Kind]:
@@ -246,21 +273,25 @@ def _plain_cells(cells: Sequence[str]) -> list[str]:
 
 def _with_point(path: Path, place: int, line: str, sign: str | None) -> str:
     """A line above rows with points as decimals; its numbers must not have two readings."""
-    named = _NUMBER_OF_NAME.search(line)
-    if named is None:
+    match = _NUMBER_OF_NAME.search(line)
+    if match is None:
         return line
-    text = named[1]
-    n_comma, n_point = text.count(","), text.count(".")
-    may_be_thousands = _THOUSANDS.fullmatch(text) is not None
-    if not n_comma and (n_point > 1 or sign != "," or not may_be_thousands):
-        return line  # A number as every reader understands it, a date or a version.
-    if n_comma == 1 and not n_point and (sign == "," or (sign is None and not may_be_thousands)):
-        start, end = named.span(1)
-        return line[:start] + text.replace(",", ".") + line[end:]
-    wrong = "the rows have points" if sign == "." else "it has two readings"
+    number = match[1]
+    n_comma, n_point = number.count(","), number.count(".")
+    may_be_thousands = _THOUSANDS.fullmatch(number) is not None
+    if n_comma == 0:
+        is_date_or_version = n_point > 1
+        if is_date_or_version or sign != "," or not may_be_thousands:
+            return line
+    elif n_comma == 1 and n_point == 0:
+        is_decimal_comma = sign == "," or (sign is None and not may_be_thousands)
+        if is_decimal_comma:
+            start, end = match.span(1)
+            return line[:start] + number.replace(",", ".") + line[end:]
+    problem = "the rows have points" if sign == "." else "it has two readings"
     raise ValueError(
-        f"{path}, line {place + 1}: the number is {text!r}, and {wrong}; write the head and the "
-        "rows with points, as in 20.9"
+        f"{path}, line {place + 1}: the number is {number!r}, and {problem}; write the head and "
+        "the rows with points, as in 20.9"
     )
 
 
@@ -284,6 +315,13 @@ def _check_rows(
         elif lines[place].strip():
             width_above = 0
             is_head = place < first
+            if not cells and is_head:
+                continue
+            if not cells:
+                raise ValueError(
+                    f"{path}, line {place + 1}: all cells of the row are empty; write nan where a "
+                    "value is missing, or remove the line"
+                )
             if cells[0].startswith(COMMENT):
                 _check_comment(path, place, cells, width, is_head=is_head)
             elif (wrong := _wrong_cell(cells, width, is_head=is_head)) is not None:

@@ -14,7 +14,7 @@ from crackfront.measured.tables.headings import Heading
 from crackfront.measured.tables.number_cells import decimal_sign, is_number, is_without_value
 
 if TYPE_CHECKING:
-    from pandas import DataFrame
+    from pandas import DataFrame, Series
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -63,21 +63,27 @@ class Table:
         ValueError
             If a cell is not a number, or the columns have two decimal signs; it names the line.
         """
-        import pandas
-
         texts = [self.cells[place] for place in places]
         if any(column.str.contains(",", regex=False).any() for column in texts):
-            rows = zip(self.lines, zip(*texts, strict=True), strict=True)
-            decimal_sign(self.path, ((line, filter(is_number, cells)) for line, cells in rows))
+            self._check_decimal_signs(texts)
             texts = [column.str.replace(",", ".", regex=False) for column in texts]
-        columns = []
-        for place, column in zip(places, texts, strict=True):
-            values = pandas.to_numeric(column, errors="coerce").to_numpy(float)
-            for row in np.flatnonzero(np.isnan(values)):
-                if not is_without_value(column.iat[row]):
-                    raise ValueError(
-                        f"{self.path}, line {self.lines[row]}: {column.iat[row][:40]!r} in column "
-                        f"{place + 1} is not a number; correct or remove the row"
-                    )
-            columns.append(np.where(np.isfinite(values), values, np.nan))
-        return columns
+        return [self._column(place, column) for place, column in zip(places, texts, strict=True)]
+
+    def _check_decimal_signs(self, columns: Sequence[Series]) -> None:
+        """Raise if numbers of some columns have two decimal signs."""
+        rows = zip(self.lines, zip(*columns, strict=True), strict=True)
+        decimal_sign(self.path, ((line, filter(is_number, cells)) for line, cells in rows))
+
+    def _column(self, place: int, column: Series) -> Array:
+        """Numbers of a column of texts with decimal points."""
+        import pandas
+
+        values = pandas.to_numeric(column, errors="coerce").to_numpy(float)
+        for row in np.flatnonzero(np.isnan(values)):
+            cell = column.iat[row]
+            if not is_without_value(cell):
+                raise ValueError(
+                    f"{self.path}, line {self.lines[row]}: {cell[:40]!r} in column {place + 1} is "
+                    "not a number; correct or remove the row"
+                )
+        return np.where(np.isfinite(values), values, np.nan)
