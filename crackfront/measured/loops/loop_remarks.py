@@ -34,6 +34,9 @@ _SOFT = 0.1
 An error of the stiffness by 1% is then an error of the penetration by 10% of what the force causes.
 """
 
+_LEAST_WORK, _MOST_WORK = 1e-3, 10.0
+"""Works of adhesion of elastic solids lie between them. (Units: J/m^2)"""
+
 _PENETRATION = "penetration|indentation|depth|eindring"
 """Names of a displacement that does not include the bending of the machine."""
 
@@ -53,6 +56,7 @@ def loop_remarks(
         )
     yield from _exact_numbers(loop)
     yield from _size(result)
+    yield from _magnitude(loop, result)
     if touches[0] or touches[-1]:
         which = "approach does not begin" if touches[0] else "retraction does not end"
         yield f"The energy lost is not known: the {which} out of contact."
@@ -98,6 +102,23 @@ def _size(result: MeasuredLoop) -> Iterator[str]:
             "paraboloid misses there; the works of adhesion and the modulus are those of a "
             "paraboloid."
         )
+
+
+def _magnitude(loop: CalibratedLoop, result: MeasuredLoop) -> Iterator[str]:
+    """Whether a work of adhesion is so large or small that a unit is likely to be wrong.
+
+    With a fitted modulus nothing else shows it: a force in a wrong unit changes both by one factor.
+    """
+    works = [work.value for work in (result.w_appr, result.w_retr) if work.value > 0]
+    if all(_LEAST_WORK <= work <= _MOST_WORK for work in works):
+        return
+    heading = loop.recording.headings.get("force", "force")
+    yield (
+        f"Works of adhesion of {' and '.join(prefixed('J/m2', work) for work in works)} are "
+        f"outside {prefixed('J/m2', _LEAST_WORK)} to {prefixed('J/m2', _MOST_WORK)}, where "
+        f"elastic solids have them: check the unit of the column {heading!r} and the radius of the "
+        "sphere."
+    )
 
 
 def _has_radii_elsewhere(loop: CalibratedLoop, touches: NDArray[np.bool_]) -> bool:

@@ -1,5 +1,7 @@
 """Measured loops: works of adhesion within their intervals, the modulus and the machine."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -90,6 +92,15 @@ def test_the_pull_off_force_is_not_that_of_the_lowest_noise(n_row):
     clean = -np.min(loop(0, n_row=n_row, force_noise=0.0).force)
     assert pull.low < clean < pull.high
     assert clean * 1.05 < -np.min(whole.force)
+
+
+@pytest.mark.parametrize(("factor", "is_told"), [(1, False), (1e3, True), (1e-3, True)])
+def test_a_force_in_a_wrong_unit_is_told_also_with_a_fitted_modulus(factor, is_told):
+    recording = loop(0)
+    scaled = replace(recording, force=factor * recording.force)
+    result = analyse_loop(scaled, Rig(RADIUS))
+    assert result.w_retr.value == pytest.approx(factor * W_RETR, rel=0.1)
+    assert is_told == any("check the unit of the column" in text for text in result.remarks)
 
 
 @pytest.mark.parametrize(
