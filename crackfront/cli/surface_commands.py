@@ -30,7 +30,7 @@ from crackfront.cli.output_files import (
 )
 from crackfront.cli.samples_command import exit_code, write_samples
 from crackfront.core.bounds import SEED, Range
-from crackfront.core.words import counted, in_time
+from crackfront.core.words import counted, in_time, wrapped
 from crackfront.measured.options import (
     PredictionOptions,
     PsdOptions,
@@ -373,7 +373,7 @@ def surface(scans: tuple[Path, ...], as_json: bool, field: Path | None, **option
         _check_field_file(field, scans)
     measured = _surface(scans, options)
     content = machine_readable(measured, scales)
-    echo_answer(content, [report_text(measured, scales)], as_json=as_json)
+    echo_answer(content, [wrapped(report_text(measured, scales))], as_json=as_json)
     if field is None or scales is None:
         return
     if len(measured.scans) > 1:

@@ -79,10 +79,11 @@ def _treatments(scan: Scan) -> Iterator[str]:
     """Sentences on corrections, assumptions and left-out waves of a scan."""
     measurement, path = scan.measurement, scan.measurement.path
     if measurement.missing > 0:
+        missing, weight = 100 * measurement.missing, 100 * scan.missing_weight
         yield (
-            f"{path}: {measurement.missing:.2%} of the points were missing and interpolated, "
-            f"{scan.missing_weight:.1%} by the weight of the window; the density is corrected for "
-            "the interpolation, by its effect on random surfaces of the same density."
+            f"{path}: {missing:.2g}% of the points were missing and interpolated, {weight:.2g}% by "
+            "the weight of the window; the density is corrected for the interpolation, by its "
+            "effect on random surfaces of the same density."
         )
     if measurement.is_line:
         yield (
