@@ -125,7 +125,7 @@ def _contact(reference: Array, skimage: ModuleType) -> tuple[Array, float]:
 def _largest_island(difference: Array, level: float, skimage: ModuleType) -> Array:
     """Closed contour of the largest region above a level, (n_point, 2) rows and columns.
 
-    It has no points if there is none, as where the ring of what is not yet in contact is open.
+    It is empty without a contour, as where the ring of what is not yet in contact is open.
     """
     largest, most = np.empty((0, 2)), 0.0
     for contour in skimage.measure.find_contours(difference, level, positive_orientation="high"):

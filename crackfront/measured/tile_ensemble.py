@@ -169,7 +169,7 @@ def tile_files(paths: Sequence[Path], options: Sequence[ReadingOptions]) -> Tile
         tile = read_tile(path, record)
         if sides and abs(tile.side / sides[0] - 1) > _UNEQUAL:
             raise ValueError(
-                f"the tile of {path} has a side of {prefixed('m', tile.side)} and that of "
+                f"the tile of {path} has a side of {prefixed('m', tile.side)} and the tile of "
                 f"{paths[0]} one of {prefixed('m', sides[0])}; crop them to equal sides"
             )
         sides.append(tile.side)

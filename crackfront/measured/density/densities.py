@@ -151,7 +151,7 @@ def periodogram(
     """Power of all waves of a measurement, or of other heights on the same points.
 
     A profile has the waves along x with the mean power of all lines of a map, and counts the modes
-    of a single line. A periodic measurement has no window. Missing points reduce the number of
+    of a single line. Periodic measurements are not windowed. Missing points reduce the number of
     independent modes.
     """
     heights = measurement.heights if heights is None else heights

@@ -54,7 +54,7 @@ def baseline(recording: Recording) -> Baseline:
     sides = rows[rows < touching[0]], rows[rows > touching[-1]]
     sides_used = [side for side in sides if side.size >= FEWEST_FREE_ROWS]
     if not sides_used:
-        sentence = "The zero of the force is that of the file, as no rows are out of contact."
+        sentence = "The zero of the force is taken from the file, as all rows are in contact."
         return Baseline(recording, np.zeros(touches.size), remark=sentence)
     has_drift = len(sides_used) == 2
     free = np.concatenate(sides_used)

@@ -61,7 +61,7 @@ def rows_in_contact(recording: Recording) -> NDArray[np.bool_]:
 
     A force acts in rows that depart from the line through the rows before or after them. Next to a
     jump of the force it decides, not the radius, which may be missing or late there. Raises
-    ValueError if no row is in contact, or a column has no value in contact.
+    ValueError if no row is in contact, or a column lacks values in contact.
     """
     force, radius = recording.force, recording.radius
     if radius is not None:
@@ -79,7 +79,7 @@ def rows_in_contact(recording: Recording) -> NDArray[np.bool_]:
         column = getattr(recording, name)
         if column is not None and not np.any(np.isfinite(column[touches])):
             raise ValueError(
-                f"the {name} has no value in contact; leave its column out, or check the file"
+                f"the {name} lacks values in contact; leave its column out, or check the file"
             )
     return touches
 

@@ -98,8 +98,8 @@ def _size(result: MeasuredLoop) -> Iterator[str]:
     ratio = float(np.nanmax(result.contact_radius)) / result.sphere_radius
     if ratio > _LARGE:
         yield (
-            f"The contact radius reaches {ratio:.2g} of that of the sphere, whose profile a "
-            "paraboloid misses there; the works of adhesion and the modulus are those of a "
+            f"The contact radius reaches {ratio:.2g} of the radius of the sphere, where a "
+            "paraboloid misses its profile; the works of adhesion and the modulus belong to a "
             "paraboloid."
         )
 
@@ -172,7 +172,7 @@ def _stiffness(loop: CalibratedLoop, result: MeasuredLoop) -> Iterator[str]:
     if loop.has_force_and_radius:
         if stiffness is not None:
             yield (
-                "The given stiffness of the machine has no part in the works of adhesion: they "
+                "The given stiffness of the machine does not enter the works of adhesion: they "
                 "follow from force and contact radius."
             )
         return

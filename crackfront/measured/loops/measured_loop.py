@@ -61,7 +61,7 @@ def measured_loop(
         unit, as '1.25mm'. (Units: m)
     contact_modulus : float or str, optional
         E' = E / (1 - nu^2), in place of `modulus` and `poisson`; fitted to force and contact radius
-        if none of them is given. (Units: Pa)
+        without any of them. (Units: Pa)
     modulus : float or str, optional
         Young's modulus E, as '0.7MPa'. (Units: Pa)
     poisson : float, optional
@@ -163,7 +163,8 @@ def _recording(arrays: Mapping[str, ArrayLike] | Dataset) -> Recording:
     unknown = set(map(str, arrays)) - set(UNITS)
     if unknown and not isinstance(arrays, Dataset):
         raise ValueError(
-            f"a loop has no {', '.join(sorted(unknown))}; give two of {', '.join(UNITS)}"
+            f"{', '.join(sorted(unknown))} is not a column of a loop; give two of "
+            f"{', '.join(UNITS)}"
         )
     force, radius, displacement = (
         _column(name, columns[name]) if name in columns else None for name in UNITS

@@ -41,7 +41,7 @@ class SeriesPoint:
     group: str
     predicted: Estimate[float]
     measured: Estimate[float]
-    """NaN if there is no such number. (Units: SI)"""
+    """NaN without such a number. (Units: SI)"""
     is_lower_bound: bool
     """Whether e_el is a lower bound."""
 

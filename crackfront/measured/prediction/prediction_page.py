@@ -59,7 +59,7 @@ def prediction_page(prediction: Prediction) -> str:
 
 
 def _lines_without_numbers(prediction: Prediction) -> Iterator[str]:
-    """Why there is no prediction, and e_el, which decides most of the conditions."""
+    """Why a prediction is not made, and e_el, which decides most of the conditions."""
     yield f"{prediction.verdict.heading}; nothing is predicted."
     yield from map(remark_text, prediction.verdict.with_severity("fails", "undecided"))
     yield f"{'e_el':18}{_energy_text(prediction)}"

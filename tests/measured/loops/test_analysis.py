@@ -106,7 +106,7 @@ def test_a_force_in_a_wrong_unit_is_told_also_with_a_fitted_modulus(factor, is_t
 @pytest.mark.parametrize(
     ("made", "rig", "remark"),
     [
-        ({}, {"stiffness": 200.0}, "stiffness of the machine has no part"),
+        ({}, {"stiffness": 200.0}, "stiffness of the machine does not enter"),
         ({"without": "radius"}, {"contact_modulus": 3 * MODULUS}, "pulls with up to"),
         ({"retraction": 0.3}, {}, "No force pulls in the retraction"),
     ],

@@ -90,7 +90,7 @@ def test_rows_in_contact_give_no_zero_of_the_force(noise):
     columns = in_contact(force_noise=noise, radius_noise=0.0, stiffness=1e9)
     del columns["radius"]
     result = measured_loop(columns, radius=RADIUS, contact_modulus=MODULUS)
-    assert "The zero of the force is that of the file, as no rows are out of contact." in (
+    assert "The zero of the force is taken from the file, as all rows are in contact." in (
         result.remarks
     )
     for name, truth in TRUTH.items():

@@ -21,7 +21,7 @@ def test_arrays_and_their_table_are_the_same_loop(tmp_path):
     path.write_text("Force (N),Radius (m)\n" + "".join(f"{f},{a}\n" for f, a in rows))
     rig = {"radius": RADIUS, "contact_modulus": MODULUS}
     assert repr(measured_loop(arrays, **rig)) == repr(measured_loop(path, **rig))
-    with pytest.raises(ValueError, match="speed; give two of force, radius"):
+    with pytest.raises(ValueError, match="speed is not a column of a loop"):
         measured_loop({"force": whole.force, "speed": whole.force}, **rig)
 
 
@@ -37,10 +37,10 @@ def test_arrays_and_their_table_are_the_same_loop(tmp_path):
             {"force": np.ones(50), "radius": np.linspace(-1e-4, 1e-4, 50)},
             "radius.* must not be negative",
         ),
-        ({"force": _LOST_IN_CONTACT, "radius": _TOUCHING}, "force has no value in contact"),
+        ({"force": _LOST_IN_CONTACT, "radius": _TOUCHING}, "force lacks values in contact"),
         (
             {"displacement": _LOST_IN_CONTACT, "radius": _TOUCHING},
-            "displacement has no value in contact",
+            "displacement lacks values in contact",
         ),
     ],
 )
