@@ -203,7 +203,7 @@ def pooled_limits(fit: SweepFit, spectra: Estimate) -> tuple[str, ...]:
     limits = _range_of(spectra.value)
     if bias is None:
         return limits
-    return (*limits, f"numerical bias to {bias.error:.2f}{_covered_words(fit)}")
+    return (*limits, f"numerical bias up to {bias.error:.2f}{_covered_words(fit)}")
 
 
 def _range_of(values: Array) -> tuple[str, ...]:
