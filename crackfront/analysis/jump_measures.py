@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -16,10 +17,10 @@ JUMP_DEFINITION = (
     "Load steps are halved until no site moves by more than 0.05 correlation lengths of w_loc, "
     "which is smooth motion, or until jumps that start in the same step would coincide in about 1% "
     "of the cases. Jumps are counted in the load steps that end at the states that w_appr and "
-    "w_retr average. Their energies over swept_area are, in sum over both branches, the hysteresis "
-    "w_retr - w_appr but for the energy of smooth motion and the difference between sampled states "
-    "and their integral. The extent is the width along the front of the largest contiguous part "
-    "that moves: its area over its largest depth."
+    "w_retr average. jump_energy over swept_area, added over both branches, equals the hysteresis "
+    "w_retr - w_appr, except for the energy that smooth motion dissipates and for the difference "
+    "between a mean over states and their integral. The extent is the width along the front of the "
+    "largest contiguous part that moves: its area over its largest depth."
 )
 """What a jump is; an attribute of every file with these variables."""
 
@@ -60,8 +61,21 @@ class JumpMeasures:
 
 
 def jump_measures(jumps: Jumps, averaged: Branches) -> JumpMeasures:
-    """Measures of the jumps in the load steps that end at the averaged states of both branches."""
-    values: dict[str, float] = {}
+    """Measures of the jumps in the load steps that end at the averaged states of both branches.
+
+    Parameters
+    ----------
+    jumps : Jumps
+        Jumps of a cycle, arrays (n_jump,), and the area of each load step, (n_state,).
+    averaged : tuple of int arrays
+        Numbers of the averaged states of the approach and of the retraction.
+
+    Returns
+    -------
+    JumpMeasures
+        In reduced units.
+    """
+    values: dict[str, Any] = {}
     for branch, states in zip(("appr", "retr"), averaged, strict=True):
         inside = np.isin(jumps.jump_state, states)
         values[f"n_jump_{branch}"] = int(np.count_nonzero(inside))
@@ -71,7 +85,7 @@ def jump_measures(jumps: Jumps, averaged: Branches) -> JumpMeasures:
             sizes = getattr(jumps, f"jump_{name}")[inside]
             for statistic, value in _statistics(sizes).items():
                 values[f"jump_{name}_{statistic}_{branch}"] = value
-    return JumpMeasures(**values)  # type: ignore[arg-type]
+    return JumpMeasures(**values)
 
 
 def _statistics(sizes: Array) -> dict[str, float]:
