@@ -56,5 +56,7 @@ for axes, (name, (question, labels)) in zip(panels, QUESTIONS.items(), strict=Tr
     axes.set_xlim(-0.5, len(labels) - 0.5)
     axes.set_xlabel(question)
     axes.legend(loc="lower left")
+for letter, axes in zip("abc", panels, strict=True):
+    axes.set_title(letter, loc="left", fontweight="bold")
 panels[0].set_ylim(bottom=0)
 label = panels[0].set_ylabel(r"$k = (w_\mathrm{retr} - w_\mathrm{appr})\,/\,2 e_\mathrm{el}$")

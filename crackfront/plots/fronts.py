@@ -127,6 +127,7 @@ def frame_plane(axes: Axes, reach: float, units: AxisUnits = REDUCED) -> None:
     """Limit the axes to a square around the apex, and name them."""
     ends = -units.scale(LATERAL) * reach, units.scale(LATERAL) * reach
     axes.set(xlim=ends, ylim=ends, aspect="equal")
+    axes.locator_params(nbins=5)  # on both axes; an automatic number could change after the layout
     label_plane(axes, units)
 
 
