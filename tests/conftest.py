@@ -82,6 +82,12 @@ def _figures_as_printed(request: pytest.FixtureRequest, monkeypatch: pytest.Monk
 
 
 @pytest.fixture
+def empty_pictures(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Figures are made but not drawn: their files are empty."""
+    monkeypatch.setattr("matplotlib.figure.Figure.savefig", lambda _, path, **_look: path.touch())
+
+
+@pytest.fixture
 def _heeded_signals() -> Iterator[None]:
     """Signals reach the commands also where the tests run in the background, which ignores some."""
     ignored = [

@@ -1,12 +1,11 @@
 """The folder of compiled kernels: one for each state of the sources, safe from other users.
 
 numba checks only the file of a kernel, not the files of the kernels that it calls. The name of the
-folder therefore changes with all sources in `core`, except for their comments and docstrings.
+folder therefore changes with every source in `core`.
 """
 
 from __future__ import annotations
 
-import ast
 import contextlib
 import functools
 import hashlib
@@ -82,24 +81,11 @@ def _mode_if_ours(folder: Path) -> int | None:
 
 
 def _sources_digest(folder: Path) -> str:
-    """Twelve hexadecimal digits of what the sources in a folder do and what compiles them."""
+    """Twelve hexadecimal digits of the sources in a folder and of what compiles them."""
     digest = hashlib.sha256()
     for path in sorted(folder.rglob("*.py")):
-        tree = ast.parse(path.read_bytes())
-        for node in ast.walk(tree):
-            if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef):
-                node.body = [part for part in node.body if not _is_text(part)]
-        digest.update(f"{path.relative_to(folder)} {ast.dump(tree)}\n".encode())
+        digest.update(f"{path.relative_to(folder)}\n".encode() + path.read_bytes())
     # numba notices its own version, the processor and Python 3.x; the rest is up to us.
     versions = sys.version, *map(version, ("numba", "llvmlite", "rocket-fft"))
     digest.update(repr(versions).encode())
     return digest.hexdigest()[:12]
-
-
-def _is_text(statement: ast.stmt) -> bool:
-    """Whether a statement is a docstring, of a function or of a constant."""
-    return (
-        isinstance(statement, ast.Expr)
-        and isinstance(statement.value, ast.Constant)
-        and isinstance(statement.value.value, str)
-    )

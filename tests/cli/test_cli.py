@@ -240,6 +240,7 @@ def test_the_plan_names_the_amplitudes_of_the_fit_where_it_leaves_some_out(tmp_p
     assert fitted == [0.05, 0.1]
 
 
+@pytest.mark.usefixtures("empty_pictures")
 def test_machines_read_the_plan_the_progress_and_the_fit(tmp_path, copy_store):
     output = ("--output", tmp_path, "--json")
     before = json.loads(run("plan", TEST, *output).stdout)

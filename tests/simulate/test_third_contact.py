@@ -3,7 +3,8 @@
 A long cylinder is pressed on the surface by a force per length (JKR of a line contact). Its edge is
 straight and, by symmetry, only one of its two edges is simulated. With the half-width a, the line
 force P and c = pi E' / 4 (R = 1), G = (c a^2 - P)^2 / (2 pi E' a). As on a sphere, forces are
-multiplied by the place, so that they are convex in it.
+multiplied by the place, so that they are convex in it. Its kernels take some seconds to compile:
+most tests are left to the night.
 """
 
 from collections.abc import Mapping
@@ -289,6 +290,7 @@ def rough():
     return run_simulation(ROUGH)
 
 
+@pytest.mark.slow
 def test_a_smooth_cylinder_is_that_of_jkr_to_its_pull_off():
     result = run_simulation(replace(ROUGH, elastic_energy=1e-18))
     states, record = result.record.states, result.record
@@ -308,6 +310,7 @@ def test_the_edge_is_held_by_the_slope_of_g_at_a_constant_force():
     assert ROUGH.schedule.spring_at(1.0) == pytest.approx(WORK_OF_ADHESION / slope, rel=1e-8)
 
 
+@pytest.mark.slow
 def test_a_rough_cylinder_has_hysteresis_and_loses_energy_in_every_step(rough):
     row, record = sweep_row(rough), rough.record
     assert row.status == "lost_contact"
@@ -318,6 +321,7 @@ def test_a_rough_cylinder_has_hysteresis_and_loses_energy_in_every_step(rough):
     assert record.fronts.shape == (row.n_step, ROUGH.resolution.n_angle)
 
 
+@pytest.mark.slow
 def test_its_cost_and_its_factor_are_expected_as_those_of_other_kinds(rough):
     expected = expected_cost(ROUGH)
     assert 0 < expected.seconds < 60
@@ -338,6 +342,7 @@ def test_its_loads_are_in_its_key():
     }
 
 
+@pytest.mark.slow
 def test_it_goes_on_from_a_checkpoint_to_the_same_states(rough, tmp_path):
     kept = []
     run_simulation(ROUGH, keep=lambda make: kept.append(make()))
@@ -346,6 +351,7 @@ def test_it_goes_on_from_a_checkpoint_to_the_same_states(rough, tmp_path):
     np.testing.assert_array_equal(resumed.record.fronts, rough.record.fronts)
 
 
+@pytest.mark.slow
 def test_a_sweep_stores_its_states_and_has_its_rows_in_the_table(rough, tmp_path):
     store, origin, [shard] = Store(tmp_path), provenance("text"), SWEEP.shards()
     simulations = [*SWEEP.simulations()]

@@ -14,3 +14,8 @@ def made(tmp_path_factory):
     for name in ("simulate", "aggregate"):
         assert run(name, TEST, "--output", store.folder).exit_code == 0
     return store
+
+
+@pytest.fixture(autouse=True)
+def _empty_pictures(empty_pictures):
+    """How the figures of a sweep look is tested elsewhere."""

@@ -38,10 +38,10 @@ def run(*arguments):
     )
 
 
-def continued(configuration, folder, *more):
+def continued(configuration, folder):
     """How many simulations the same command runs now; then the sweep is complete."""
     before = stored(folder)
-    done("simulate", configuration, "--output", folder, *more)
+    done("simulate", configuration, "--output", folder)
     after = stored(folder)
     assert len(after) == N_SIMULATION
     return sum(before.get(name) != seconds for name, seconds in after.items())
@@ -84,30 +84,28 @@ def configuration(undisturbed):
 @pytest.fixture
 def same(undisturbed):
     """Whether the table of what a folder has is the undisturbed one."""
-    configuration, alone = undisturbed
-
-    def compare(folder):
-        done("aggregate", configuration, "--output", folder)
-        return table(folder / "hysteresis.nc").identical(table(alone / "hysteresis.nc"))
-
-    return compare
+    return lambda folder: _same_table(*undisturbed, folder)
 
 
-def test_a_kill_at_any_moment_costs_what_is_in_no_batch_and_corrupts_nothing(
-    configuration, same, tmp_path, rng
-):
+def _same_table(configuration, alone, folder):
+    """Whether two folders of a configuration have the same table; that of the second is made."""
+    done("aggregate", configuration, "--output", folder)
+    return table(folder / "hysteresis.nc").identical(table(alone / "hysteresis.nc"))
+
+
+def test_a_kill_at_any_moment_costs_what_is_in_no_batch_and_corrupts_nothing(made, tmp_path, rng):
     n_finished = int(rng.integers(1, 3))
     # Each simulation is a batch, which is written before its line is printed.
-    with running(configuration, tmp_path, "--checkpoint", "0", until=n_finished) as process:
-        time.sleep(rng.uniform(0, 0.15))
+    with running(TEST, tmp_path, "--checkpoint", "0", until=n_finished) as process:
+        time.sleep(rng.uniform(0, 0.05))
         process.kill()
     assert_whole(tmp_path)
     kept = stored(tmp_path)
     assert n_finished <= len(kept) < N_SIMULATION
-    assert continued(configuration, tmp_path) == N_SIMULATION - len(kept)
+    assert continued(TEST, tmp_path) == N_SIMULATION - len(kept)
     assert kept.items() <= stored(tmp_path).items()
     assert_tidy(tmp_path)
-    assert same(tmp_path)
+    assert _same_table(TEST, made.folder, tmp_path)
 
 
 @pytest.mark.slow
@@ -271,11 +269,9 @@ def test_a_folder_that_is_read_only_is_refused_before_anything_runs(
 
 
 @pytest.mark.parametrize("moment", [slow(0), 4e9])
-def test_the_dates_of_files_make_no_simulation_run_again(
-    configuration, same, undisturbed, tmp_path, moment
-):
-    folder = shutil.copytree(undisturbed[1], tmp_path / "sweep")
+def test_the_dates_of_files_make_no_simulation_run_again(made, tmp_path, moment):
+    folder = shutil.copytree(made.folder, tmp_path / "sweep")
     for path in folder.rglob("*"):
         os.utime(path, (moment, moment))
-    assert continued(configuration, folder) == 0
-    assert same(folder)
+    assert continued(TEST, folder) == 0
+    assert _same_table(TEST, made.folder, folder)

@@ -19,7 +19,7 @@ from tests.places import ROOT
 
 MPIEXEC = Path(sys.executable).with_name("mpiexec")
 COSTS = ["seconds", "cpu_seconds", "peak_memory"]
-N_SIMULATION = 40
+N_SIMULATION = 24
 
 
 def launched(n_rank, *arguments):
@@ -64,12 +64,12 @@ def processes(folder):
 
 @contextlib.contextmanager
 def started(configuration, folder, n_rank=3):
-    """Ranks of a sweep, once ten of its simulations have finished."""
+    """Ranks of a sweep, once four of its simulations have finished."""
     command = ["-m", "crackfront", "simulate", configuration, "--output", folder]
     command += ["--checkpoint", "0.1"]
     output = {"stdout": subprocess.PIPE, "stderr": subprocess.STDOUT, "text": True}
     with subprocess.Popen(launched(n_rank, "-u", *command), **output) as process:
-        assert any(line.startswith("[10/") for line in process.stdout)
+        assert any(line.startswith("[4/") for line in process.stdout)
         yield process
 
 
@@ -102,7 +102,7 @@ def test_ranks_that_are_told_to_end_go_on_to_the_table_of_one_process(
     assert process.returncode == 75
     assert "run the same command to continue" in output
     kept = stored(tmp_path)
-    assert 10 <= len(kept) < N_SIMULATION
+    assert 4 <= len(kept) < N_SIMULATION
     assert table(configuration, tmp_path).equals(undisturbed)
     assert kept.items() <= stored(tmp_path).items()
 

@@ -10,10 +10,11 @@ import xarray as xr
 import crackfront as cf
 from crackfront.core.adhesion import rough_adhesion
 from crackfront.simulate.simulation import simulation_adhesion
+from tests.commands import slow
 from tests.yaml_texts import from_yaml, to_yaml
 
 CONFIG = Path(__file__).parents[2] / "config"
-KINDS = ["spheres", "chemical", "fronts"]
+KINDS = ["spheres", slow("chemical"), "fronts"]
 
 
 @pytest.fixture(scope="module", params=KINDS)

@@ -30,11 +30,8 @@ def plan(folder, profile=ROOT / "workflow/profiles/default", **environment):
     )
 
 
-def test_make_says_what_is_to_run_and_shows_errors_of_a_profile_without_announcing_it(tmp_path):
-    done = plan(tmp_path)
-    assert done.returncode == 0, done.stderr
-    assert done.stdout.startswith("8 simulations = ")
-    assert "profile" not in done.stderr
+@pytest.mark.slow
+def test_errors_of_a_profile_are_shown(tmp_path):
     missing = plan(tmp_path, profile=tmp_path / "nowhere")
     assert missing.returncode == 1
     assert "no profile.yaml" in missing.stderr

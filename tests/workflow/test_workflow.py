@@ -28,22 +28,24 @@ COSTS = {"seconds", "cpu_seconds", "peak_memory"}
 RULES = {"request", "simulate", "aggregate", "fit", "checksums"}
 
 
-def command(folder, *settings, sweep=ROOT / "config/test.yaml", ranks=2):
+def command(folder, *settings, sweep=ROOT / "config/test.yaml", ranks=2, plan=False):
     """Command that runs the workflow in a folder of its own; None leaves the ranks to it."""
     chosen = [] if ranks is None else [f"ranks={ranks}"]
     return [
-        *(sys.executable, str(ROOT / "workflow/run.py"), "--snakefile", str(ROOT / "Snakefile")),
+        *(sys.executable, str(ROOT / "workflow/run.py"), *(["--plan", str(sweep)] if plan else [])),
+        *("--snakefile", str(ROOT / "Snakefile")),
         *("--profile", str(ROOT / "workflow/profiles/default"), "--directory", str(folder)),
         *("--cores", "2", "--config", f"sweep={sweep}", *chosen, *settings),
     ]
 
 
-def snakemake(*arguments, errors=subprocess.PIPE, **options):
+def snakemake(folder, *arguments, shown=subprocess.PIPE, errors=subprocess.PIPE, **options):
     """Run the workflow in a folder of its own."""
     return subprocess.run(
-        command(*arguments, **options),
-        stdout=subprocess.PIPE,
+        command(folder, *arguments, **options),
+        stdout=shown,
         stderr=errors,
+        cwd=folder,
         text=True,
         timeout=900,
         check=False,
@@ -81,14 +83,15 @@ def copied_sweep(folder):
 
 
 def run_on_terminal(folder, sweep, *targets):
-    """What a terminal of 24 by 100 letters shows of a run without MPI."""
+    """What a terminal of 24 by 100 letters shows of a run as `make` calls it, without MPI."""
     terminal, side = pty.openpty()
     termios.tcsetwinsize(side, (24, 100))
     with os.fdopen(terminal, encoding="utf-8", errors="replace", newline="") as shown:
         read = ThreadPoolExecutor().submit(_everything, shown)
-        with os.fdopen(side, "wb") as errors:
+        with os.fdopen(side, "wb") as output:
             settings = ("--", *targets) if targets else ()
-            ended = snakemake(folder, *settings, sweep=sweep, ranks=1, errors=errors)
+            both = {"shown": output, "errors": output}
+            ended = snakemake(folder, *settings, sweep=sweep, ranks=1, plan=True, **both)
         text = read.result()
     assert ended.returncode == 0, text
     assert "fit.md" in (folder / "results" / sweep.stem / "logs/fit.log").read_text()
@@ -112,11 +115,13 @@ def whole(tmp_path_factory):
     return folder
 
 
-def test_a_run_fits_a_sweep_and_shows_one_bar_and_the_next_plan_is_what_a_change_concerns(
+def test_a_run_says_what_is_to_run_shows_one_bar_and_is_followed_by_what_a_change_concerns(
     tmp_path,
 ):
     sweep, results = flat_sweep(tmp_path), tmp_path / "results/sweep"
     shown = run_on_terminal(tmp_path, sweep, "results/sweep/fit.md")
+    assert shown.startswith("4 simulations = ")
+    assert "profile" not in shown  # which Snakemake announces
     assert re.search(r"\r +0%\|.*\| 0/4 ", shown)
     assert re.search(r"\r100%\|.*\| 4/4 ", shown)
     log = (results / "logs/simulate-flat.log").read_bytes()
@@ -415,6 +420,7 @@ def test_short_shards_take_one_core_each_and_long_ones_all_cores(tmp_path, reali
     assert printed.count("mpiexec -n") == launches
 
 
+@pytest.mark.slow
 def test_two_configurations_of_one_name_raise_an_error(tmp_path):
     sweep, results = copied_sweep(tmp_path), tmp_path / "results/test"
     block = ("--spectrum", "flat", "--realisations", "0-0")
@@ -427,7 +433,6 @@ def test_two_configurations_of_one_name_raise_an_error(tmp_path):
     assert ended.returncode != 0
     assert re.search(r"results/test has the results of .*test.yaml, another conf", ended.stderr)
     assert "Traceback" not in ended.stderr
-    assert "profile" not in ended.stderr  # which Snakemake announces
     assert contents(tmp_path / "results") == before
 
 

@@ -65,7 +65,7 @@ def test_a_soft_machine_that_is_taken_as_stiff_is_told_or_refused():
         slow({"without": "radius", "n_away": 3000}, 1e3),
         slow({"without": "radius", "n_away": 8, "force_noise": 0.001}, 1e3),
         slow({"without": "radius", "drift": 0.5, "force_noise": 0.005}, 1e3),
-        ({"without": "radius", "n_away": 100, "wave": 0.01}, 1e3),
+        slow({"without": "radius", "n_away": 100, "wave": 0.01}, 1e3),
         ({"without": "force", "stiffness": 300.0, "preload": 3.0}, 300.0),
     ],
 )

@@ -84,6 +84,7 @@ def test_single_instabilities_are_narrower_than_the_parts_that_jump_in_a_load_st
     assert contact.widest[0] < 0.9 * widest[0]
 
 
+@pytest.mark.slow
 def test_the_widest_instability_does_not_depend_on_the_load_step(contact):
     parameters = film_parameters(step=120e-9, n_surface=1)
     finer = computed("main-5bc", parameters)
@@ -99,6 +100,7 @@ MEASURED = """force (mN),radius (um),branch
 """
 
 
+@pytest.mark.slow
 def test_measured_points_are_fitted_checked_and_drawn(tmp_path):
     path = tmp_path / "measured.csv"
     path.write_text(MEASURED)
