@@ -148,7 +148,8 @@ def steady_loop_figure(
         figure = blank_figure(PAGE, 0.44 * PAGE)
         left_axes, right_axes = figure.subplots(1, 2)
         _draw_jkr_loop(left_axes, states, works, window)
-        draw_branches(right_axes, states, works, window, elastic_energy=elastic_energy, kind=kind)
+        look: dict[str, Any] = {"elastic_energy": elastic_energy, "kind": kind, "arrows": False}
+        draw_loop(right_axes, states, works, window, **look)
         handles, labels = right_axes.get_legend_handles_labels()
         left_handles, left_labels = left_axes.get_legend_handles_labels()
         right_axes.get_legend().remove()
@@ -223,8 +224,9 @@ def draw_loop(
     elastic_energy: float = math.nan,
     kind: FieldKind = "roughness",
     units: AxisUnits = REDUCED,
+    arrows: bool = True,
 ) -> None:
-    """Draw two branches with arrows, their JKR curves and the window of the averages.
+    """Draw two branches, their JKR curves and the window of the averages.
 
     Parameters
     ----------
@@ -240,25 +242,9 @@ def draw_loop(
         Measured e_el (Units: w_int) and kind of field, for the curves of the paper; NaN for none.
     units : AxisUnits, optional
         Units of the axes.
+    arrows : bool, optional
+        Whether arrows show the direction of each branch.
     """
-    draw_branches(
-        axes, states, works, window, elastic_energy=elastic_energy, kind=kind, units=units
-    )
-    for direction, style in _BRANCHES.items():
-        _draw_direction(axes, *_points(states, direction, units), style.colour)
-
-
-def draw_branches(
-    axes: Axes,
-    states: LoopStates,
-    works: tuple[float, float],
-    window: tuple[float, float],
-    *,
-    elastic_energy: float = math.nan,
-    kind: FieldKind = "roughness",
-    units: AxisUnits = REDUCED,
-) -> None:
-    """Draw what :func:`draw_loop` draws, with the same parameters, but without arrows."""
     end = 1.2 * float(np.max(states.mean_radius))
     for (direction, style), adhesion in zip(_BRANCHES.items(), works, strict=True):
         every = max(1, np.count_nonzero(states.direction == direction) // MOST_MARKERS)
@@ -287,6 +273,9 @@ def draw_branches(
     _set_limits(axes, states, units)
     _name_axes(axes, units)
     axes.legend(loc="lower right")
+    if arrows:
+        for direction, style in _BRANCHES.items():
+            _draw_direction(axes, *_points(states, direction, units), style.colour)
 
 
 def _draw_jkr_curve(axes: Axes, adhesion: float, end: float, units: AxisUnits, **look: Any) -> None:
