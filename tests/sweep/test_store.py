@@ -481,6 +481,7 @@ def store_texts_as_characters(path):
     return file_digest(path)
 
 
+@pytest.mark.slow
 def test_results_with_texts_as_characters_are_read_and_grow(configuration, made, folder):
     for curves in [*folder.glob("curves/*/*.nc")]:
         digest = store_texts_as_characters(curves)[:DIGITS_IN_NAME]
