@@ -196,8 +196,9 @@ def law_value(
     gamma = effective_size(coefficients, s, size, breadth) ** -np.asarray(exponent)
     narrower = TYPICAL_BREADTH / np.asarray(breadth, dtype=float)
     disorder_term = 1 + law.m_4 * s**law.m_5 * narrower**law.m_8
-    size_term = 1 + gamma * np.polyval([law.m_3, law.m_2, law.m_1], gamma)
-    return np.asarray(law.k_0 / disorder_term / size_term)
+    with np.errstate(over="ignore"):  # k of a front that is hardly pinned is zero
+        size_term = 1 + gamma * np.polyval([law.m_3, law.m_2, law.m_1], gamma)
+        return np.asarray(law.k_0 / disorder_term / size_term)
 
 
 def effective_size(

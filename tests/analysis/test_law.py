@@ -43,6 +43,10 @@ def test_the_law_rises_with_size_to_its_limit(law):
         assert k[-1] < limit == pytest.approx(k[-1], rel=1e-3)
 
 
+def test_a_front_that_is_hardly_pinned_has_a_k_of_zero(law):
+    assert law_value(law.coefficients, 0.2, 1e-250) == 0.0
+
+
 def test_the_limit_falls_with_disorder_from_k_0(law):
     k = law_value(law.coefficients, np.linspace(0, law.disorder[1], 50), np.inf)
     assert k[0] == law.coefficients[0]
