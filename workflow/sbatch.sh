@@ -18,7 +18,6 @@ export PATH="$PWD/.venv/bin:$PATH" OMP_NUM_THREADS=1
 
 # pmi2 for MPICH's wheel (`make env`), often pmix for the site's MPI (`make env MPI=system`).
 srun -K1 --mpi=pmi2 crackfront simulate "$sweep"
-for step in aggregate fit; do
-  crackfront "$step" "$sweep"
-done
+crackfront aggregate "$sweep"
+crackfront fit "$sweep"
 crackfront checksums "results/$(basename "${sweep%.*}")"

@@ -34,7 +34,7 @@ from crackfront.sweep.rows import failed_row
 from crackfront.sweep.store import Store
 from tests.commands import refused, run
 from tests.measured.made import DETAIL, measure_surfaces_once
-from tests.places import TEST
+from tests.places import ROOT, TEST
 
 
 @pytest.fixture
@@ -214,6 +214,13 @@ def test_every_command_is_listed_and_shows_examples_of_itself():
         assert any(
             f"crackfront {name} " in f"{line} " for command, line in shown if command == name
         )
+
+
+def test_the_job_script_calls_commands_that_exist():
+    script = (ROOT / "workflow/sbatch.sh").read_text(encoding="utf-8")
+    called = re.findall(r"^(?:srun .*)?crackfront (\w+)", script, re.MULTILINE)
+    assert called == ["simulate", "aggregate", "fit", "checksums"]
+    assert set(called) <= main.commands.keys()
 
 
 @pytest.mark.parametrize(("name", "line"), list(commands_of_help()))
