@@ -57,8 +57,8 @@ def test_each_table_of_a_page_has_its_command_below_its_heading():
 def test_the_gallery_begins_with_the_counts_and_the_checks_that_do_not_agree():
     text = written_pages(quoted_texts("| 3 |"))[GALLERY]
     differing = "](tables/paper.md#checks-main-1d) | k | 3 | 2 | differs as the law of k says: 2 |"
-    picture = "![Fig. 1d: a sphere](figures/main-1d.png)"
-    cost = "Scale quick, 3 s of one core"
+    picture = "![main-1d](figures/main-1d.png)"
+    cost = "scale quick, 3 s"
     places = ["3 of 3 agree", differing, "## Fig. 1d", picture, "*1 of 2 [", cost, "1a2b3c4"]
     assert sorted(places, key=text.index) == places
     assert "radius" not in text
@@ -67,7 +67,7 @@ def test_the_gallery_begins_with_the_counts_and_the_checks_that_do_not_agree():
 def test_all_checks_of_a_figure_are_on_the_page_of_tables():
     lines = written_pages(quoted_texts("| 3 |"))[TABLES / "paper.md"].splitlines()
     assert lines.index("## Checks, main-1d") < lines.index("| radius | 1 | 1 | agrees | exact |")
-    assert "![Fig. 1d: a sphere](figures/main-1d.png)" not in lines
+    assert "![main-1d](figures/main-1d.png)" not in lines
 
 
 @pytest.mark.parametrize(
