@@ -15,25 +15,24 @@ GALLERY = Path("docs/experiments/gallery.md")
 """Page with the figures of the paper."""
 
 _ABOUT_GALLERY = """\
-- **Differs as the law of k says:** the paper has k = 3 everywhere; simulated k falls with the
-  disorder and depends on the spectrum and on the size of the contact. The number is
-  [the law of k](../law.md).
-- **Cannot be decided:** the data are too few to confirm or to contradict the claim.
-- **Is not met:** an expectation of this project, which the paper does not state. Its table has the
-  origin in the column `source`.
+- **Differs as the law of k says:** the paper has k = 3 everywhere; simulated k depends on disorder,
+  spectrum and size of the contact. The number is from [the law](../law.md).
+- **Cannot be decided:** the data are too few.
+- **Is not met:** an expectation of this project, not of the paper; its table names the
+  source.
 - **FAIL:** unexplained.
 
-A check agrees if the number lies within the stated tolerance or bound. If its 95% interval does
-not contain the expected number, the remark in the table says so.
+A check agrees if the number lies within the stated tolerance or bound; a remark says if its 95%
+interval does not contain the expected number. Times are of one core.
 
-Main Figs. 1a to 1c and SI Figs. S-1 to S-3 are drawings and are not computed. SI Fig. S-4 compares
-the model with [boundary elements](boundary-elements.md#at-weak-roughness-both-agree); it was
-computed on 512 x 512 points, where the paper has 1024 x 1024. The measured data of main Fig. 5 and
-SI Fig. S-6 are not part of this repository.
+Main Figs. 1a to 1c and SI Figs. S-1 to S-3 are drawings and are not computed. SI Fig. S-4 is on the
+page of [boundary elements](boundary-elements.md#at-weak-roughness-both-agree), at 512 x 512 points
+instead of the paper's 1024 x 1024. The measured data of main Fig. 5 and SI Fig. S-6 are not in this
+repository.
 
 The tile repeats under the contact in two figures. In main Fig. 3c, d its side is 0.2 under a
-contact 3.4 wide (reduced lengths); a wider one would need 6 GB of memory. In the sweep of SI Fig.
-S-5 it is four roll-offs or 200 short cutoffs under a contact 3.8 wide.
+contact 3.4 wide (reduced lengths). In the sweep of SI Fig. S-5 it is four roll-offs or 200 short
+cutoffs under a contact 3.8 wide.
 
 ```sh
 make figures SCALE=paper          # computes the figures
@@ -83,12 +82,12 @@ def _result(row: Mapping[str, str], scale: str) -> str:
 
 
 def _picture(name: str, figure: StoredFigure) -> str:
-    """Picture of a figure below its title; its caption counts the checks."""
+    """Picture of a figure, with its name as its text, below its title and above its checks."""
     results = [row["result"] for row in figure.checks.records()]
-    cost = f"Scale {figure.scale}, {figure.cpu_seconds:.0f} s of one core."
-    counts = f"{results.count(_AGREES)} of {len(results)} {_link('checks', name)} agree."
-    picture = f"![{figure.title}](figures/{figure.picture})"
-    return f"## {figure.title}\n\n{picture}\n\n*{counts} {cost}*"
+    cost = f"scale {figure.scale}, {figure.cpu_seconds:.0f} s"
+    counts = f"{results.count(_AGREES)} of {len(results)} {_link('checks', name)} agree"
+    picture = f"![{name}](figures/{figure.picture})"
+    return f"## {figure.title}\n\n{picture}\n\n*{counts} ({cost}).*"
 
 
 def _link(text: str, figure: str) -> str:

@@ -52,9 +52,9 @@ def test_the_gallery_begins_with_the_counts_and_the_checks_that_do_not_agree():
         f"{link} | k | 3 | 2 | differs as the law of k says: 2 |",
         f"{link} | tau | 1.3 | 1.1 | cannot be decided at quick scale: too few |",
         "## Fig. 1d",
-        "![Fig. 1d: a sphere](figures/main-1d.png)",
+        "![main-1d](figures/main-1d.png)",
         "*1 of 3 [",
-        "Scale quick, 3 s of one core",
+        "scale quick, 3 s",
         "`make figures` (commit 1a2b3c4, EPYC, 2026-11-28)",
     ]
     assert sorted(places, key=text.index) == places

@@ -164,7 +164,11 @@ NOT_FOLLOWED = {
     b"No log directive defined",
     b"Specify a conda environment or container for each rule.",
 }
-"""Advice of `--lint` that docs/architecture.md declines."""
+"""Advice of `--lint` that is not followed.
+
+Functions stand with their rules, the rule `request` prints nothing, and one environment serves all
+rules.
+"""
 
 
 @pytest.mark.slow

@@ -3,14 +3,6 @@
 PAPER = f"results/figures/{SCALE}"
 # Names, as reading this must not import what computes the figures.
 ANIMATED = ["beyond-animation", "beyond-video"]
-# Those that take longest go first: one that began last would leave the other cores waiting.
-LONGEST = [
-    "main-3ab",
-    "main-3cd",
-    "main-5bc",
-    "beyond-avalanches",
-    "beyond-roughness",
-]
 
 
 def expected_seconds(name):
@@ -75,6 +67,8 @@ rule figure_data:
         f"{PAPER}/logs/{{figure}}-data.log",
     benchmark:
         f"{PAPER}/benchmarks/{{figure}}-data.tsv"
+    # The longest begins first: if it began last, the other cores would wait for it.
+    priority: lambda wildcards: expected_seconds(wildcards.figure)
     resources:
         cpus_per_task=1,
         mem_mb=5000,
@@ -85,14 +79,6 @@ rule figure_data:
     shell:
         f"{STUDIES} paper figure {{params.file:q}} --scale {SCALE}"
         f" --output {{params.results:q}}{LOGGED}"
-
-
-use rule figure_data as longest_figure_data with:
-    output:
-        f"{PAPER}/{{figure}}.nc",
-    wildcard_constraints:
-        figure="|".join(LONGEST),
-    priority: 1
 
 
 rule figure_of_sweep:
@@ -117,7 +103,7 @@ rule figure_of_sweep:
         f" --output {{params.results:q}}{LOGGED}"
 
 
-ruleorder: figure_of_sweep > longest_figure_data > figure_data
+ruleorder: figure_of_sweep > figure_data
 
 
 rule figure_drawing:

@@ -1,4 +1,4 @@
-"""Hard cases of the field and of the front; docs/experiments/hard-cases.md lists them."""
+"""Hard cases of the field and of the front; docs/experiments/hard-cases.md lists the main ones."""
 
 from pathlib import Path
 
