@@ -57,16 +57,17 @@ def main() -> None:
 
 @main.command(epilog=examples("python -m studies pages"))
 def pages() -> None:
-    """Write the pages of stored tables; name the pages that quote other numbers than are stored."""
+    """Write the gallery; name the pages that quote other numbers than are stored."""
     from studies.numbers import stored
+    from studies.paper.gallery import GALLERY, gallery_page
     from studies.quotes import read_quotes
-    from studies.table_pages import written_pages
 
     studies = {name: stored(name) for name in STUDIES}
-    for path, text in written_pages(studies).items():
-        if not path.exists() or path.read_text(encoding="utf-8") != text:
-            write_text(path, text)
-            click.echo(f"page: {path}")
+    if figures := studies["paper"].figures:
+        text = gallery_page(figures)
+        if not GALLERY.exists() or GALLERY.read_text(encoding="utf-8") != text:
+            write_text(GALLERY, text)
+            click.echo(f"page: {GALLERY}")
     for quote in read_quotes():
         if not quote.is_shown(studies):
             click.echo(f"edit {quote.page}, which should say: {quote.text(studies)}")

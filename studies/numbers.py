@@ -1,5 +1,7 @@
 """Numbers, tables and figures that studies have measured, a JSON file for each study.
 
+The rows of a table are in a CSV file of :mod:`studies.tables`, which the JSON file names.
+
 A number never becomes stale: it says where it was measured. Canaries recompute some of them every
 night (:mod:`studies.canaries`), and a release measures all of them again.
 """
@@ -14,6 +16,7 @@ from typing import Any
 
 from crackfront.simulate.provenance import provenance, utc_now
 from crackfront.simulate.storage import write_text
+from studies.tables import Table, read_table, table_path, write_table
 
 STORED = Path("docs/reference/numbers")
 """Folder of the files, each named as its study."""
@@ -43,10 +46,10 @@ class Number(Origin):
 
 
 @dataclass(frozen=True, slots=True)
-class Table(Origin):
-    """A text of the pages, mostly a table in Markdown."""
+class StoredTable(Origin):
+    """A table of a CSV file; the JSON file has its note."""
 
-    text: str
+    table: Table
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -59,8 +62,8 @@ class StoredFigure(Origin):
     scale: str
     cpu_seconds: float
     """Processor time of its data. (Units: s)"""
-    checks: str
-    """Tables of its checks in Markdown."""
+    checks: Table
+    """Its checks, which are in a CSV file."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,7 +72,7 @@ class Stored:
 
     numbers: dict[str, Number] = field(default_factory=dict)
     canaries: dict[str, Number] = field(default_factory=dict)
-    tables: dict[str, Table] = field(default_factory=dict)
+    tables: dict[str, StoredTable] = field(default_factory=dict)
     figures: dict[str, StoredFigure] = field(default_factory=dict)
 
 
@@ -82,9 +85,26 @@ def stored(study: str) -> Stored:
     return Stored(
         numbers={name: Number(**entry) for name, entry in content["numbers"].items()},
         canaries={name: Number(**entry) for name, entry in content["canaries"].items()},
-        tables={name: Table(**entry) for name, entry in content["tables"].items()},
-        figures={name: StoredFigure(**entry) for name, entry in content["figures"].items()},
+        tables={name: _stored_table(entry) for name, entry in content["tables"].items()},
+        figures={name: _stored_figure(entry) for name, entry in content["figures"].items()},
     )
+
+
+def _stored_table(entry: dict[str, Any]) -> StoredTable:
+    """Table of an entry of a JSON file, which names its CSV file."""
+    table = read_table(Path(entry.pop("file")), entry.pop("note", ""))
+    return StoredTable(table, **entry)
+
+
+def _stored_figure(entry: dict[str, Any]) -> StoredFigure:
+    """Figure of an entry of a JSON file, which names the CSV file of its checks."""
+    checks = read_table(Path(entry.pop("file")))
+    return StoredFigure(checks=checks, **entry)
+
+
+def checks_path(study: str, figure: str) -> Path:
+    """File with the checks of a figure."""
+    return table_path(study, f"checks {figure}")
 
 
 def store(
@@ -92,7 +112,7 @@ def store(
     *,
     numbers: Mapping[str, Number] | None = None,
     canaries: Mapping[str, Number] | None = None,
-    tables: Mapping[str, str] | None = None,
+    tables: Mapping[str, Table] | None = None,
     figures: Mapping[str, StoredFigure] | None = None,
     data: Mapping[str, Any] | None = None,
 ) -> None:
@@ -105,12 +125,27 @@ def store(
     for section, measured in ((record.numbers, numbers), (record.canaries, canaries)):
         for name, number in (measured or {}).items():
             section[name] = replace(number, **asdict(origin))
-    for name, text in (tables or {}).items():
-        record.tables[name] = Table(text, **asdict(origin))
+    for name, table in (tables or {}).items():
+        record.tables[name] = StoredTable(table, **asdict(origin))
+        write_table(table_path(study, name), table)
     for name, figure in (figures or {}).items():
         record.figures[name] = replace(figure, **asdict(origin))
-    text = json.dumps(asdict(record), indent=1, ensure_ascii=False, sort_keys=True)
+        write_table(checks_path(study, name), figure.checks)
+    text = json.dumps(_content(study, record), indent=1, ensure_ascii=False, sort_keys=True)
     write_text(STORED / f"{study}.json", text + "\n")
+
+
+def _content(study: str, record: Stored) -> dict[str, Any]:
+    """Content of the JSON file of a study, which names the files of its tables."""
+    content = asdict(record)
+    for name, entry in content["tables"].items():
+        entry["file"] = str(table_path(study, name))
+        if note := entry.pop("table")["note"]:
+            entry["note"] = note
+    for name, entry in content["figures"].items():
+        entry["file"] = str(checks_path(study, name))
+        del entry["checks"]
+    return content
 
 
 def _origin(data: Mapping[str, Any]) -> Origin:

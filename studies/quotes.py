@@ -30,14 +30,14 @@ class Quote:
         """Fragment with its numbers; a ValueError names one that was not measured."""
 
         def stored_text(place: re.Match[str]) -> str:
-            study, (name, *cell) = place["study"], place["name"].split(" / ")
+            study, (name, *cell) = place["study"], place["name"].split(" / ", 2)
             record = studies.get(study, Stored())
             if number := record.numbers.get(name):
                 return _number_text(number, place["form"])
-            texts = {shown: figure.checks for shown, figure in record.figures.items()}
-            texts |= {shown: table.text for shown, table in record.tables.items()}
-            if text := texts.get(name):
-                return _cell(text, *cell) if cell else text
+            tables = {shown: figure.checks for shown, figure in record.figures.items()}
+            tables |= {shown: stored_table.table for shown, stored_table in record.tables.items()}
+            if name in tables and len(cell) == 2:
+                return tables[name].cell(*cell)
             raise ValueError(f"the study {study} has not measured {name!r}; run it with --keep")
 
         return _PLACE.sub(stored_text, self.fragment)
@@ -62,11 +62,3 @@ def _number_text(number: Number, form: str | None) -> str:
         parts = zip((number.value, number.error), form.split(" ± "), strict=False)
         return " ± ".join(format(value, part) for value, part in parts)
     return f"{number.value:g}" if number.error is None else with_error(number.value, number.error)
-
-
-def _cell(table: str, row: str, column: str) -> str:
-    """Text of a cell, in the row that begins with some cells; bold or not is the same."""
-    for line in table.replace("**", "").splitlines():
-        if line.startswith(f"| {row} |"):
-            return line.split("|")[int(column)].strip()
-    raise ValueError(f"no row of the table begins with {row!r}")

@@ -84,7 +84,7 @@ def report(output: Path, keep: bool) -> None:
     forget_sums(output)
     study_errors = measured(output)
     tables = error_tables(study_errors)
-    parts = [f"## {name}\n\n{table}\n" for name, table in tables.items()]
+    parts = [f"## {name}\n\n{table.text()}\n" for name, table in tables.items()]
     write_text(output / "accuracy.md", "\n".join(["# Measured errors\n", *parts]))
     click.echo(f"tables: {output / 'accuracy.md'}")
     if laws := list(fit_laws(study_errors.fitted)):
@@ -96,7 +96,7 @@ def report(output: Path, keep: bool) -> None:
     write_sums(output)
     if keep:
         hidden = {f"Settings, {name}" for name in SCENES if name not in DETAILED_SCENES}
-        shown = {name: text for name, text in tables.items() if name not in hidden}
+        shown = {name: table for name, table in tables.items() if name not in hidden}
         data = read_attributes(min(output.glob("*.nc"))) | {"command": "make accuracy"}
         store("accuracy", tables=shown, numbers=compared_numbers(study_errors), data=data)
 

@@ -25,7 +25,7 @@ from crackfront.measured.scan.reading import read_measurements
 from crackfront.measured.spectrum.measured_surface import MeasuredSurface, measured_surface
 from studies.accuracy.scans import scanned
 from studies.numbers import Number
-from studies.pages import markdown_table
+from studies.tables import Table, make_table
 
 Distortion = Callable[[Array, np.random.Generator], Array]
 
@@ -321,7 +321,7 @@ def _lines(kind: Kind, rng: np.random.Generator) -> MeasuredSurface:
         return measured_surface(read_measurements(paths, ReadingOptions(unit="um")))
 
 
-def energy_table(energies: Mapping[Kind, Sequence[ScanEnergy]]) -> str:
+def energy_table(energies: Mapping[Kind, Sequence[ScanEnergy]]) -> Table:
     """e_el of all scans relative to the true one, and how often the intervals contain it."""
     rows = []
     for kind, scans in energies.items():
@@ -331,20 +331,18 @@ def energy_table(energies: Mapping[Kind, Sequence[ScanEnergy]]) -> str:
         resolved = "yes" if kind.resolved else "no"
         rows.append(
             f"{kind.name} | {resolved} | {np.median(ratios):.2f} | "
-            f"{np.median(np.abs(ratios - 1)):.0%} | {_coverage(scans):.0%} | "
-            f"{factor:.2f} | {measured:.0%}"
+            f"{100 * np.median(np.abs(ratios - 1)):.0f} | {100 * _coverage(scans):.0f} | "
+            f"{factor:.2f} | {100 * measured:.0f}"
         )
-    table = markdown_table(
-        "scans | resolved | e_el found / true | median error | intervals that contain it | "
-        "their factor | e_el measured",
-        rows,
-    )
     all_scans = [scan for scans in energies.values() for scan in scans]
     ratios = _ratios(all_scans)
-    return (
-        f"{table}\n\n{len(all_scans)} scans: median error {np.median(np.abs(ratios - 1)):.0%}, "
+    return make_table(
+        "scans | resolved | e_el found / true | median error % | intervals that contain it % "
+        "| factor of the interval | e_el measured %",
+        rows,
+        f"{len(all_scans)} scans: median error {np.median(np.abs(ratios - 1)):.0%}, "
         f"geometric mean of found / true {np.exp(np.mean(np.log(ratios))):.2f}, "
-        f"{_coverage(all_scans):.1%} of the intervals contain the true value"
+        f"{_coverage(all_scans):.1%} of the intervals contain the true value",
     )
 
 

@@ -23,7 +23,7 @@ from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.synthesis import gaussian_field
 from crackfront.core.units import CONTACT_MODULUS
 from studies.accuracy.study import rms
-from studies.pages import markdown_table
+from studies.tables import Table, make_table
 
 CUTOFF = 0.08
 """Short cutoff of the spectrum. (Units: reduced lateral length)"""
@@ -82,12 +82,12 @@ def energies(record: CycleRecord) -> Energies:
     )
 
 
-def energy_table() -> str:
+def energy_table() -> Table:
     """Energies of all amplitudes and steps; errors are rms, against the finest two steps."""
     rows = [row for amplitude in AMPLITUDES for row in _amplitude_rows(amplitude)]
-    return markdown_table(
-        "w_rms/w_int | step | dissipated | its error % | trapezoidal rule % | extrapolated % "
-        "| dissipated - work of the steps",
+    return make_table(
+        "w_rms/w_int | step | dissipated | error of dissipated % | error of trapezoidal rule % "
+        "| error of extrapolation % | dissipated - work of the steps",
         rows,
     )
 

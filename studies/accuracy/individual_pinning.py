@@ -23,7 +23,7 @@ from crackfront.core.synthesis import gaussian_field
 from crackfront.core.units import WORK_OF_ADHESION
 from studies.canaries import interval_number
 from studies.numbers import Number
-from studies.pages import markdown_table
+from studies.tables import Table, make_table
 
 SPRING = 10.0
 """Length of the springs times w_rms / w_int, in short cutoffs."""
@@ -97,7 +97,7 @@ def exponent(low: Array, high: Array, ratio: float) -> Estimate[float]:
     return mean.each(float)
 
 
-def measured_pinning() -> tuple[str, dict[str, Number]]:
+def measured_pinning() -> tuple[Table, dict[str, Number]]:
     """Table of all disorders, and the last exponent."""
     seeds = range(SURFACES)
     independent = np.array([independent_hysteresis(seed) for seed in seeds])
@@ -105,13 +105,17 @@ def measured_pinning() -> tuple[str, dict[str, Number]]:
     slopes = [
         exponent(low, high, DISORDERS[1] / DISORDERS[0]) for low, high in itertools.pairwise(fronts)
     ]
-    texts = ["", *(with_error(slope.value, slope.high - slope.value) for slope in slopes)]
+    texts = (with_error(slope.value, slope.high - slope.value) for slope in slopes)
+    exponents = [["", ""], *(text.split(" ± ") for text in texts)]
     rows = [
-        (f"{s:g}", f"{front.mean():.3f}", text, f"{np.mean(front / independent):.3f}")
-        for s, front, text in zip(DISORDERS, fronts, texts, strict=True)
+        (f"{s:g}", f"{front.mean():.3f}", *cells, f"{np.mean(front / independent):.3f}")
+        for s, front, cells in zip(DISORDERS, fronts, exponents, strict=True)
     ]
-    header = "w_rms/w_int | hysteresis / w_rms | exponent since the row above | / independent"
+    header = (
+        "w_rms/w_int | hysteresis / w_rms | exponent since the row above | error of the exponent "
+        "| hysteresis over independent sites"
+    )
     return (
-        markdown_table(header, rows),
+        make_table(header, rows),
         {"exponent of individual pinning": interval_number(slopes[-1])},
     )

@@ -25,7 +25,7 @@ from crackfront.surfaces.random_surface import random_surface
 from crackfront.surfaces.scales import Scales
 from crackfront.surfaces.si_units import in_si_units
 from studies.accuracy.study import rms
-from studies.pages import markdown_table
+from studies.tables import Table, make_table
 
 SPHERE = Scales(radius=1.25e-3, work_of_adhesion=63e-3, contact_modulus=0.7e6 / 0.75)
 
@@ -234,19 +234,19 @@ def _coverage(loops: list[tuple[Array, Array]], too_short: int) -> Coverage:
     return Coverage(np.abs(offset) <= reach, offset, reach, too_short)
 
 
-def coverage_table(coverages: Mapping[str, Coverage]) -> str:
-    """Shares of intervals that contain the truth, in Markdown, an instrument a row, and of all."""
+def coverage_table(coverages: Mapping[str, Coverage]) -> Table:
+    """Shares of intervals that contain the truth, an instrument a row, and of all."""
     rows = []
     for name, rig in coverages.items():
-        error = f"{rms(rig.offset[:, 2]):.0%}"
-        half = f"{np.median(rig.reach[:, 2]):.0%}"
+        error = f"{100 * rms(rig.offset[:, 2]):.0f}"
+        half = f"{100 * np.median(rig.reach[:, 2]):.0f}"
         rows.append([name, *_coverage_cells(rig.inside, rig.too_short), error, half])
     inside = np.concatenate([rig.inside for rig in coverages.values()])
     too_short = sum(rig.too_short for rig in coverages.values())
-    rows.append(["**all**", *_coverage_cells(inside, too_short), "", ""])
-    return markdown_table(
-        "rig | loops | rejected | w_appr | w_retr | hysteresis | all three | rms error of the "
-        "hysteresis | half of its interval",
+    rows.append(["all", *_coverage_cells(inside, too_short), "", ""])
+    return make_table(
+        "rig | loops | rejected | w_appr % | w_retr % | hysteresis % | all three % "
+        "| rms error of the hysteresis % | half of its interval %",
         rows,
     )
 
@@ -254,4 +254,4 @@ def coverage_table(coverages: Mapping[str, Coverage]) -> str:
 def _coverage_cells(inside: Array, too_short: int) -> list[str]:
     """Numbers of loops, and shares of intervals that contain each work, and of all intervals."""
     shares = (*np.mean(inside, axis=0), np.mean(inside))
-    return [str(len(inside)), str(too_short), *(f"{share:.0%}" for share in shares)]
+    return [str(len(inside)), str(too_short), *(f"{100 * share:.0f}" for share in shares)]

@@ -14,7 +14,7 @@ from crackfront.measured.density.bands import analysed_scan
 from crackfront.measured.scan.reading import Measurement
 from crackfront.measured.spectrum.draws import BATCH
 from crackfront.measured.spectrum.joining import joint_spectrum
-from studies.pages import markdown_table
+from studies.tables import Table, make_table
 
 SEEDS = 5
 DIGITS = 1e-4
@@ -71,11 +71,18 @@ def _ends(
     return np.log([energy.low, energy.value, energy.high]), draws.weight.size
 
 
-def movement_table(movements: Sequence[tuple[str, Movement]]) -> str:
-    """Movements in Markdown, a surface a row, per cent of the width."""
-    return markdown_table(
-        "scans | factor of the interval | draws | seeds: low, median, high | digits | more draws",
+def movement_table(movements: Sequence[tuple[str, Movement]]) -> Table:
+    """Movements, a surface a row, per cent of the width."""
+    columns = [
+        f"{cause} {end} %"
+        for cause in ("seeds", "digits", "more draws")
+        for end in ("low", "median", "high")
+    ]
+    return make_table(
+        f"scans | factor of the interval | draws | {' | '.join(columns)}",
         list(_rows(movements)),
+        "Movements of the low end, the median and the high end of the interval, in per cent of its "
+        "width.",
     )
 
 
@@ -84,7 +91,8 @@ def _rows(movements: Sequence[tuple[str, Movement]]) -> Iterator[tuple[str, ...]
     for name, moved_ends in movements:
         factor = (moved_ends.energy.high / moved_ends.energy.low) ** 0.5
         moved = (
-            ", ".join(f"{100 * end:.1f}" for end in ends)
+            f"{100 * end:.1f}"
             for ends in (moved_ends.seeds, moved_ends.digits, moved_ends.size)
+            for end in ends
         )
         yield (name, f"{factor:.2f}", str(moved_ends.draws), *moved)

@@ -12,7 +12,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from crackfront.analysis.estimate import with_interval
 from crackfront.core.spectrum import SelfAffineSpectrum
 from crackfront.core.synthesis import gaussian_field
 from crackfront.core.units import Scales
@@ -24,7 +23,7 @@ from crackfront.measured.prediction.simulated_prediction import (
 )
 from crackfront.measured.spectrum.measured_surface import MeasuredSurface
 from studies.accuracy.scans import scanned
-from studies.pages import markdown_table
+from studies.tables import Table, interval_cells, interval_header, make_table
 
 SCENE = Scales(radius=1e-3, work_of_adhesion=60e-3, contact_modulus=0.7e6 / 0.75)
 REALISATIONS = 5
@@ -86,8 +85,8 @@ def _scanned(film: Film, rng: np.random.Generator) -> MeasuredSurface:
     return scanned(heights * math.sqrt(energy / unit), pixel, "synthetic")
 
 
-def comparison_table(items: Iterable[Comparison]) -> str:
-    """Numbers of the front, predicted and simulated, in Markdown, a film a row."""
+def comparison_table(items: Iterable[Comparison]) -> Table:
+    """Numbers of the front, predicted and simulated, a film a row."""
     rows = []
     for film, law, simulations in (
         (item.film, item.prediction, item.simulations) for item in items
@@ -98,14 +97,20 @@ def comparison_table(items: Iterable[Comparison]) -> str:
                 f"{1e6 * film.roll_off:g}",
                 f"{law.e_el.value / law.work_of_adhesion:.3f}",
                 f"{law.correlation_length / law.contact_radius:.4f}",
-                with_interval(law.k),
-                with_interval(simulations.k),
-                with_interval(law.front_hysteresis.each(lambda work: 1e3 * work)),
-                with_interval(simulations.hysteresis.each(lambda work: 1e3 * work)),
+                *interval_cells(law.k),
+                *interval_cells(simulations.k),
+                *interval_cells(law.front_hysteresis.each(lambda work: 1e3 * work)),
+                *interval_cells(simulations.hysteresis.each(lambda work: 1e3 * work)),
             )
         )
-    return markdown_table(
-        "H | roll-off, um | e_el/w_int | correlation length / contact radius | k predicted | "
-        "k simulated | hysteresis of the front predicted, mJ/m2 | simulated",
+    columns = [
+        f"{quantity} {origin}"
+        for quantity in ("k", "hysteresis mJ/m2")
+        for origin in ("predicted", "simulated")
+    ]
+    return make_table(
+        "H | roll-off um | e_el/w_int | correlation length / contact radius | "
+        f"{' | '.join(map(interval_header, columns))}",
         rows,
+        "The hysteresis is that of the front, without boundary elements.",
     )

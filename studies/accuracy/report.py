@@ -15,7 +15,7 @@ from studies.accuracy.files import read_errors, read_study
 from studies.accuracy.scenes import SCENES, Scene
 from studies.accuracy.study import Errors, SceneErrors, pareto_front, rms
 from studies.numbers import Number
-from studies.pages import markdown_table
+from studies.tables import Table, make_table
 
 Content = TypeVar("Content")
 
@@ -67,7 +67,7 @@ def measured(folder: Path) -> Measured:
     return Measured(single, requested, unseen, expected, samples, coverages)
 
 
-def error_tables(study_errors: Measured) -> dict[str, str]:
+def error_tables(study_errors: Measured) -> dict[str, Table]:
     """Tables of all studies by their names."""
     tables, scenes = {}, study_errors.scenes
     if scenes:
@@ -79,8 +79,8 @@ def error_tables(study_errors: Measured) -> dict[str, str]:
             for study in studies
             for errors in study.errors
         ]
-        header = f"{_CHOSEN} | k of w_appr | k of w_retr"
-        tables["Errors that were requested"] = markdown_table(header, rows)
+        header = f"{_CHOSEN} | {_FACTOR_ERRORS}"
+        tables["Errors that were requested"] = make_table(header, rows)
     if study_errors.unseen:
         tables["Errors on unseen surfaces"] = _unseen_table(study_errors.unseen.values())
     if study_errors.expected:
@@ -114,16 +114,25 @@ def _stored(folder: Path, study: str, read: Callable[[Path], Content]) -> dict[s
     return {name: read(path) for name, path in paths.items() if path.exists()}
 
 
-def _numbers(errors: Errors) -> str:
-    """All numerics in a few words."""
-    return (
-        f"{errors.angles_per_cutoff:g} sites, {errors.samples_per_cutoff:g} "
-        f"{errors.interpolation}, {errors.pixels_per_cutoff:g} pixels, {errors.tolerance:g}"
-    )
+_NUMERICS = "sites | samples | interpolation | pixels | tolerance"
+
+
+def _numerics(errors: Errors) -> list[str]:
+    """Entries of :data:`_NUMERICS`."""
+    return [
+        f"{errors.angles_per_cutoff:g}",
+        f"{errors.samples_per_cutoff:g}",
+        errors.interpolation,
+        f"{errors.pixels_per_cutoff:g}",
+        f"{errors.tolerance:g}",
+    ]
+
+
+_FACTOR_ERRORS = "rms error of k of w_appr | rms error of k of w_retr"
 
 
 def _factor_errors(study: SceneErrors, errors: Errors) -> list[str]:
-    """Rms errors of k of both branches."""
+    """Entries of :data:`_FACTOR_ERRORS`."""
     return [f"{rms(column) / study.scene.elastic_energy:.2g}" for column in errors.adhesion.T]
 
 
@@ -133,36 +142,36 @@ def _cheapest(seconds: Array, error: Array, target: float) -> int | None:
     return int(enough[np.argmin(seconds[enough])]) if enough.size else None
 
 
-def _target_table(studies: Iterable[SceneErrors]) -> str:
-    """Seconds of the cheapest setting for every error."""
+def _target_table(studies: Iterable[SceneErrors]) -> Table:
+    """Seconds of the cheapest setting for every error; empty where no setting reaches it."""
     rows = []
     for study in studies:
         seconds, error = study.work_and_precision()
-        entries = []
         for target in _TARGETS:
             best = _cheapest(seconds, error, target)
-            if best is None:
-                entries.append("-")
-                continue
-            entry = f"{seconds[best]:.3g} s ({100 * error[best]:.2g}%)"
-            if study.scene.authors_seconds is not None:
-                entry += f", {study.scene.authors_seconds / seconds[best]:.0f} times"
-            entries.append(entry)
-        rows.append([study.scene.name, f"{study.hysteresis:.4g}", *entries])
-    targets = " | ".join(f"{100 * target:g}%" for target in _TARGETS)
-    return markdown_table(f"scene | hysteresis | {targets}", rows)
+            reached = ["", "", ""]
+            if best is not None:
+                reached = [f"{seconds[best]:.3g}", f"{100 * error[best]:.2g}", ""]
+                if study.scene.authors_seconds is not None:
+                    reached[2] = f"{study.scene.authors_seconds / seconds[best]:.0f}"
+            asked = f"{100 * target:g}"
+            rows.append([study.scene.name, f"{study.hysteresis:.4g}", asked, *reached])
+    return make_table(
+        "scene | hysteresis | error asked for % | CPU s | error % | times faster than the authors",
+        rows,
+    )
 
 
-_CHOSEN = "scene | requested | numerics | CPU s"
+_CHOSEN = f"scene | requested | {_NUMERICS} | CPU s"
 
 
 def _chosen(study: SceneErrors, errors: Errors) -> list[str]:
     """Entries of :data:`_CHOSEN`, of numerics that the laws chose."""
     seconds = f"{errors.seconds.mean():.3g}"
-    return [study.scene.name, f"{errors.value:g}", _numbers(errors), seconds]
+    return [study.scene.name, f"{errors.value:g}", *_numerics(errors), seconds]
 
 
-def _unseen_table(studies: Iterable[SceneErrors]) -> str:
+def _unseen_table(studies: Iterable[SceneErrors]) -> Table:
     """Errors of k where the laws chose the numerics for surfaces unknown to them."""
     rows = []
     pooled: dict[float, list[Array]] = {}
@@ -173,10 +182,10 @@ def _unseen_table(studies: Iterable[SceneErrors]) -> str:
             rows.append([*_chosen(study, errors), *_error_sizes(factor_errors, errors.value)])
     for requested, parts in pooled.items():
         sizes = _error_sizes(np.concatenate(parts), requested)
-        rows.append(["**all**", f"{requested:g}", "", "", *sizes])
-    return markdown_table(
-        f"{_CHOSEN} | k of w_appr: rms | k of w_retr: rms | k of w_appr: bias | k of w_retr: bias "
-        "| largest of one surface | median | above the request | rms of the others",
+        rows.append(["all", f"{requested:g}", *[""] * 6, *sizes])
+    return make_table(
+        f"{_CHOSEN} | {_FACTOR_ERRORS} | bias of k of w_appr | bias of k of w_retr "
+        "| largest error of one surface | median error | above the request % | rms of the others",
         rows,
     )
 
@@ -192,12 +201,12 @@ def _error_sizes(factor_errors: Array, requested: float) -> list[str]:
         *(f"{bias:+.2g}" for bias in factor_errors.mean(axis=0)),
         f"{np.abs(factor_errors).max():.2g}",
         f"{np.median(np.abs(factor_errors)):.2g}",
-        f"{100 * np.mean(is_above):.1f}%",
+        f"{100 * np.mean(is_above):.1f}",
         f"{rms(factor_errors[~is_above]):.2g}",
     ]
 
 
-def _coverage_table(coverages: Iterable[tuple[Scene, tuple[Coverage, ...]]]) -> str:
+def _coverage_table(coverages: Iterable[tuple[Scene, tuple[Coverage, ...]]]) -> Table:
     """How often intervals of the stated errors cover the true ones, and how wide they are."""
     rows, numerical_ratios, total_ratios = [], [], []
     for scene, scene_coverages in coverages:
@@ -213,13 +222,16 @@ def _coverage_table(coverages: Iterable[tuple[Scene, tuple[Coverage, ...]]]) -> 
                     f"{rms(item.numerical) / scene.elastic_energy:.2g}",
                     *_covered_cells(numerical, scene.elastic_energy),
                     *_covered_cells(total, scene.elastic_energy),
+                    "",
+                    "",
                 ]
             )
-    pooled = (np.concatenate(ratios) for ratios in (numerical_ratios, total_ratios))
-    rows.append(["**all**", "", "", *(cell for ratio in pooled for cell in _pooled_cells(ratio))])
-    return markdown_table(
-        "scene | requested | numerical: rms | median | interval | covered | total: median "
-        "| interval | covered",
+    alone, both = _pooled(numerical_ratios), _pooled(total_ratios)
+    rows.append(["all", *[""] * 4, alone.covered, "", "", both.covered, alone.width, both.width])
+    return make_table(
+        "scene | requested | numerical rms error | numerical median error | numerical interval "
+        "| numerical covered % | total median error | total interval | total covered % "
+        "| numerical interval over the median error | total interval over the median error",
         rows,
     )
 
@@ -249,31 +261,41 @@ def _covered_cells(covered: _Covered, elastic_energy: float) -> list[str]:
     return [
         f"{np.median(covered.error) / elastic_energy:.2g}",
         f"{np.median(covered.interval) / elastic_energy:.2g}",
-        f"{100 * np.mean(covered.ratio <= 1):.0f}%",
+        f"{100 * np.mean(covered.ratio <= 1):.0f}",
     ]
 
 
-def _pooled_cells(ratio: Array) -> list[str]:
-    """Width of the intervals in median errors, and the share of all errors that is covered."""
-    widths = f"{1 / np.median(ratio):.1f} times the median"
-    return ["", widths, f"{100 * np.mean(ratio <= 1):.1f}%"]
+class _Pooled(NamedTuple):
+    """Cells of all errors together."""
+
+    width: str
+    """Intervals in median errors."""
+    covered: str
+    """Share of the errors that is covered, in per cent."""
 
 
-def _setting_table(study: SceneErrors) -> str:
-    """Errors of all settings of a scene; those on the Pareto front in bold."""
+def _pooled(ratios: list[Array]) -> _Pooled:
+    """Cells of the ratios of errors to intervals of all scenes."""
+    ratio = np.concatenate(ratios)
+    return _Pooled(f"{1 / np.median(ratio):.1f}", f"{100 * np.mean(ratio <= 1):.1f}")
+
+
+def _setting_table(study: SceneErrors) -> Table:
+    """Errors of all settings of a scene, and which of them are on the Pareto front."""
     seconds, error = study.work_and_precision()
     best = pareto_front(seconds, error)
-    rows = [["", "reference", f"{study.reference_seconds.mean():.3g}", *[""] * 7]]
+    rows = [["reference", *[""] * 6, f"{study.reference_seconds.mean():.3g}", *[""] * 8]]
     for index, errors in enumerate(study.errors):
         values = study.hysteresis_errors(errors)
         spread = np.std(values, ddof=1) / np.sqrt(values.size)
-        name = f"{errors.setting} {errors.value:g}" if errors.value else errors.setting
         rows.append(
             [
-                f"**{name}**" if index in best else name,
-                _numbers(errors),
+                f"{errors.setting} {errors.value:g}" if errors.value else errors.setting,
+                "yes" if index in best else "no",
+                *_numerics(errors),
                 f"{seconds[index]:.3g}",
-                f"{100 * values.mean():+.2f} ± {100 * spread:.2f}",
+                f"{100 * values.mean():+.2f}",
+                f"{100 * spread:.2f}",
                 f"{100 * error[index]:.2f}",
                 *_factor_errors(study, errors),
                 f"{rms(errors.force):.1g}",
@@ -281,20 +303,21 @@ def _setting_table(study: SceneErrors) -> str:
                 f"{np.max(errors.front_max):.2g}",
             ]
         )
-    return markdown_table(
-        "varied | numerics | CPU s | hysteresis: bias % | rms % | k of w_appr | k of w_retr "
-        "| force | front rms | front max",
+    return make_table(
+        f"varied | on the Pareto front | {_NUMERICS} | CPU s | bias of the hysteresis % "
+        f"| error of the bias % | rms error of the hysteresis % | {_FACTOR_ERRORS} "
+        "| error of the force | front rms | front max",
         rows,
     )
 
 
-def _sample_table(samples: tuple[Sample, ...]) -> str:
+def _sample_table(samples: tuple[Sample, ...]) -> Table:
     """Hysteresis for schedules and tiles; differences from the first on the same surfaces."""
     rows = []
     for sample in samples:
         values, setting = sample.hysteresis, f"{sample.setting} {sample.value:g}"
         if not np.all(np.isfinite(values)):
-            rows.append([setting, "too few states", *[""] * 5])
+            rows.append([setting, *[""] * 7])
             continue
         error = np.std(values, ddof=1)
         difference = values - samples[0].hysteresis
@@ -303,14 +326,16 @@ def _sample_table(samples: tuple[Sample, ...]) -> str:
             [
                 setting,
                 f"{sample.seconds.mean():.3g}",
-                f"{values.mean():.5f} ± {error / np.sqrt(values.size):.5f}",
+                f"{values.mean():.5f}",
+                f"{error / np.sqrt(values.size):.5f}",
                 f"{error:.5f}",
                 f"{rms(sample.standard_error):.5f}",
                 *(["", ""] if sample.setting == "tile" else compared),
             ]
         )
-    return markdown_table(
-        "varied | CPU s | mean hysteresis | one realisation, rms | stated by the runs, rms "
-        "| against the first, mean | rms",
+    return make_table(
+        "varied | CPU s | mean hysteresis | mean hysteresis error | rms of one realisation "
+        "| rms stated by the runs | mean difference from the first | rms difference from the first",
         rows,
+        "A row without numbers has too few states.",
     )

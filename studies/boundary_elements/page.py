@@ -17,6 +17,7 @@ from studies.boundary_elements.edges import EdgeForces
 from studies.boundary_elements.hysteresis import Hysteresis
 from studies.numbers import Number
 from studies.records import read_records
+from studies.tables import Table
 
 REFERENCES = Path("docs/reference/validation")
 
@@ -30,7 +31,7 @@ SHORT_CUTOFFS = {"strong": 0.15, "fine": 0.05}
 """Shortest wavelength of the surfaces of `config/validation-<name>.yaml`."""
 
 
-def page_parts() -> Iterator[tuple[dict[str, str], dict[str, Number], dict[str, Any]]]:
+def page_parts() -> Iterator[tuple[dict[str, Table], dict[str, Number], dict[str, Any]]]:
     """Tables and numbers from each kept file, and what the file says of its origin."""
     surfaces = kept_surfaces()
     strong, fine = (read_attributes(REFERENCES / f"hysteresis-{name}.nc") for name in surfaces)
@@ -39,7 +40,7 @@ def page_parts() -> Iterator[tuple[dict[str, str], dict[str, Number], dict[str, 
     for name in ("256", "512", "series"):
         path = REFERENCES / f"differences-{name}.nc"
         loops = read_records(path, Differences, "case")
-        tables = {f"{part} {name}": text for part, text in report.loop_tables(loops).items()}
+        tables = {f"{part} {name}": table for part, table in report.loop_tables(loops).items()}
         numbers = _loop_numbers(loops) if name == _QUOTED else {}
         yield tables, numbers, read_attributes(path)
     path = REFERENCES / "edges.nc"
@@ -60,7 +61,7 @@ def kept_validity(surfaces: Mapping[str, Sequence[Hysteresis]]) -> list[Validity
     return [*limits, *brought_to_no_range(fine, strong)]
 
 
-def _strong_parts(rows: Sequence[Hysteresis]) -> tuple[dict[str, str], dict[str, Number]]:
+def _strong_parts(rows: Sequence[Hysteresis]) -> tuple[dict[str, Table], dict[str, Number]]:
     """Tables and numbers of the surfaces of several amplitudes."""
     finest = max(rows, key=attrgetter("n_point"))
     alone = [row for row in rows if row.seed == finest.seed]
@@ -74,7 +75,7 @@ def _strong_parts(rows: Sequence[Hysteresis]) -> tuple[dict[str, str], dict[str,
 
 def _common_parts(
     surfaces: Mapping[str, Sequence[Hysteresis]],
-) -> tuple[dict[str, str], dict[str, Number]]:
+) -> tuple[dict[str, Table], dict[str, Number]]:
     """Tables and numbers of the finer surfaces, and of all together."""
     validity = kept_validity(surfaces)
     slope, error = excess_coefficient(validity)

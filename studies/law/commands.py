@@ -114,7 +114,7 @@ def spheres(configurations: tuple[Path, ...], tables: tuple[Path, ...], output: 
     rows = [row for path in configurations for row in _rows(path, sphere_rows)]
     if rows:
         write_text(output / "spheres.csv", csv_text(rows))
-    click.echo(sphere_table(rows or read_spheres(tables)))
+    click.echo(sphere_table(rows or read_spheres(tables)).text())
 
 
 @commands.command("held-out", epilog=examples("python -m studies law held-out"))
@@ -129,7 +129,7 @@ def held_out(output: Path) -> None:
     schedule = cast(SteadySchedule, load_sweep(Path("config/paper.yaml")).schedule)
     rows = [*scene_rows(), *reference_rows(Path("docs/reference/si-5.nc"), schedule)]
     write_text(output / "held-out.csv", csv_text(rows))
-    click.echo(sphere_table(rows))
+    click.echo(sphere_table(rows).text())
 
 
 @commands.command(epilog=examples("python -m studies law figure"))

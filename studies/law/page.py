@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import math
-import textwrap
 from collections.abc import Sequence
 
 import numpy as np
 
-from crackfront.analysis.estimate import Estimate, with_interval
+from crackfront.analysis.estimate import Estimate
 from crackfront.analysis.finding import (
     PAPER_FACTOR,
     STRONG,
@@ -28,13 +27,13 @@ from crackfront.analysis.law import (
 from studies.law.cells import HELD_OUT, LawCell, measured_cells
 from studies.law.spheres import SphereRow, departures, is_within, sphere_table
 from studies.numbers import Number
-from studies.pages import markdown_table
+from studies.tables import Table, interval_cells, interval_header, make_table
 
 DISORDERS = (WEAKEST, 0.2, 0.4, STRONG)
 """Disorders s of the table of the infinite contact."""
 
 
-def law_parts(spheres: Sequence[SphereRow]) -> dict[str, str]:
+def law_parts(spheres: Sequence[SphereRow]) -> dict[str, Table]:
     """All parts, of the law of the package, what it is fitted to, and spheres."""
     return {
         "coefficients": coefficients_part(shipped_law()),
@@ -70,7 +69,7 @@ def _half(pinning: PinningFactor) -> Number:
     return Number(pinning.factor.value, (pinning.factor.high - pinning.factor.low) / 2)
 
 
-def coefficients_part(law: Law) -> str:
+def coefficients_part(law: Law) -> Table:
     """Table of the coefficients, and how far the measured k are from the law."""
     errors = np.sqrt(np.diag(law.covariance)).tolist()
     rows = [
@@ -86,44 +85,50 @@ def coefficients_part(law: Law) -> str:
         f"{law.model_factor:.1%} of k, and {law.model_length:.1%} of g. If the exponent 1 - zeta "
         f"is fitted too, it is {exponent:.2f} ± {error:.2f} (one standard error)."
     )
-    table = markdown_table("coefficient | value | standard error", rows)
-    return f"{table}\n\n{_wrapped(text)}"
+    return make_table("coefficient | value | standard error", rows, text)
 
 
-def departures_part(law: Law) -> str:
+def departures_part(law: Law) -> Table:
     """Table of how far measured k lie above the law, by breadth and size."""
     rows = [
         (
-            f"{departure.narrowest:.3g} to {departure.broadest:.3g}",
-            f"{departure.least_size:.3g} to {departure.largest_size:.3g}",
+            f"{departure.narrowest:.3g}",
+            f"{departure.broadest:.3g}",
+            f"{departure.least_size:.3g}",
+            f"{departure.largest_size:.3g}",
             str(departure.fronts),
-            f"{departure.mean:+.1%}",
-            f"{departure.rms:.1%}",
+            f"{100 * departure.mean:+.1f}",
+            f"{100 * departure.rms:.1f}",
         )
         for departure in map(Departure._make, law.departures)
     ]
-    header = "breadth | g | fronts | measured k above the law, mean | rms"
-    return markdown_table(header, rows)
+    return make_table(
+        "breadth from | breadth to | g from | g to | fronts | mean % | rms %",
+        rows,
+        "Measured k above the law.",
+    )
 
 
-def limit_part() -> str:
+def limit_part() -> Table:
     """Table of k in the infinite contact by spectrum, and where it is 3."""
     rows, breadths = [], stated_breadths()
     for s in DISORDERS:
         factors = [pinning_factor(s, math.inf, breadth=breadth) for breadth in breadths.values()]
-        name = "0, k_0" if s == WEAKEST else f"{s:g}"
-        intervals = (with_interval(factor.factor) for factor in factors)
-        rows.append((name, *intervals, f"{factors[0].negative_share:.1%}"))
+        name = "0" if s == WEAKEST else f"{s:g}"
+        cells = (cell for factor in factors for cell in interval_cells(factor.factor))
+        rows.append((name, *cells, f"{100 * factors[0].negative_share:.1f}"))
     s, low, high = crossing()
     names = (f"k, {name} (beta {breadth:.2f})" for name, breadth in breadths.items())
-    header = f"s | {' | '.join(names)} | share of negative w_loc"
-    return (
-        f"{markdown_table(header, rows)}\n\nk of the infinite contact, with 95% intervals. For a "
-        f"typical spectrum it is {PAPER_FACTOR:g} only at s = {s:.2f} ({low:.2f} to {high:.2f})."
+    header = " | ".join(map(interval_header, names))
+    return make_table(
+        f"s | {header} | share of negative w_loc %",
+        rows,
+        "k of the infinite contact, with 95% intervals. For a typical spectrum it is "
+        f"{PAPER_FACTOR:g} only at s = {s:.2f} ({low:.2f} to {high:.2f}).",
     )
 
 
-def shapes_part(cells: Sequence[LawCell]) -> str:
+def shapes_part(cells: Sequence[LawCell]) -> Table:
     """Table of how far the measured k of each spectrum are from the law, for g above 1."""
     rows = []
     for name in dict.fromkeys(cell.spectrum for cell in cells):
@@ -141,16 +146,21 @@ def shapes_part(cells: Sequence[LawCell]) -> str:
                 name,
                 "no" if name in HELD_OUT else "yes",
                 f"{large[0].breadth:.2f}",
-                f"{min(cell.disorder for cell in large):.2g} to "
+                f"{min(cell.disorder for cell in large):.2g}",
                 f"{max(cell.disorder for cell in large):.2g}",
                 f"{max(cell.size for cell in large):.3g}",
-                f"{np.sqrt(np.mean(differences**2)):.1%}",
-                f"{differences[np.argmax(np.abs(differences))]:+.1%}",
-                f"{inside} of {len(large)}",
+                f"{100 * np.sqrt(np.mean(differences**2)):.1f}",
+                f"{100 * differences[np.argmax(np.abs(differences))]:+.1f}",
+                f"{inside}",
+                f"{len(large)}",
             )
         )
-    header = "spectrum | in the fit | beta | s | largest g | rms | worst | in the 95% interval"
-    return markdown_table(header, rows)
+    return make_table(
+        "spectrum | in the fit | beta | s from | s to | largest g | rms % | worst % "
+        "| in the 95% interval | rows",
+        rows,
+        "The law over measured k of straight fronts, for g above 1.",
+    )
 
 
 def _law_of(cell: LawCell) -> Estimate[float]:
@@ -158,18 +168,15 @@ def _law_of(cell: LawCell) -> Estimate[float]:
     return pinning_factor(max(cell.disorder, WEAKEST), cell.size, breadth=cell.breadth).factor
 
 
-def fronts_part(cells: Sequence[LawCell]) -> str:
+def fronts_part(cells: Sequence[LawCell]) -> Table:
     """How far fronts reach: their rms, a power law of g by least squares for g above 1."""
     large = [cell for cell in cells if cell.size > 1 and cell.front_rms > 0]
     size, rms = (np.log([getattr(cell, name) for cell in large]) for name in ("size", "front_rms"))
     exponent, start = np.polyfit(size, rms, 1)
     scatter = float(np.std(rms - np.polyval((exponent, start), size)))
-    return _wrapped(
-        f"Observed over {len(large)} spectra, amplitudes and springs with g above 1: "
-        f"u_rms = {math.exp(start):.2f} xi_u g^{exponent:.2f}, within {scatter:.0%} rms."
+    return make_table(
+        "rows | factor | exponent | scatter %",
+        [(f"{len(large)}", f"{math.exp(start):.2f}", f"{exponent:.2f}", f"{100 * scatter:.0f}")],
+        "Rms of fronts over spectra, amplitudes and springs with g above 1: "
+        "u_rms = factor xi_u g^exponent.",
     )
-
-
-def _wrapped(text: str) -> str:
-    """Lines of a paragraph."""
-    return textwrap.fill(text, 120)

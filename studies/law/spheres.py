@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 
 from crackfront.analysis.csv_records import csv_rows
-from crackfront.analysis.estimate import REACH, Estimate, with_error, with_interval
+from crackfront.analysis.estimate import REACH, Estimate, with_error
 from crackfront.analysis.law import spectral_breadth
 from crackfront.analysis.law_spheres import SphereFactors, sphere_factors
 from crackfront.core import jkr
@@ -25,7 +25,7 @@ from crackfront.sweep.rows import sweep_row
 from crackfront.sweep.sweep import Sweep
 from studies.law.cells import COLUMNS, Means, cell_means, mean_factors
 from studies.law.drawing import LawPoints
-from studies.pages import markdown_table
+from studies.tables import Table, interval_cells, interval_header, make_table
 
 
 @dataclass(frozen=True)
@@ -164,12 +164,11 @@ def departures(rows: Sequence[SphereRow]) -> list[float]:
     return [law.both.value / row.both - 1 for law, row in rows_with_law if law.size > 1]
 
 
-def sphere_table(rows: Sequence[SphereRow]) -> str:
-    """Table of simulated and predicted k in Markdown, and how far they are apart.
+def sphere_table(rows: Sequence[SphereRow]) -> Table:
+    """Table of simulated and predicted k, and how far they are apart.
 
     Compares the law's intervals with simulations, with the errors of both.
     """
-    header = "spectrum | e_el/w_int | radius | g | k, line alone | k, simulated | difference"
     laws = [law_of(row) for row in rows]
     cells = [
         (
@@ -177,18 +176,21 @@ def sphere_table(rows: Sequence[SphereRow]) -> str:
             f"{row.elastic_energy:.3g}",
             f"{row.contact_radius:.3g}",
             f"{law.size:.2g}",
-            with_interval(law.both),
-            with_error(row.both, row.both_error),
-            f"{law.both.value / row.both - 1:+.1%}",
+            *interval_cells(law.both),
+            *with_error(row.both, row.both_error).split(" ± "),
+            f"{100 * (law.both.value / row.both - 1):+.1f}",
         )
         for row, law in zip(rows, laws, strict=True)
     ]
     differences = departures(rows)
     rms, worst = np.sqrt(np.mean(np.square(differences))), np.max(np.abs(differences))
     inside = sum(is_covered(row, law) for row, law in zip(rows, laws, strict=True) if law.size > 1)
-    return (
-        f"{markdown_table(header, cells)}\n\nFor g above 1, {len(differences)} rows: rms "
-        f"{rms:.1%}, worst {worst:.1%}; the 95% intervals cover {inside}."
+    return make_table(
+        f"spectrum | e_el/w_int | radius | g | {interval_header('k, line alone')} "
+        "| k simulated | k simulated error | difference %",
+        cells,
+        f"For g above 1, {len(differences)} rows: rms {rms:.1%}, worst {worst:.1%}; the 95% "
+        f"intervals cover {inside}.",
     )
 
 

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Literal
 
 from crackfront.analysis.estimate import with_error
-from studies.pages import markdown_table
+from studies.tables import Table, make_table
 
 Result = Literal[
     "agrees", "differs as the law of k says", "cannot be decided", "is not met", "FAIL"
@@ -74,76 +74,61 @@ def close_to(
     )
 
 
-def checks_tables(checks: Sequence[Check], scale: str) -> Iterator[str]:
-    """Parts in Markdown: statements of the paper and exact results, then expectations.
+STATEMENT = "statement"
+"""Kind of a check of the paper's statement, or of an exact result."""
 
-    A row is a check; the reason of each expectation stands below their table.
-    """
-    statements, expectations = _groups(checks)
-    yield _table(statements, scale)
-    if expectations:
-        yield ""
-        yield f"{EXPECTATIONS}, which the paper does not state:"
-        yield ""
-        yield _table(expectations, scale)
-        for reason in dict.fromkeys(check.expectation for check in expectations):
-            yield ""
-            yield reason
+EXPECTATION = "expectation"
+"""Kind of a check of what this project expects."""
 
 
-STATEMENTS = "Statements of the paper and exact results"
-EXPECTATIONS = "Expectations of this project"
-
-
-def _groups(checks: Sequence[Check]) -> tuple[list[Check], list[Check]]:
-    """Statements of the paper with exact results, and expectations."""
-    statements = [check for check in checks if not check.expectation]
-    expectations = [check for check in checks if check.expectation]
-    return statements, expectations
-
-
-def _table(checks: Iterable[Check], scale: str) -> str:
-    """Table in Markdown, one row a check."""
+def checks_table(checks: Iterable[Check]) -> Table:
+    """Table of checks: a reason for a difference, and the source of an expectation."""
     rows = (
-        (check.claim, check.expected, check.computed, _result_text(check, scale), check.remark)
+        (
+            EXPECTATION if check.expectation else STATEMENT,
+            check.claim,
+            check.expected,
+            check.computed,
+            check.result,
+            _reason(check),
+            check.remark,
+            check.expectation,
+        )
         for check in checks
     )
-    return markdown_table("claim | expected | found | result | remark", rows)
+    return make_table("kind | claim | expected | found | result | reason | remark | source", rows)
 
 
-def _result_text(check: Check, scale: str) -> str:
-    """Result of a check in its row, with the number of the law or the reason."""
-    if check.result == "FAIL":
-        return "**FAIL**"
+def _reason(check: Check) -> str:
+    """Number of the law that explains a difference, or why the data cannot decide."""
     if check.result == "differs as the law of k says":
-        return f"{check.result}: {check.law}"
-    if check.result == "cannot be decided":
-        return f"cannot be decided at {scale} scale: {check.undecided}"
-    return check.result
+        return check.law
+    return check.undecided
 
 
-def counted(checks: Sequence[Check]) -> tuple[str, ...]:
-    """Sentences that count the results of both groups.
+def counted(tables: Iterable[Table]) -> tuple[str, ...]:
+    """Sentences that count the results of both kinds in some tables of checks.
 
     Examples
     --------
-    >>> [sentence] = counted([Check("k is 3", "3", "3", passed=True)])
+    >>> [sentence] = counted([checks_table([Check("k is 3", "3", "3", passed=True)])])
     >>> sentence.partition(",")[0]
     'Statements of the paper and exact results: 1 of 1 agree'
     """
-    statements, expectations = _groups(checks)
-    results = Counter(check.result for check in statements)
+    rows = [row for table in tables for row in table.records()]
+    statements = Counter(row["result"] for row in rows if row["kind"] == STATEMENT)
+    expectations = Counter(row["result"] for row in rows if row["kind"] == EXPECTATION)
     sentences = [
-        f"{STATEMENTS}: {results['agrees']} of {len(statements)} agree, "
-        f"{results['differs as the law of k says']} differ as the law of k says, "
-        f"{results['cannot be decided']} cannot be decided at their scale, "
-        f"{results['FAIL']} fail."
+        f"Statements of the paper and exact results: {statements['agrees']} of "
+        f"{statements.total()} agree, "
+        f"{statements['differs as the law of k says']} differ as the law of k says, "
+        f"{statements['cannot be decided']} cannot be decided at their scale, "
+        f"{statements['FAIL']} fail."
     ]
     if expectations:
-        results = Counter(check.result for check in expectations)
         sentences.append(
-            f"{EXPECTATIONS}: {results['agrees']} of {len(expectations)} met, "
-            f"{results['is not met']} not met, "
-            f"{results['cannot be decided']} cannot be decided at their scale."
+            f"Expectations of this project: {expectations['agrees']} of "
+            f"{expectations.total()} met, {expectations['is not met']} not met, "
+            f"{expectations['cannot be decided']} cannot be decided at their scale."
         )
     return tuple(sentences)

@@ -19,7 +19,7 @@ from crackfront.simulate.provenance import provenance
 from crackfront.simulate.storage import read_attributes, write_text
 from studies.numbers import StoredFigure, store
 from studies.pages import keep_option, output_option, tell
-from studies.paper.checks import Check, checks_tables, counted
+from studies.paper.checks import Check, checks_table, counted
 from studies.paper.drawing import save_animation
 from studies.paper.experiment import (
     hystereses,
@@ -107,11 +107,11 @@ def check_figures(output: Path) -> None:
             checks = shown.checks(record)
             title = f"{shown.title} ({scale})"
             all_checks += checks
-            sections += ["", f"## {title}", "", *checks_tables(checks, scale)]
+            sections += ["", f"## {title}", "", checks_table(checks).text()]
             failed += [_failure(title, check) for check in checks if check.result == "FAIL"]
     if not all_checks:
         raise _no_data(output)
-    counts = [f"- {text}" for text in (*counted(all_checks), *failed)]
+    counts = [f"- {text}" for text in (*counted([checks_table(all_checks)]), *failed)]
     forget_sums(output)
     lines = ["# Checks of the figures", "", *counts, *sections, ""]
     write_text(output / "checks.md", "\n".join(lines))
@@ -133,24 +133,19 @@ def _failure(title: str, check: Check) -> str:
 def gallery(output: Path, pictures: Path) -> None:
     """Store all figures and their checks for the pages.
 
-    Each figure is stored at the paper's scale if it was computed, with its animation. The counts of
-    all checks are stored if all figures were computed.
+    Each figure is stored at the paper's scale if it was computed, with its animation.
     """
     paths = {path.stem: path for scale in SCALES for path in _data_of_figures(output / scale)}
     if not paths:
         raise _no_data(output)
     pictures.mkdir(parents=True, exist_ok=True)
-    all_checks: list[Check] = []
     for name in FIGURES:
         if name in paths:
-            all_checks += _store_figure(name, paths[name], pictures)
-    if len(paths) == len(FIGURES):
-        counts = "\n".join(f"- {text}" for text in counted(all_checks))
-        store("paper", tables={"counts": counts})
+            _store_figure(name, paths[name], pictures)
 
 
-def _store_figure(name: str, path: Path, pictures: Path) -> tuple[Check, ...]:
-    """Store a figure with its picture, or its animation, and its checks; these checks."""
+def _store_figure(name: str, path: Path, pictures: Path) -> None:
+    """Store a figure with its picture, or its animation, and its checks."""
     shown, record = _figure_and_record(path)
     if shown.animate:
         picture = pictures / f"{name}.gif"
@@ -158,18 +153,17 @@ def _store_figure(name: str, path: Path, pictures: Path) -> tuple[Check, ...]:
     else:
         picture = pictures / f"{name}.png"
         save_picture(shown.draw(record), picture)
-    data, checks = read_attributes(path), shown.checks(record)
+    data = read_attributes(path)
     stored_figure = StoredFigure(
         title=shown.title,
         picture=picture.name,
         scale=data["scale"],
         cpu_seconds=round(float(data["cpu_seconds"])),
-        checks="\n".join(checks_tables(checks, data["scale"])),
+        checks=checks_table(shown.checks(record)),
     )
     data["command"] = f"make figures SCALE={data['scale']}"
     store("paper", figures={name: stored_figure}, data=data)
     click.echo(f"figure: {picture}")
-    return checks
 
 
 @commands.command(epilog=examples("python -m studies paper experiment --keep"))

@@ -13,9 +13,9 @@ from crackfront.analysis.validity import front_excess
 from crackfront.plots.style import BLACK, BLUE, COLUMN, GREEN, VERMILION, blank_figure, house_style
 from studies.canaries import interval_number
 from studies.numbers import Number
-from studies.pages import markdown_table
 from studies.paper.main_5bc import MEASURED, widest_instability_estimate
 from studies.paper.nanodiamond import NanodiamondContact
+from studies.tables import Table, interval_header, make_table
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,13 +27,10 @@ class Hysteresis:
     """With its 95% interval, NaN where none is known. (Units: J / m^2)"""
     colour: str
 
-    @property
-    def text(self) -> str:
-        """In mJ/m2, with the interval where there is one."""
-        value = f"{1e3 * self.value.value:.0f}"
-        if not math.isfinite(self.value.low):
-            return value
-        return f"{value} ({1e3 * self.value.low:.0f} to {1e3 * self.value.high:.0f})"
+    def cells(self) -> tuple[str, ...]:
+        """Value, low and high end of the interval in mJ/m2; empty where they are not known."""
+        numbers = (self.value.value, self.value.low, self.value.high)
+        return tuple(f"{1e3 * number:.0f}" if math.isfinite(number) else "" for number in numbers)
 
 
 def hystereses(contact: NanodiamondContact) -> tuple[Hysteresis, ...]:
@@ -56,18 +53,19 @@ def hystereses(contact: NanodiamondContact) -> tuple[Hysteresis, ...]:
     )
 
 
-def hystereses_table(shown: tuple[Hysteresis, ...]) -> str:
-    """Each hysteresis, and the measured one over it, in Markdown."""
+def hystereses_table(shown: tuple[Hysteresis, ...]) -> Table:
+    """Each hysteresis, and the measured one over it."""
     measured = shown[0].value.value
     rows = [
         (
             " ".join(hysteresis.name.split()),
-            hysteresis.text,
+            *hysteresis.cells(),
             f"{measured / hysteresis.value.value:.1f}",
         )
         for hysteresis in shown
     ]
-    return markdown_table("nanodiamond | hysteresis (mJ/m2) | measured / this", rows)
+    columns = interval_header("hysteresis mJ/m2")
+    return make_table(f"nanodiamond | {columns} | measured / this", rows)
 
 
 def hystereses_numbers(shown: tuple[Hysteresis, ...]) -> dict[str, Number]:

@@ -21,6 +21,7 @@ from studies.speed import scaling as sweeps
 from studies.speed import solvers as pairs
 from studies.speed.machine import in_fresh_process
 from studies.speed.problems import PROBLEMS, Group
+from studies.tables import Table
 
 commands = click.Group()
 
@@ -30,20 +31,21 @@ _output = output_option(default=Path("results/benchmark"), help="Folder of the r
 def _write(
     path: Path,
     title: str,
-    parts: Mapping[str, str],
+    tables: Mapping[str, Table],
     rows: Sequence[Any] = (),
     *,
     keep: bool,
     numbers: Mapping[str, Number] | None = None,
 ) -> None:
-    """Write and print parts of pages, and the rows of their tables as netCDF, without a suffix."""
+    """Write and print tables, and their rows as netCDF; the path lacks a suffix."""
     origin = provenance()
     machine = f"Machine: {origin.processor}, {origin.platform}; commit {origin.git_commit}."
-    page = "\n\n".join([f"# {title}", machine, *parts.values()]) + "\n"
+    texts = (table.text() for table in tables.values())
+    page = "\n\n".join([f"# {title}", machine, *texts]) + "\n"
     write_text(path.with_suffix(".md"), page)
     if rows:
         write_records(path.with_suffix(".nc"), rows, "row", origin, title=title)
-    tell("speed", parts, numbers=numbers, keep=keep)
+    tell("speed", tables, numbers=numbers, keep=keep)
     click.echo(f"results: {path.with_suffix('.md')}")
 
 
@@ -71,10 +73,10 @@ def solvers(groups: tuple[Group, ...], repeats: int, seed: int, output: Path, ke
             in_fresh_process(pairs.measured, problem.smallest(), seed, 1)
             rows.append(row := in_fresh_process(pairs.measured, problem, seed, repeats))
             click.echo(f"{row.label}: {row.ratio:.1f} times, error {row.error:.1e}")
-    parts = {"solvers": "\n\n".join(pairs.sections(rows, repeats))}
+    tables = {"solvers": pairs.solver_table(rows, repeats)}
     numbers = {f"newton faster, {row.label}": Number(row.ratio) for row in rows}
     title = "The solvers against the reference"
-    _write(output / "solvers", title, parts, rows, keep=keep, numbers=numbers)
+    _write(output / "solvers", title, tables, rows, keep=keep, numbers=numbers)
 
 
 @commands.command(epilog=examples("python -m studies speed needs"))
@@ -89,8 +91,8 @@ def needs(output: Path, keep: bool) -> None:
         in_fresh_process(requests.measured, requests.SMALL, need)
         rows.append(row := in_fresh_process(requests.measured, requests.SCENE, need))
         click.echo(f"{row.name}: {row.seconds:.3g} s, {row.peak:.1f} MB, {row.file:.1f} kB")
-    parts = {"needs": "\n\n".join(requests.sections(rows))}
-    _write(output / "needs", "What each request costs", parts, rows, keep=keep)
+    tables = {"needs": requests.need_table(rows)}
+    _write(output / "needs", "What each request costs", tables, rows, keep=keep)
 
 
 @commands.command(epilog=examples("python -m studies speed costs"))
@@ -101,8 +103,8 @@ def costs(output: Path, keep: bool) -> None:
     check_writable(output)
     sweeps = cost_model.compared_sweeps(output / "configurations")
     measured = cost_model.measured_costs(sweeps, click.echo)
-    parts = {"costs": cost_model.ratio_table(measured)}
-    _write(output / "costs", "Expected over measured processor time", parts, keep=keep)
+    tables = {"costs": cost_model.ratio_table(measured)}
+    _write(output / "costs", "Expected over measured processor time", tables, keep=keep)
 
 
 @commands.command(epilog=examples("python -m studies speed scaling"))
@@ -111,4 +113,4 @@ def costs(output: Path, keep: bool) -> None:
 def scaling(output: Path, keep: bool) -> None:
     """Measure dispatch, start of jobs and later commands; simulate a sweep of a million runs."""
     check_writable(output)
-    _write(output / "scaling", "How a sweep scales", sweeps.parts(), keep=keep)
+    _write(output / "scaling", "How a sweep scales", sweeps.tables(), keep=keep)

@@ -13,8 +13,8 @@ from crackfront.simulate.run_simulation import run_simulation
 from crackfront.sweep.parameters import load_sweep
 from crackfront.sweep.sweep import Sweep
 from studies.law.front_sweeps import front_sweeps
-from studies.pages import markdown_table
 from studies.progress import Progress
+from studies.tables import Table, make_table
 
 _CONFIG = Path(__file__).parents[2] / "config"
 
@@ -57,7 +57,7 @@ def measured_costs(sweeps: Mapping[str, Sweep], progress: Progress) -> list[Meas
     return costs
 
 
-def ratio_table(costs: Sequence[MeasuredCost]) -> str:
+def ratio_table(costs: Sequence[MeasuredCost]) -> Table:
     """Least, median and largest ratio of each configuration and of all."""
     ratios = {
         name: [cost.ratio for cost in costs if cost.configuration == name]
@@ -68,4 +68,4 @@ def ratio_table(costs: Sequence[MeasuredCost]) -> str:
         [name, f"{len(values)}", *(f"{find(values):.2f}" for find in (min, np.median, max))]
         for name, values in ratios.items()
     ]
-    return markdown_table("configuration | simulations | least | median | largest", rows)
+    return make_table("configuration | simulations | least | median | largest", rows)

@@ -37,8 +37,8 @@ from crackfront.simulate.sphere.steady_branches import SteadySchedule
 from crackfront.simulate.storage import write_dataset
 from crackfront.sweep.curves import FinishedSimulation, curves_dataset
 from crackfront.sweep.rows import sweep_row
-from studies.pages import markdown_table
 from studies.speed.machine import restart_peak
+from studies.tables import Table, make_table
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -217,16 +217,25 @@ def _bytes(values: object) -> int:
     return values.nbytes if isinstance(values, np.ndarray) else 0
 
 
-def sections(rows: list[Row]) -> list[str]:
-    """Paragraphs of the page."""
-    header = (
+def need_table(rows: list[Row]) -> Table:
+    """What each request costs, and what it contains."""
+    asked = {need.name: need.asked for need in NEEDS}
+    return make_table(
         "asked for | CPU s | sites | load steps | samples crossed | peak MB | field MB | record kB "
-        "| file kB"
+        "| file kB | contains",
+        (
+            (
+                row.name,
+                f"{row.seconds:.3g}",
+                f"{row.n_angle}",
+                f"{row.n_step}",
+                f"{row.samples:.2g}",
+                f"{row.peak:.1f}",
+                f"{row.field:.2f}",
+                f"{1e3 * row.record:.1f}",
+                f"{row.file:.1f}",
+                asked[row.name],
+            )
+            for row in rows
+        ),
     )
-    lines = [
-        f"{row.name} | {row.seconds:.3g} | {row.n_angle} | {row.n_step} | {row.samples:.2g} | "
-        f"{row.peak:.1f} | {row.field:.2f} | {1e3 * row.record:.1f} | {row.file:.1f}"
-        for row in rows
-    ]
-    listed = "\n".join(f"- {need.name}: {need.asked}" for need in NEEDS)
-    return [listed, markdown_table(header, lines)]

@@ -37,8 +37,8 @@ from crackfront.sweep.rows import row_columns, sweep_row
 from crackfront.sweep.shards import write_shard
 from crackfront.sweep.store import Store, write_request
 from crackfront.sweep.sweep import NamedSpectrum, Shard, Sweep
-from studies.pages import markdown_table
 from studies.speed.machine import in_fresh_process
+from studies.tables import Table, make_table
 
 ROOT = Path(__file__).parents[2]
 RANKS = tuple(2**power for power in range(13))
@@ -269,14 +269,14 @@ def planned(configuration: Path) -> tuple[float, float]:
     return time.process_time(), peak_memory()
 
 
-def late_table(sizes: Sequence[int]) -> str:
+def late_table(sizes: Sequence[int]) -> Table:
     """Time and memory of the commands that follow the simulations.
 
     `sha256sum --check` reads what `verify` reads. The last `plan` sees a sweep one of whose
     shards has all its rows, but lacks its file.
     """
     rows = [row for size in sizes for row in _late_rows(size)]
-    return markdown_table("command | simulations | CPU s | MB", rows)
+    return make_table("command | simulations | CPU s | MB", rows)
 
 
 def _late_rows(n_simulation: int) -> Iterator[list[str]]:
@@ -313,16 +313,16 @@ def _late_cells(measured: tuple[float, float]) -> list[str]:
     return [f"{seconds:.0f}", f"{peak / 1e6:.0f}"]
 
 
-def parts() -> dict[str, str]:
-    """Parts of the page, measured and played."""
+def tables() -> dict[str, Table]:
+    """Tables, measured and played."""
     losses, slower = Losses(hand_out_seconds(), start_seconds()), slowness()
     return {
         "late": late_table((10**4, 10**5, 10**6)),
-        "efficiency": efficiency_part(losses, slower),
+        "efficiency": efficiency_table(losses, slower),
     }
 
 
-def efficiency_part(losses: Losses, slower: float) -> str:
+def efficiency_table(losses: Losses, slower: float) -> Table:
     """Hours and efficiency of a million simulations, by the size of their shards."""
     sweeps = [million(slower, n_shard=n_shard) for n_shard, _ in JOBS]
     columns = [
@@ -331,15 +331,17 @@ def efficiency_part(losses: Losses, slower: float) -> str:
     ]
     header, rows = "cores", [[f"{n_rank}"] for n_rank in RANKS]
     for (n_shard, job_ranks), column in zip(JOBS, columns, strict=True):
-        header += f" | hours, {n_shard} shards of {job_ranks} ranks | efficiency"
+        sweep = f"{n_shard} shards of {job_ranks} ranks"
+        header += f" | hours, {sweep} | efficiency %, {sweep}"
         for row, result in zip(rows, column, strict=True):
-            row += [f"{result.hours:.3g}", f"{result.efficiency:.1%}"]
+            row += [f"{result.hours:.3g}", f"{100 * result.efficiency:.1f}"]
     n_simulation = sum(shard.size for shard in sweeps[0])
     useful = sum(float(np.sum(shard)) for shard in sweeps[0]) / 3600
-    return (
+    return make_table(
+        header,
+        rows,
         "The times are simulated event by event; no sweep of this size was run. "
         f"{n_simulation} simulations of {useful:.0f} core hours; "
         f"{1e3 * losses.hand_out:.2f} ms to hand out and store one, {losses.start:.1f} s to start "
-        f"a job. A simulation takes {slower:.2f} times what is expected."
-        f"\n\n{markdown_table(header, rows)}"
+        f"a job. A simulation takes {slower:.2f} times what is expected.",
     )

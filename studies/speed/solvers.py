@@ -16,8 +16,8 @@ from crackfront.core.resources import peak_memory
 from crackfront.core.solver import DEFAULT_TOLERANCE
 from crackfront.core.solver.relax import SOLVERS
 from crackfront.core.variables import ADHESION, variable
-from studies.pages import markdown_table
 from studies.speed.problems import Problem
+from studies.tables import Table, make_table
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,49 +84,49 @@ def measured(problem: Problem, seed: int, repeats: int) -> Row:
     )
 
 
-def table(rows: Iterable[Row]) -> str:
-    """Markdown table of rows."""
-    header = (
-        "problem | reference s | newton s | ratio | FFT pairs | updates a site and cutoff | "
-        "newton us a site and cutoff | error / lambda_s | MB"
+def solver_table(rows: Sequence[Row], repeats: int) -> Table:
+    """Both solvers on all problems, and how their times grow."""
+    text = (
+        "One process, one core; both solvers in turn on the same field, tolerance "
+        f"{DEFAULT_TOLERANCE:g} w_int, penetration 0 to 1 and back to pull-off; CPU seconds, the "
+        f"least of {repeats} runs. Updates are a site and cutoff. The error is the largest "
+        "difference of the fronts over all load steps, in short cutoffs."
     )
-    lines = (
-        f"{row.label} | {row.reference_seconds:.2f} | {row.newton_seconds:.2f} | {row.ratio:.1f} | "
-        f"{row.reference_pairs} / {row.newton_pairs} | "
-        f"{row.reference_updates / row.n_cutoff:.1f} / {row.newton_updates / row.n_cutoff:.1f} | "
-        f"{1e6 * row.newton_seconds / row.n_cutoff:.2f} | {row.error:.1e} | {row.memory:.0f}"
-        for row in rows
+    if exponents := _exponents(rows):
+        text += f" Exponents of the time in sites times cutoffs crossed: {exponents}."
+    return make_table(
+        "group | problem | reference s | newton s | ratio | FFT pairs of reference "
+        "| FFT pairs of newton | updates of reference | updates of newton "
+        "| newton us a site and cutoff | error | MB",
+        (
+            (
+                row.group,
+                row.label,
+                f"{row.reference_seconds:.2f}",
+                f"{row.newton_seconds:.2f}",
+                f"{row.ratio:.1f}",
+                f"{row.reference_pairs}",
+                f"{row.newton_pairs}",
+                f"{row.reference_updates / row.n_cutoff:.1f}",
+                f"{row.newton_updates / row.n_cutoff:.1f}",
+                f"{1e6 * row.newton_seconds / row.n_cutoff:.2f}",
+                f"{row.error:.1e}",
+                f"{row.memory:.0f}",
+            )
+            for row in rows
+        ),
+        text,
     )
-    return markdown_table(header, lines)
 
 
-def exponents(rows: Iterable[Row]) -> str:
+def _exponents(rows: Iterable[Row]) -> str:
     """How the time grows with sites times cutoffs crossed, at every disorder."""
-    lines = []
+    texts = []
     scaling = [row for row in rows if row.group == "scaling"]
     for rms in dict.fromkeys(row.rms for row in scaling):
         chosen = [row for row in scaling if row.rms == rms]
         crossed = np.log([row.n_cutoff for row in chosen])
         seconds = np.log([(row.reference_seconds, row.newton_seconds) for row in chosen])
         reference, newton = np.polyfit(crossed, seconds, 1)[0]
-        lines.append(f"- w_rms {rms:g}: reference {reference:.2f}, newton {newton:.2f}")
-    return "\n".join(lines)
-
-
-def sections(rows: Sequence[Row], repeats: int) -> list[str]:
-    """Paragraphs of the page."""
-    parts = [
-        "One process, one core; both solvers in turn on the same field, tolerance\n"
-        f"{DEFAULT_TOLERANCE:g} w_int, penetration 0 to 1 and back to pull-off; CPU seconds, the "
-        "least of\n"
-        f"{repeats} runs. The error is the largest difference of the fronts over all load steps."
-    ]
-    for group in dict.fromkeys(row.group for row in rows):
-        chosen = [row for row in rows if row.group == group]
-        parts += [f"## {group.capitalize()}", table(chosen)]
-    if law := exponents(rows):
-        parts += [
-            "Exponent of the time in sites times cutoffs crossed (least squares of logarithms):",
-            law,
-        ]
-    return parts
+        texts.append(f"w_rms {rms:g}: reference {reference:.2f}, newton {newton:.2f}")
+    return "; ".join(texts)

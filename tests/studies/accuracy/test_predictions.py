@@ -34,4 +34,4 @@ def test_predictions_hold_for_surfaces_that_the_law_was_not_fitted_to(comparison
 @pytest.mark.slow
 def test_the_stored_table_has_the_predictions_and_their_simulations(comparisons, monkeypatch):
     monkeypatch.chdir(ROOT)
-    assert comparison_table(comparisons) == stored("accuracy").tables["Predictions"].text
+    assert comparison_table(comparisons) == stored("accuracy").tables["Predictions"].table

@@ -14,6 +14,8 @@ def test_what_is_kept_for_the_pages_are_the_numbers_of_the_law(monkeypatch):
     paths = [Path("docs/reference") / name for name in ("spheres.csv", "held-out.csv")]
     spheres, stored_numbers = read_spheres(paths), stored("law")
     # Otherwise: python -m studies law numbers --keep
-    assert {name: table.text for name, table in stored_numbers.tables.items()} == law_parts(spheres)
+    assert {name: entry.table for name, entry in stored_numbers.tables.items()} == law_parts(
+        spheres
+    )
     for name, number in law_numbers(spheres).items():
         assert stored_numbers.numbers[name].value == pytest.approx(number.value, rel=1e-9)
