@@ -236,9 +236,12 @@ def _likely_mean(costs: Array, minima: Array) -> Array:
 def log_density(surface: Array, wavevector: Array) -> Array:
     """Logarithm of the model P, (n, n_wavevector)."""
     plateau, long, short = surface.T[:3, :, None]
-    distances = _KNEE_SHARPNESS * (np.log(wavevector) - surface[:, 3:, None])
-    beyond_knees = np.log1p(np.exp(distances)) / _KNEE_SHARPNESS
-    steeper, beyond = beyond_knees[:, 0], beyond_knees[:, 1]
+    logarithms = np.log(wavevector)
+    # Powers of a wavevector over a knee are products, so that few exponentials are needed.
+    middle = logarithms[logarithms.size // 2]
+    powers = np.exp(_KNEE_SHARPNESS * (logarithms - middle))
+    knees = np.exp(_KNEE_SHARPNESS * (middle - surface[:, 3:]))
+    steeper, beyond = (np.log1p(knee[:, None] * powers) / _KNEE_SHARPNESS for knee in knees.T)
     return np.asarray(plateau - (2 + 2 * long) * beyond - 2 * (short - long) * steeper)
 
 
