@@ -197,8 +197,9 @@ def _minima(models: DensityModels, starts: Sequence[Array], limits: Array) -> tu
     def residuals(trials: Array) -> Array:
         roots = []
         for density, model in models(trials):
-            signs = np.sign(np.log(density.value) - model)
-            roots.append(signs * np.sqrt(np.maximum(deviances(density, model), 0)))
+            modes, ratios = weighted_residuals(density, model, LEAST_DEPARTURE)
+            deviance = 2 * modes * (np.expm1(ratios) - ratios)
+            roots.append(np.sign(ratios) * np.sqrt(np.maximum(deviance, 0)))
         return np.concatenate([*roots, (trials[:, 2:3] - trials[:, 1:2]) / BEND], axis=1)
 
     def slopes(parameters: Array) -> Array:
@@ -330,7 +331,7 @@ def _measured_model(shape: Array, instrument: Array, density: Density) -> Array:
 def weighted_residuals(density: Density, model: Array, departure: float) -> tuple[Array, Array]:
     """Effective modes in the bins, and logarithms of measured over modelled density."""
     modes = 1 / (1 / density.modes + departure**2)
-    return modes, np.clip(np.log(density.value) - model, -30.0, 30.0)
+    return modes, np.minimum(np.maximum(np.log(density.value) - model, -30.0), 30.0)
 
 
 def deviances(density: Density, model: Array, departure: float = LEAST_DEPARTURE) -> Array:
