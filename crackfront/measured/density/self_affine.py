@@ -154,7 +154,9 @@ def fitted_instrument(density: Density, bluntest: float = PUPIL) -> Instrument:
         models = DensityModels([density], nothing[None], np.array([varied]))
         begins = [np.array([low + part * (high - low), GAUSSIAN, floor]) for part in parts]
         starts = [np.array([*shape, *begin[varied]]) for begin in begins for shape in shapes]
-        costs, minima = _minima(models, starts, limits[[True] * N_SHAPE + varied])
+        # A surface alone that is so likely needs no instrument, however much likelier it may get.
+        enough = 0.0 if any(varied) else _GAIN
+        costs, minima = _minima(models, starts, limits[[True] * N_SHAPE + varied], enough)
         if np.min(costs) < best - gain:
             best = float(np.min(costs))
             row = models.instruments(_likely_mean(costs, minima)[None])[0, 0]
@@ -188,10 +190,13 @@ def _first_shapes(
     return starts
 
 
-def _minima(models: DensityModels, starts: Sequence[Array], limits: Array) -> tuple[Array, Array]:
+def _minima(
+    models: DensityModels, starts: Sequence[Array], limits: Array, enough: float
+) -> tuple[Array, Array]:
     """Halves of the deviance at its minima, (n,), and their parameters, (n, n_parameter).
 
-    Several starts may lead to the same minimum. Unlikely minima are left out.
+    Several starts may lead to the same minimum. Unlikely minima are left out. A fit with half of
+    the deviance `enough` or less ends the search, and is then the only one.
     """
 
     def residuals(trials: Array) -> Array:
@@ -220,7 +225,11 @@ def _minima(models: DensityModels, starts: Sequence[Array], limits: Array) -> tu
         )
 
     # Valleys of the deviance are flat, so that only fits that may matter run to their ends.
-    short = [fitted(start, _EVALUATIONS_FIRST) for start in starts]
+    short = []
+    for start in starts:
+        short.append(fitted(start, _EVALUATIONS_FIRST))
+        if short[-1].cost <= enough:
+            return np.array([short[-1].cost]), short[-1].x[None]
     worst = min(fit.cost for fit in short) + _UNLIKELY
     full = [fitted(fit.x, _EVALUATIONS_LAST) for fit in short if fit.cost < worst]
     return np.array([fit.cost for fit in full]), np.array([fit.x for fit in full])
