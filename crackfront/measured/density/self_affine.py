@@ -15,7 +15,6 @@ from dataclasses import dataclass
 import numpy as np
 import scipy
 from numpy.typing import NDArray
-from scipy.special import expit
 
 from crackfront.core.arrays import Array
 from crackfront.measured.density.densities import Density
@@ -243,24 +242,30 @@ def _likely_mean(costs: Array, minima: Array) -> Array:
     return np.average(minima, axis=0, weights=np.exp(np.min(costs) - costs) / copies)
 
 
+def _over_knees(surface: Array, wavevector: Array) -> Iterator[Array]:
+    """Powers of wavevectors over those of the bend, then of the roll-off, (n, n_wavevector)."""
+    # As products they need few exponentials.
+    logarithms = np.log(wavevector)
+    middle = logarithms[logarithms.size // 2]
+    powers = np.exp(_KNEE_SHARPNESS * (logarithms - middle))
+    for knee in np.exp(_KNEE_SHARPNESS * (middle - surface[:, 3:])).T:
+        yield knee[:, None] * powers
+
+
 def log_density(surface: Array, wavevector: Array) -> Array:
     """Logarithm of the model P, (n, n_wavevector)."""
     plateau, long, short = surface.T[:3, :, None]
-    logarithms = np.log(wavevector)
-    # Powers of a wavevector over a knee are products, so that few exponentials are needed.
-    middle = logarithms[logarithms.size // 2]
-    powers = np.exp(_KNEE_SHARPNESS * (logarithms - middle))
-    knees = np.exp(_KNEE_SHARPNESS * (middle - surface[:, 3:]))
-    steeper, beyond = (np.log1p(knee[:, None] * powers) / _KNEE_SHARPNESS for knee in knees.T)
+    over_knees = _over_knees(surface, wavevector)
+    steeper, beyond = (np.log1p(power) / _KNEE_SHARPNESS for power in over_knees)
     return np.asarray(plateau - (2 + 2 * long) * beyond - 2 * (short - long) * steeper)
 
 
 def log_density_slopes(surface: Array, wavevector: Array) -> Array:
     """Derivatives of the logarithm of P by its parameters, (n, n_wavevector, 5)."""
     _, long, short = surface.T[:3, :, None]
-    argument = _KNEE_SHARPNESS * (np.log(wavevector) - surface[:, 3:, None])
-    steeper, beyond = np.moveaxis(np.logaddexp(0, argument) / _KNEE_SHARPNESS, 1, 0)
-    passed = np.moveaxis(expit(argument), 1, 0)
+    over_knees = [*_over_knees(surface, wavevector)]
+    steeper, beyond = (np.log1p(power) / _KNEE_SHARPNESS for power in over_knees)
+    passed = [power / (1 + power) for power in over_knees]
     return np.stack(
         [
             np.ones_like(beyond),
