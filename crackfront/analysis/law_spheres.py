@@ -60,7 +60,11 @@ class SphereFactors:
 
 
 def sphere_factors(
-    kind: FieldKind, spectrum: Spectrum, elastic_energy: float, contact_radius: float
+    kind: FieldKind,
+    spectrum: Spectrum,
+    elastic_energy: float,
+    contact_radius: float,
+    breadth: float | None = None,
 ) -> SphereFactors:
     """Factors k of a sphere on a random surface, by the law of the straight front.
 
@@ -78,6 +82,8 @@ def sphere_factors(
         e_el, between 0 and 1. (Units: w_int)
     contact_radius : float
         Mean radius of the contact. (Units: reduced lateral length)
+    breadth : float, optional
+        Breadth of the spectrum, if it is known already: computing it takes most of the time.
 
     Returns
     -------
@@ -104,7 +110,7 @@ def sphere_factors(
         )
     check_within("contact radius", contact_radius, LENGTH)
     spring_at = functools.partial(jkr.spring, contact_radius)
-    sizes = sizes_on_springs(kind, spectrum, elastic_energy, spring_at)
+    sizes = sizes_on_springs(kind, spectrum, elastic_energy, spring_at, breadth)
     if not sizes.is_stable:
         lost = jkr.pull_off_radius(sizes.retraction.work_of_adhesion)
         raise ValueError(

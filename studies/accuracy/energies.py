@@ -144,9 +144,10 @@ def _pupil(wavevector: Array) -> Array:
 def _dilated(heights: Array, radius: float) -> Array:
     """What a parabolic tip of a radius in m records."""
     reach = math.ceil(math.sqrt(2 * radius * float(np.ptp(heights))) / PIXEL)
-    along = PIXEL * np.arange(-reach, reach + 1)
-    shape = -(along[:, None] ** 2 + along**2) / (2 * radius)
-    return np.asarray(grey_dilation(heights, structure=shape, mode="wrap"))
+    shape = -((PIXEL * np.arange(-reach, reach + 1)) ** 2) / (2 * radius)
+    # A paraboloid is the sum of a parabola along each axis, which dilate one after the other.
+    along_x = grey_dilation(heights, structure=shape[:, None], mode="wrap")
+    return np.asarray(grey_dilation(along_x, structure=shape[None], mode="wrap"))
 
 
 def _noise(heights: Array, rng: np.random.Generator) -> Array:

@@ -15,7 +15,6 @@ from dataclasses import dataclass
 import numpy as np
 import scipy
 from numpy.typing import NDArray
-from scipy.special import expit
 
 from crackfront.core.arrays import Array
 from crackfront.measured.density.densities import Density
@@ -154,7 +153,9 @@ def fitted_instrument(density: Density, bluntest: float = PUPIL) -> Instrument:
         models = DensityModels([density], nothing[None], np.array([varied]))
         begins = [np.array([low + part * (high - low), GAUSSIAN, floor]) for part in parts]
         starts = [np.array([*shape, *begin[varied]]) for begin in begins for shape in shapes]
-        costs, minima = _minima(models, starts, limits[[True] * N_SHAPE + varied])
+        # A surface alone that is so likely needs no instrument, however much likelier it may get.
+        enough = 0.0 if any(varied) else _GAIN
+        costs, minima = _minima(models, starts, limits[[True] * N_SHAPE + varied], enough)
         if np.min(costs) < best - gain:
             best = float(np.min(costs))
             row = models.instruments(_likely_mean(costs, minima)[None])[0, 0]
@@ -188,17 +189,21 @@ def _first_shapes(
     return starts
 
 
-def _minima(models: DensityModels, starts: Sequence[Array], limits: Array) -> tuple[Array, Array]:
+def _minima(
+    models: DensityModels, starts: Sequence[Array], limits: Array, enough: float
+) -> tuple[Array, Array]:
     """Halves of the deviance at its minima, (n,), and their parameters, (n, n_parameter).
 
-    Several starts may lead to the same minimum. Unlikely minima are left out.
+    Several starts may lead to the same minimum. Unlikely minima are left out. A fit with half of
+    the deviance `enough` or less ends the search, and is then the only one.
     """
 
     def residuals(trials: Array) -> Array:
         roots = []
         for density, model in models(trials):
-            signs = np.sign(np.log(density.value) - model)
-            roots.append(signs * np.sqrt(np.maximum(deviances(density, model), 0)))
+            modes, ratios = weighted_residuals(density, model, LEAST_DEPARTURE)
+            deviance = 2 * modes * (np.expm1(ratios) - ratios)
+            roots.append(np.sign(ratios) * np.sqrt(np.maximum(deviance, 0)))
         return np.concatenate([*roots, (trials[:, 2:3] - trials[:, 1:2]) / BEND], axis=1)
 
     def slopes(parameters: Array) -> Array:
@@ -219,7 +224,11 @@ def _minima(models: DensityModels, starts: Sequence[Array], limits: Array) -> tu
         )
 
     # Valleys of the deviance are flat, so that only fits that may matter run to their ends.
-    short = [fitted(start, _EVALUATIONS_FIRST) for start in starts]
+    short = []
+    for start in starts:
+        short.append(fitted(start, _EVALUATIONS_FIRST))
+        if short[-1].cost <= enough:
+            return np.array([short[-1].cost]), short[-1].x[None]
     worst = min(fit.cost for fit in short) + _UNLIKELY
     full = [fitted(fit.x, _EVALUATIONS_LAST) for fit in short if fit.cost < worst]
     return np.array([fit.cost for fit in full]), np.array([fit.x for fit in full])
@@ -233,21 +242,30 @@ def _likely_mean(costs: Array, minima: Array) -> Array:
     return np.average(minima, axis=0, weights=np.exp(np.min(costs) - costs) / copies)
 
 
+def _over_knees(surface: Array, wavevector: Array) -> Iterator[Array]:
+    """Powers of wavevectors over those of the bend, then of the roll-off, (n, n_wavevector)."""
+    # As products they need few exponentials.
+    logarithms = np.log(wavevector)
+    middle = logarithms[logarithms.size // 2]
+    powers = np.exp(_KNEE_SHARPNESS * (logarithms - middle))
+    for knee in np.exp(_KNEE_SHARPNESS * (middle - surface[:, 3:])).T:
+        yield knee[:, None] * powers
+
+
 def log_density(surface: Array, wavevector: Array) -> Array:
     """Logarithm of the model P, (n, n_wavevector)."""
     plateau, long, short = surface.T[:3, :, None]
-    distances = _KNEE_SHARPNESS * (np.log(wavevector) - surface[:, 3:, None])
-    beyond_knees = np.log1p(np.exp(distances)) / _KNEE_SHARPNESS
-    steeper, beyond = beyond_knees[:, 0], beyond_knees[:, 1]
+    over_knees = _over_knees(surface, wavevector)
+    steeper, beyond = (np.log1p(power) / _KNEE_SHARPNESS for power in over_knees)
     return np.asarray(plateau - (2 + 2 * long) * beyond - 2 * (short - long) * steeper)
 
 
 def log_density_slopes(surface: Array, wavevector: Array) -> Array:
     """Derivatives of the logarithm of P by its parameters, (n, n_wavevector, 5)."""
     _, long, short = surface.T[:3, :, None]
-    argument = _KNEE_SHARPNESS * (np.log(wavevector) - surface[:, 3:, None])
-    steeper, beyond = np.moveaxis(np.logaddexp(0, argument) / _KNEE_SHARPNESS, 1, 0)
-    passed = np.moveaxis(expit(argument), 1, 0)
+    over_knees = [*_over_knees(surface, wavevector)]
+    steeper, beyond = (np.log1p(power) / _KNEE_SHARPNESS for power in over_knees)
+    passed = [power / (1 + power) for power in over_knees]
     return np.stack(
         [
             np.ones_like(beyond),
@@ -327,7 +345,7 @@ def _measured_model(shape: Array, instrument: Array, density: Density) -> Array:
 def weighted_residuals(density: Density, model: Array, departure: float) -> tuple[Array, Array]:
     """Effective modes in the bins, and logarithms of measured over modelled density."""
     modes = 1 / (1 / density.modes + departure**2)
-    return modes, np.clip(np.log(density.value) - model, -30.0, 30.0)
+    return modes, np.minimum(np.maximum(np.log(density.value) - model, -30.0), 30.0)
 
 
 def deviances(density: Density, model: Array, departure: float = LEAST_DEPARTURE) -> Array:

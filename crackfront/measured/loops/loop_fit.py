@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 import scipy
 
 from crackfront.analysis.standard_error import FEWEST_STATES
 from crackfront.analysis.steady_adhesion import Branches, Rows
+from crackfront.core import jkr
+from crackfront.core.arrays import Array
 from crackfront.measured.loops.calibration import CalibratedLoop
-from crackfront.measured.loops.contact_relations import force_at
+from crackfront.measured.loops.contact_relations import force_at, radius_at
 from crackfront.measured.loops.recording import Recording
 from crackfront.measured.loops.rig import Rig
 
@@ -22,7 +24,10 @@ _NO_CURVE = 1e6
 """Misfit at a displacement with too few contacts; any curve has less."""
 
 _SMALLEST_VARIANCE = np.finfo(float).tiny
-"""Smallest variance of the force that divides another. (Units: N^2)"""
+"""Smallest variance of the force that divides another. (Units: squared reduced force)"""
+
+_AT_ONCE = 2**14
+"""Rows times zeros whose misfits are computed at once, so that their numbers stay in the cache."""
 
 
 def fitted_modulus(recording: Recording, rig: Rig, rows: Branches) -> float:
@@ -71,44 +76,74 @@ def fitted_zero(loop: CalibratedLoop, rows: Sequence[Rows], near: float | None =
 
 def _zero_by_force(loop: CalibratedLoop, rows: Sequence[Rows], near: float | None) -> float:
     """Zero with the smallest misfit of the forces."""
-    displacement = np.asarray(loop.recording.displacement)
+    vertical = loop.scales.vertical
     # Rows out of contact may be many more, and do not depend on the zero.
     parts = [_part(loop, branch) for branch in rows if branch.size]
-    moved = displacement[np.concatenate(rows)]
+    moved = np.asarray(loop.recording.displacement)[np.concatenate(rows)] / vertical
     low, high = float(np.nanmin(moved)), float(np.nanmax(moved))
     if near is None:
         tried = np.linspace(low - (high - low), high + (high - low), _TRIED_ZEROS)
-        near = float(tried[np.argmin([_misfit(parts, zero) for zero in tried])])
+        middle = float(tried[np.argmin(_misfits(parts, tried))])
+    else:
+        middle = near / vertical
     step = 3 * (high - low) / (_TRIED_ZEROS - 1)
     best = scipy.optimize.minimize_scalar(
-        lambda zero: _misfit(parts, zero),
-        bounds=(near - step, near + step),
+        lambda zero: float(_misfits(parts, np.array([zero]))[0]),
+        bounds=(middle - step, middle + step),
         method="bounded",
         options={"xatol": 1e-7 * (high - low)},
     )
-    return float(best.x)
+    return float(best.x) * vertical
 
 
-def _part(loop: CalibratedLoop, rows: Rows) -> CalibratedLoop:
+class _Part(NamedTuple):
+    """Rows of a branch without contact radii, in reduced units."""
+
+    force: Array
+    displacement: Array
+    """Displacement without what bends in the machine: penetration plus zero."""
+    variance: float
+    """Variance of the force."""
+
+
+def _part(loop: CalibratedLoop, rows: Rows) -> _Part:
     """Some rows of a loop without contact radii."""
-    recording = loop.recording
-    force, displacement = np.asarray(recording.force), np.asarray(recording.displacement)
-    return replace(loop, recording=Recording(force[rows], None, displacement[rows]))
+    recording, scales = loop.recording, loop.scales
+    force = np.asarray(recording.force)[rows] / scales.force
+    displacement = np.asarray(recording.displacement)[rows] / scales.vertical
+    displacement = displacement - loop.compliance * force
+    variance = max(float(np.nanvar(force)), _SMALLEST_VARIANCE)
+    known = np.isfinite(displacement)
+    return _Part(force[known], displacement[known], variance)
 
 
-def _misfit(parts: Sequence[CalibratedLoop], zero: float) -> float:
-    """Variance of the forces about one JKR curve for each part, over the variance of the forces."""
-    total = 0.0
-    for part in parts:
-        contact, scales = replace(part, zero=zero).contact(), part.scales
-        works = contact.work_of_adhesion[np.isfinite(contact.work_of_adhesion)]
-        if works.size < FEWEST_STATES:
-            return _NO_CURVE
-        curve = force_at(contact.penetration / scales.vertical, float(np.mean(works)))
-        misfit = float(np.nanmean((contact.force - scales.force * curve) ** 2))
-        variance = float(np.nanvar(np.asarray(part.recording.force)))
-        total += misfit / max(variance, _SMALLEST_VARIANCE)
-    return total
+def _misfits(parts: Sequence[_Part], zeros: Array) -> Array:
+    """Variance of the forces about a JKR curve for each part, over the variance of the forces.
+
+    The parts share each of the zeros of the displacement (Units: reduced vertical length).
+    """
+    largest = max(1, *(part.force.size for part in parts))
+    number = max(1, _AT_ONCE // largest)
+    totals = [
+        sum(_misfits_of_part(part, zeros[first : first + number]) for part in parts)
+        for first in range(0, zeros.size, number)
+    ]
+    return np.minimum(np.concatenate(totals), _NO_CURVE)
+
+
+def _misfits_of_part(part: _Part, zeros: Array) -> Array:
+    """Misfits of one part at some zeros; infinite at zeros with too few contacts."""
+    penetration = part.displacement - zeros[:, None]
+    radius = radius_at(part.force, penetration)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        work = jkr.apparent_work_of_adhesion(radius, penetration)
+    is_contact = np.isfinite(work)
+    count = np.count_nonzero(is_contact, axis=1)
+    misfits, enough = np.full(zeros.size, np.inf), count >= FEWEST_STATES
+    mean = np.sum(work[enough], axis=1, where=is_contact[enough]) / count[enough]
+    curve = force_at(penetration[enough], mean[:, None])
+    misfits[enough] = np.mean((part.force - curve) ** 2, axis=1) / part.variance
+    return misfits
 
 
 def _zero_by_radius(loop: CalibratedLoop, rows: Sequence[Rows]) -> float:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Sequence
 from dataclasses import replace
@@ -11,6 +12,7 @@ import numpy as np
 import scipy
 
 from crackfront.analysis.estimate import REACH, UNKNOWN, Estimate, product
+from crackfront.analysis.law import spectral_breadth
 from crackfront.analysis.law_spheres import SphereFactors, sphere_factors
 from crackfront.analysis.validity import Excess, front_excess
 from crackfront.core.spectrum import TabulatedSpectrum
@@ -111,9 +113,16 @@ def _factors_at(surface: Surface, scales: Scales, energy: float) -> _FactorsAtEn
     shape = reduced_spectrum(surface.spectrum, scales)
     spectrum = shape.amplified(relative / shape.elastic_energy)
     radius = zero_load_radius(scales) / scales.lateral
-    factors = sphere_factors("roughness", spectrum, relative, radius)
+    breadth = _breadth(surface.spectrum)
+    factors = sphere_factors("roughness", spectrum, relative, radius, breadth)
     excess = front_excess(relative, factors.size)
     return _FactorsAtEnergy(scales.work_of_adhesion, energy, factors, excess)
+
+
+@functools.lru_cache(maxsize=16)
+def _breadth(spectrum: TabulatedSpectrum) -> float:
+    """Breadth of a spectrum, which is the same in all units and at all amplitudes."""
+    return spectral_breadth("roughness", spectrum)
 
 
 def _varied_by_energy(

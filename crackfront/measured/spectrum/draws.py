@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -52,6 +53,9 @@ _FIRST_BINS = 3
 _LOST_AT_TIP = 0.2
 """Largest part of the density that the tip removes at the end of a band, as for an optic."""
 
+_BLOCK = 2**9
+"""Spectra that are integrated at once, so that their numbers stay in the cache."""
+
 RESTORATION_ERROR = 0.25
 """Largest relative error of a density due to missing points, over their weight in the window."""
 
@@ -62,7 +66,7 @@ A scan has too few of the rare places that dominate e_el.
 """
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Draws:
     """Mean squares of derivatives for n random spectra that agree with the measurements."""
 
@@ -100,12 +104,12 @@ class Draws:
         """Mean square of a derivative of the recorded waves (Units: m^(2 - 2 order))."""
         return self.estimate(self.recorded[ORDERS.index(order)])
 
-    @property
+    @cached_property
     def factor(self) -> float:
         """Uncertainty factor of e_el: root of the ratio of the ends of its interval."""
         return _factor(self.mean_square(0.5))
 
-    @property
+    @cached_property
     def factors_if_known(self) -> tuple[float, float]:
         """As :attr:`factor`, if waves longer or shorter than the measured ones were known."""
         return self._factor_if_known(self.outside[0]), self._factor_if_known(self.outside[1])
@@ -115,7 +119,7 @@ class Draws:
         exact = float(quantiles(part, self.weight, 0.5))
         return _factor(self.estimate(self.estimated[ORDERS.index(0.5)] - part + exact))
 
-    @property
+    @cached_property
     def unsettled(self) -> float:
         """Largest standard error of the median and the ends of the interval of ln(e_el).
 
@@ -340,23 +344,31 @@ def mean_squares(grid: Array, table: Array, *ends: Array) -> list[Array]:
     The table has logarithms of C, (n, n_wavevector). Spectra are power laws between the points of
     the grid and constant at lower wavevectors.
     """
+    results = np.empty((len(ends), len(ORDERS), len(table)))
+    for first in range(0, len(table), _BLOCK):
+        block = slice(first, first + _BLOCK)
+        results[..., block] = _mean_squares(grid, table[block], [end[block] for end in ends])
+    return list(results)
+
+
+def _mean_squares(grid: Array, table: Array, ends: Sequence[Array]) -> Array:
+    """Mean squares as :func:`mean_squares`, for few spectra, (n_end, 3, n)."""
     logarithms = np.log(grid)
     steps = np.diff(logarithms)
-    slope = np.diff(table, axis=1) / steps
-    rows, results = np.arange(len(table)), np.empty((len(ends), len(ORDERS), len(table)))
-    for index, order in enumerate(ORDERS):
+    slope, density = np.diff(table, axis=1) / steps, np.exp(table)
+    end = np.log(ends)
+    last = np.clip(np.searchsorted(logarithms, end, side="right") - 1, 0, steps.size - 1)
+    part = np.clip(end - logarithms[last], 0.0, steps[last])
+    rows, results = np.arange(len(table)), np.empty((len(ORDERS), *end.shape))
+    whole = np.zeros_like(table)
+    for squares, order in zip(results, ORDERS, strict=True):
         power = 2 + 2 * order
-        exponent = slope + power
-        start = np.exp(table + power * logarithms)
+        exponent, start = slope + power, density * grid**power
         pieces = start[:, :-1] * _exponential_integral(exponent, steps)
-        for squares, end in zip(results, ends, strict=True):
-            last = np.searchsorted(logarithms, np.log(end), side="right") - 1
-            last = np.clip(last, 0, steps.size - 1)
-            part = np.clip(np.log(end) - logarithms[last], 0.0, steps[last])
-            total = np.where(np.arange(steps.size) < last[:, None], pieces, 0.0).sum(axis=1)
-            total += start[rows, last] * _exponential_integral(exponent[rows, last], part)
-            squares[index] = (total + start[:, 0] / power) / (2 * np.pi)
-    return list(results)
+        np.cumsum(pieces, axis=1, out=whole[:, 1:])
+        rest = start[rows, last] * _exponential_integral(exponent[rows, last], part)
+        squares[:] = (whole[rows, last] + rest + start[:, 0] / power) / (2 * np.pi)
+    return np.swapaxes(results, 0, 1)
 
 
 def _exponential_integral(exponent: Array, length: Array) -> Array:

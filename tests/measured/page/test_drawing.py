@@ -7,8 +7,16 @@ from matplotlib.text import Text
 from crackfront.measured.page.prediction_figures import prediction_figure
 
 
-def test_the_figure_shows_the_measured_and_the_predicted(surface, prediction):
-    upper, force, lower = prediction_figure(surface, prediction).axes[:3]
+@pytest.fixture(scope="module")
+def figure(surface, prediction):
+    """The figure, drawn once."""
+    drawn = prediction_figure(surface, prediction)
+    drawn.canvas.draw()
+    return drawn
+
+
+def test_the_figure_shows_the_measured_and_the_predicted(figure, surface, prediction):
+    upper, force, lower = figure.axes[:3]
     if "force" in lower.get_xlabel():
         force, lower = lower, force
     trusted = [scan.trusted for scan in surface.scans]
@@ -23,9 +31,7 @@ def test_the_figure_shows_the_measured_and_the_predicted(surface, prediction):
     assert "µN" in force.get_xlabel()
 
 
-def test_names_of_bars_cover_no_bar_and_titles_of_scans_stay_inside(surface, prediction):
-    figure = prediction_figure(surface, prediction)
-    figure.canvas.draw()
+def test_names_of_bars_cover_no_bar_and_titles_of_scans_stay_inside(figure):
     isotropic = figure.axes[0]
     names = [text.get_window_extent() for text in isotropic.texts if "rms" in text.get_text()]
     bars = [line for line in isotropic.lines if line.get_linewidth() > 2]

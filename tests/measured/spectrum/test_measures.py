@@ -11,6 +11,7 @@ from crackfront.measured.options import ReadingOptions
 from crackfront.measured.prediction.surface_remarks import spectrum_remarks
 from crackfront.measured.scan.library import surface_library
 from crackfront.measured.scan.reading import read_measurements
+from crackfront.measured.spectrum.joining import joint_spectrum
 from crackfront.measured.spectrum.measured_surface import measured_surface
 from tests.measured.made import (
     SIDE,
@@ -63,8 +64,8 @@ def test_a_second_measurement_widens_the_wavelengths(rng, tmp_path, scan):
     fine = SelfAffineSpectrum(0.08e-6, 3e-6, 0.8, 1e-26)
     heights = map_heights(rng, spectrum=fine, side=5e-6)
     detail = write_al3d(tmp_path / "detail.al3d", heights, 5e-6)
-    alone = measured_surface(read_measurements([scan])).joint
-    joined = measured_surface(read_measurements([scan, detail])).joint
+    scans = [analysed_scan(measurement) for measurement in read_measurements([scan, detail])]
+    alone, joined = joint_spectrum(scans[:1]), joint_spectrum(scans)
     assert joined.shortest == pytest.approx(4 * 5e-6 / 128, rel=0.1)
     assert joined.longest == pytest.approx(alone.longest) == pytest.approx(10e-6, rel=0.15)
     assert joined.fit.hurst.low < 0.8 < joined.fit.hurst.high
