@@ -101,11 +101,13 @@ def forked(configuration, folder, *more, until):
     told = ["simulate", configuration, "--output", folder, *more]
     process = os.fork()
     if process == 0:
-        with open(writing, "w", encoding="utf-8", buffering=1) as sys.stdout:
-            main([str(word) for word in told], standalone_mode=False)
-        os._exit(0)
+        try:
+            sys.stdout = os.fdopen(writing, "w", buffering=1, encoding="utf-8")
+            main([str(word) for word in told])
+        finally:
+            os._exit(1)
     os.close(writing)
-    with open(reading, encoding="utf-8") as printed:
+    with os.fdopen(reading, encoding="utf-8") as printed:
         assert any(line.startswith(f"[{until}/") for line in printed)
         try:
             yield process
