@@ -47,6 +47,10 @@ class BatchWriter:
         if not self._finished:
             return
         self._count += 1
+        # In the order of a shard, so that a batch with all of it need not be written again.
+        self._finished.sort(
+            key=lambda item: (item.simulation.elastic_energy, item.simulation.realisation)
+        )
         dataset = curves_dataset(self._finished)
         write_curves(self._folder, BATCH, f"{self._count:06}", dataset, self._origin)
         for finished in self._finished:

@@ -107,6 +107,11 @@ def write_curves(
     return write_named_by_digest(folder, f"{kind}-{name}", dataset, origin)
 
 
+def rename_curves(path: Path, kind: str, name: str) -> Path:
+    """Give a file of finished simulations another kind and name; its content and digest stay."""
+    return path.replace(path.with_name(f"{kind}-{name}-{stated_digest(path)}.nc"))
+
+
 def curves_dataset(finished: Sequence[FinishedSimulation]) -> xr.Dataset:
     """Rows and states of finished simulations of one kind of contact."""
     records = [item.record for item in finished]

@@ -22,6 +22,7 @@ from crackfront.sweep.curves import (
     concatenated,
     curve_files,
     read_results,
+    rename_curves,
     selected,
     stored_rows,
     write_curves,
@@ -98,27 +99,44 @@ def _merge(
 ) -> None:
     """Put all simulations of a shard into one file, and remove those that it replaces."""
     used = [number for number in range(len(located.files)) if np.any(located.file == number)]
-    paths = [located.files[number].path for number in used]
-    if [folder] == [path.parent for path in paths] and _is_merged(located.files[used[0]], located):
+    files = [located.files[number] for number in used]
+    is_whole = _is_whole_shard(folder, files, located)
+    if is_whole and files[0].path.name.startswith(MERGED):
         return
-    if sum(path.stat().st_size for path in paths) > _MOST_MERGED_BYTES:
+    if is_whole and _is_in_order(located):
+        # One batch, as of a short sweep, need not be written again.
+        merged_path = rename_curves(files[0].path, MERGED, name)
+        in_merged = files[0].identities
+    elif sum(rows.path.stat().st_size for rows in files) > _MOST_MERGED_BYTES:
         return
+    else:
+        merged = _merged(located, used, columns, row)
+        merged_path = write_curves(folder, MERGED, name, merged, origin)
+        in_merged = stored_rows(merged_path).identities
+    for path in curve_files(folder):
+        if path == merged_path:
+            continue
+        rows = stored_rows(path)
+        if rows.physics_version < PHYSICS_VERSION or rows.identities <= in_merged:
+            path.unlink()
+
+
+def _merged(
+    located: LocatedRows,
+    used: list[int],
+    columns: dict[str, NDArray[Any]],
+    row: type[SweepRow],
+) -> xr.Dataset:
+    """Dataset of all simulations of a shard in their order, from the files that have them."""
     parts, order = [], []
     for number in used:
         chosen = located.place[located.file == number]
         parts.append(selected(_with_all_columns(located.files[number].path, row), chosen))
         order.append(np.flatnonzero(located.file.ravel() == number))
     merged = selected(concatenated(parts), np.argsort(np.concatenate(order)))
-    merged = merged.assign(
+    return merged.assign(
         {column: (SIMULATION, values, merged[column].attrs) for column, values in columns.items()}
     )
-    merged_path = write_curves(folder, MERGED, name, merged, origin)
-    in_merged = stored_rows(merged_path).identities
-    for path in curve_files(folder):
-        rows = stored_rows(path)
-        is_replaced = rows.physics_version < PHYSICS_VERSION or rows.identities <= in_merged
-        if is_replaced and path != merged_path:
-            path.unlink()
 
 
 def _with_all_columns(path: Path, row: type[SweepRow]) -> xr.Dataset:
@@ -133,7 +151,13 @@ def _with_all_columns(path: Path, row: type[SweepRow]) -> xr.Dataset:
     return dataset.assign(lacking)
 
 
-def _is_merged(rows: StoredRows, located: LocatedRows) -> bool:
-    """Whether a file is a merged one of this version with all simulations and no others."""
-    is_complete = len(rows.series) == located.file.size
-    return rows.path.name.startswith(MERGED) and is_complete and not is_older(rows)
+def _is_whole_shard(folder: Path, files: list[StoredRows], located: LocatedRows) -> bool:
+    """Whether one file of a folder has the rows of today of a whole shard, and no others."""
+    if [folder] != [rows.path.parent for rows in files] or is_older(files[0]):
+        return False
+    return len(files[0].series) == located.file.size
+
+
+def _is_in_order(located: LocatedRows) -> bool:
+    """Whether a single file has the simulations of a shard in their order."""
+    return np.array_equal(located.place.ravel(), np.arange(located.place.size))

@@ -1,7 +1,12 @@
 """One sweep that ran undisturbed, and what is made of it, for tests of what may happen to them."""
 
+import itertools
+from dataclasses import replace
+
 import pytest
 
+from crackfront.simulate.run_simulation import run_simulation
+from crackfront.sweep import tasks
 from crackfront.sweep.store import Store
 from tests.commands import run
 from tests.places import TEST
@@ -19,3 +24,30 @@ def made(tmp_path_factory):
 @pytest.fixture(autouse=True)
 def _empty_pictures(empty_pictures):
     """How the figures of a sweep look is tested elsewhere."""
+
+
+@pytest.fixture(scope="session")
+def _results():
+    """Results of simulations that tests have run, and numbers that tell their runs apart."""
+    return {}, itertools.count(1)
+
+
+@pytest.fixture
+def remembered(monkeypatch, _results):
+    """A simulation is computed once for all tests; what runs it again has the same states at once.
+
+    Its wall time differs, as that of any run does.
+    """
+    results, counts = _results
+
+    def run(simulation, **how):
+        if "resume" in how:
+            return run_simulation(simulation, **how)
+        if simulation not in results:
+            results[simulation] = run_simulation(simulation)
+        result = results[simulation]
+        seconds = result.measures.seconds + 1e-6 * next(counts)
+        return replace(result, measures=replace(result.measures, seconds=seconds))
+
+    monkeypatch.setattr(tasks, "run_simulation", run)
+    return run

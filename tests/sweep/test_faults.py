@@ -11,6 +11,7 @@ from contextlib import contextmanager
 import pytest
 import xarray as xr
 
+from crackfront.cli import main
 from crackfront.simulate.checksums import is_whole
 from crackfront.simulate.run_simulation import run_simulation
 from crackfront.sweep.curves import curve_files
@@ -93,12 +94,35 @@ def _same_table(configuration, alone, folder):
     return table(folder / "hysteresis.nc").identical(table(alone / "hysteresis.nc"))
 
 
+@contextmanager
+def forked(configuration, folder, *more, until):
+    """Number of a fork of this process that runs a sweep, once it has stored some simulations."""
+    reading, writing = os.pipe()
+    told = ["simulate", configuration, "--output", folder, *more]
+    process = os.fork()
+    if process == 0:
+        try:
+            sys.stdout = os.fdopen(writing, "w", buffering=1, encoding="utf-8")
+            main([str(word) for word in told])
+        finally:
+            os._exit(1)
+    os.close(writing)
+    with os.fdopen(reading, encoding="utf-8") as printed:
+        assert any(line.startswith(f"[{until}/") for line in printed)
+        try:
+            yield process
+        finally:
+            os.kill(process, signal.SIGKILL)
+            os.waitpid(process, 0)
+
+
+# Threads of what runs the tests are not in the fork.
+@pytest.mark.filterwarnings("ignore:.*multi-threaded.*fork:DeprecationWarning")
 def test_a_kill_at_any_moment_costs_what_is_in_no_batch_and_corrupts_nothing(made, tmp_path, rng):
     n_finished = int(rng.integers(1, 3))
-    # Each simulation is a batch, which is written before its line is printed.
-    with running(TEST, tmp_path, "--checkpoint", "0", until=n_finished) as process:
+    # Each simulation takes longer and is a batch, which is written before its line is printed.
+    with forked(TEST, tmp_path, "--checkpoint", "0.01", until=n_finished):
         time.sleep(rng.uniform(0, 0.05))
-        process.kill()
     assert_whole(tmp_path)
     kept = stored(tmp_path)
     assert n_finished <= len(kept) < N_SIMULATION

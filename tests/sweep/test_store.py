@@ -47,6 +47,7 @@ from tests.places import TEST
 LINE = Path(__file__).parents[1] / "line-test.yaml"
 SWEEP = load_sweep(TEST)
 ALL = {item.label for item in SWEEP.simulations()}
+pytestmark = pytest.mark.usefixtures("remembered")
 FLAT, ROUGH = ({label for label in ALL if name in label} for name in ("flat", "rough"))
 
 
@@ -90,7 +91,7 @@ def in_batches(configuration, folder):
     shards = [
         (shard, [*sweep.simulations(shard.item, shard.realisations)]) for shard in sweep.shards()
     ]
-    for _ in tasks.run_and_store(store, shards, provenance("text"), 0.01):
+    for _ in tasks.run_and_store(store, shards, provenance("text"), 0.0):
         pass
     return sweep, store
 
@@ -260,7 +261,7 @@ def test_a_column_that_stored_rows_lack_is_made_from_their_states(
 
 
 def test_a_simulation_that_fails_is_a_row_is_not_tried_again_and_costs_no_other(
-    configuration, made, tmp_path, monkeypatch
+    configuration, made, tmp_path, monkeypatch, remembered
 ):
     folder, (invalid, defect, *_) = tmp_path / "sweep", SWEEP.simulations()
     errors = {invalid: ValueError("too rough"), defect: DefectError("a jump")}
@@ -268,7 +269,7 @@ def test_a_simulation_that_fails_is_a_row_is_not_tried_again_and_costs_no_other(
     def fail(simulation, **options):
         if simulation in errors:
             raise errors[simulation]
-        return run_simulation(simulation, **options)
+        return remembered(simulation, **options)
 
     change(configuration, "realisations: 2", "realisations: 2\nfailed_fraction: 0.5")
     with monkeypatch.context() as patched:
@@ -330,7 +331,7 @@ def test_what_the_machine_could_not_store_runs_again(
             raise error
         return write(folder, *arguments)
 
-    told = ("simulate", configuration, "--output", folder, "--checkpoint", "0.01")
+    told = ("simulate", configuration, "--output", folder, "--checkpoint", "0")
     with monkeypatch.context() as patched:
         patched.setattr(batches, "write_curves", fail_after_three)
         result = run(*told)
@@ -615,7 +616,7 @@ RECORDED = "realisations: 2", "realisations: 1\nrecord: [fronts, energy]"
 
 @pytest.mark.parametrize("original", [slow(TEST), LINE])
 def test_recorded_fronts_and_energies_survive_batches_and_merging_to_the_last_bit(
-    tmp_path, monkeypatch, original
+    tmp_path, monkeypatch, remembered, original
 ):
     configuration, folder = shutil.copy(original, tmp_path / "sweep.yaml"), tmp_path / "sweep"
     change(configuration, *RECORDED)
@@ -624,11 +625,11 @@ def test_recorded_fronts_and_energies_survive_batches_and_merging_to_the_last_bi
     def fail(simulation, **options):
         if simulation == failing:
             raise ValueError("too rough")
-        return run_simulation(simulation, **options)
+        return remembered(simulation, **options)
 
     monkeypatch.setattr(tasks, "run_simulation", fail)
     sweep, store = in_batches(configuration, folder)
-    expected = [run_simulation(simulation).record for simulation in simulations]
+    expected = [remembered(simulation).record for simulation in simulations]
     for kind in ("batch", "curves"):
         files = {path.name.partition("-")[0] for path in (folder / "curves").glob("*/*.nc")}
         assert files == {kind}
