@@ -67,7 +67,8 @@ class Table:
     def cell(self, row: str, column: str) -> str:
         """Cell of a column, in the row that begins with some cells, as ``h08 | 4``."""
         if column not in self.columns:
-            raise ValueError(f"the table has no column {column!r}, but {', '.join(self.columns)}")
+            columns = ", ".join(self.columns)
+            raise ValueError(f"the table lacks a column {column!r}; it has {columns}")
         first_cells = tuple(row.split(" | "))
         for cells in self.rows:
             if cells[: len(first_cells)] == first_cells:

@@ -89,7 +89,7 @@ def test_a_quote_is_a_number_in_a_form_or_a_cell(place, shown, tmp_path):
         ("{power: ratio}", "the study power has not measured 'ratio'"),
         ("{law: limit}", "the study law has not measured 'limit'"),
         ("{law: limit / 4 / k}", "no row of the table begins with '4'"),
-        ("{law: limit / 1 / g}", "the table has no column 'g', but s, branch, k"),
+        ("{law: limit / 1 / g}", "the table lacks a column 'g'; it has s, branch, k"),
     ],
 )
 def test_a_quote_of_what_was_not_measured_names_it(place, message):

@@ -243,7 +243,7 @@ def _likely_mean(costs: Array, minima: Array) -> Array:
 
 
 def _over_knees(surface: Array, wavevector: Array) -> Iterator[Array]:
-    """Powers of wavevectors over those of the bend, then of the roll-off, (n, n_wavevector)."""
+    """Wavevector over bend, then over roll-off, each to the sharpness, (n, n_wavevector)."""
     # As products they need few exponentials.
     logarithms = np.log(wavevector)
     middle = logarithms[logarithms.size // 2]
