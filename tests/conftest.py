@@ -7,27 +7,41 @@ from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
 
-import hypothesis
 import numpy as np
 import pytest
 
-from crackfront.core.cycle.load_schedule import LoadSchedule
-from crackfront.core.cycle.record import Recorder
-from crackfront.core.cycle.run import run_cycle
-from crackfront.core.geometry.sphere import polar_field
-from crackfront.core.solver.relax import Newton
-from crackfront.core.units import WORK_OF_ADHESION
-from crackfront.plots.style import STYLE
-from crackfront.simulate.run_simulation import compile_solver
-from crackfront.simulate.sphere.full_cycle import FullCycle
+# Hypothesis and crackfront are imported in functions: a process that only hands tests to workers
+# needs neither.
 
 SEED = 20240229
-AS_PRINTED = STYLE.copy()
+
+
+class DoctestsThatExist:
+    """Keeps pytest from importing and searching modules without an example, which are most."""
+
+    @pytest.hookimpl(wrapper=True)
+    def pytest_collect_file(self, file_path: Path) -> Iterator[None]:
+        """Only the tests of a file whose text has no prompt of Python."""
+        collectors = yield
+        if file_path.suffix != ".py" or b">>>" in file_path.read_bytes():
+            return collectors
+        return [collector for collector in collectors if type(collector) is pytest.Module]
 
 
 def pytest_configure(config: pytest.Config) -> None:
+    """Set up generated examples and the search for doctests."""
+    if config.getoption("numprocesses", 0) and not hasattr(config, "workerinput"):
+        return  # workers collect and run the tests
+    _choose_generated_examples(by_day="not slow" in config.option.markexpr)
+    # As a plugin, because hooks of this file see only files of this folder.
+    config.pluginmanager.register(DoctestsThatExist())
+    gc.disable()
+
+
+def _choose_generated_examples(*, by_day: bool) -> None:
     """More generated examples where the slow tests run too, by night."""
-    by_day = "not slow" in config.option.markexpr
+    import hypothesis
+
     hypothesis.settings.register_profile(
         "ours",
         deadline=None,
@@ -35,7 +49,6 @@ def pytest_configure(config: pytest.Config) -> None:
         derandomize=bool(os.environ.get("CI")),
     )
     hypothesis.settings.load_profile("ours")
-    gc.disable()
 
 
 def pytest_collection_finish() -> None:
@@ -59,10 +72,29 @@ def _kernels_shared_out(request: pytest.FixtureRequest) -> None:
         return
     match os.environ.get("PYTEST_XDIST_WORKER"):
         case "gw0":
-            compile_solver(Newton.name, FullCycle)
+            _compile_kernels_of_tiles()
         case "gw1":
-            rings = polar_field(np.linspace(0.1, 3.0, 30), np.full(30, WORK_OF_ADHESION))
-            run_cycle(rings, LoadSchedule(0.0, 0.5), Newton(1e-3), Recorder())
+            _compile_kernels_of_rings()
+
+
+def _compile_kernels_of_tiles() -> None:
+    from crackfront.core.solver.relax import Newton
+    from crackfront.simulate.run_simulation import compile_solver
+    from crackfront.simulate.sphere.full_cycle import FullCycle
+
+    compile_solver(Newton.name, FullCycle)
+
+
+def _compile_kernels_of_rings() -> None:
+    from crackfront.core.cycle.load_schedule import LoadSchedule
+    from crackfront.core.cycle.record import Recorder
+    from crackfront.core.cycle.run import run_cycle
+    from crackfront.core.geometry.sphere import polar_field
+    from crackfront.core.solver.relax import Newton
+    from crackfront.core.units import WORK_OF_ADHESION
+
+    rings = polar_field(np.linspace(0.1, 3.0, 30), np.full(30, WORK_OF_ADHESION))
+    run_cycle(rings, LoadSchedule(0.0, 0.5), Newton(1e-3), Recorder())
 
 
 @pytest.fixture(autouse=True)
@@ -73,20 +105,34 @@ def _floating_point_errors_raise() -> Iterator[None]:
 
 
 @pytest.fixture(autouse=True, scope="session")
-def _plain_figures() -> Iterator[None]:
-    """No search for the layout of figures, no fonts; fixtures that tests share draw so too."""
+def _style_as_printed() -> Iterator[dict[str, object]]:
+    """No search for the layout of figures, no fonts; fixtures that tests share draw so too.
+
+    The value is the style with both.
+    """
+    from crackfront.plots.style import STYLE
+
+    as_printed = STYLE.copy()
     with pytest.MonkeyPatch.context() as monkeypatch:
         monkeypatch.setitem(STYLE, "figure.constrained_layout.use", False)
         monkeypatch.setitem(STYLE, "pdf.fonttype", 3)
-        yield
+        yield as_printed
 
 
 @pytest.fixture(autouse=True)
-def _figures_as_printed(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
+def _figures_as_printed(
+    request: pytest.FixtureRequest, _style_as_printed: dict[str, object]
+) -> Iterator[None]:
     """Where the look of figures is in question, they have their layout and fonts."""
-    if request.node.get_closest_marker("look"):
-        for name, value in AS_PRINTED.items():
+    if not request.node.get_closest_marker("look"):
+        yield
+        return
+    from crackfront.plots.style import STYLE
+
+    with pytest.MonkeyPatch.context() as monkeypatch:
+        for name, value in _style_as_printed.items():
             monkeypatch.setitem(STYLE, name, value)
+        yield
 
 
 @pytest.fixture

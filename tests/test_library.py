@@ -89,6 +89,7 @@ PARTS = (
     ),
     ("studies.paper.figure", {"xarray", "numba", "scipy.optimize", "scipy.stats"}),
     ("crackfront.sweep.feasibility", {"xarray", "scipy.optimize", "scipy.stats"}),
+    ("crackfront.sweep.integrity", {"xarray", "netCDF4"}),
 )
 """Parts in an order in which none may load what a later one must not."""
 

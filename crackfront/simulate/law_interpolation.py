@@ -121,9 +121,15 @@ def _interpolated(places: float | Array, measured: Array, values: Array) -> Arra
 
     The measured places increase.
     """
-    columns = values.reshape(len(measured), -1).T
-    interpolated = [np.interp(places, measured, column) for column in columns]
-    return np.stack(interpolated, axis=-1).reshape(np.shape(places) + values.shape[1:])
+    places = np.clip(places, measured[0], measured[-1])
+    last = len(measured) - 1
+    before = np.maximum(np.searchsorted(measured, places, side="right") - 1, 0)
+    after = np.minimum(before + 1, last)
+    # At the last measured place both neighbours are that place.
+    distance = np.where(before == last, 1.0, measured[after] - measured[before])
+    one_per_value = np.shape(places) + (1,) * (values.ndim - 1)
+    slope = (values[after] - values[before]) / distance.reshape(one_per_value)
+    return slope * (places - measured[before]).reshape(one_per_value) + values[before]
 
 
 def _relative_correlation_length(kind: FieldKind, spectrum: Spectrum) -> float:

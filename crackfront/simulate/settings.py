@@ -140,6 +140,7 @@ def _coarsest(
     return places
 
 
+@functools.cache
 def _allowed_values(setting: SettingName) -> Array:
     """Values that may be chosen, of two digits, the coarsest first."""
     values = [float(f"{value:.2g}") for value in np.geomspace(*_RANGES[setting], 400)]

@@ -1,4 +1,8 @@
-"""Files: written whole or not at all, with origin and checksums, which reading checks."""
+"""Files: written whole or not at all, with origin and checksums, which reading checks.
+
+xarray is imported only to read a dataset, because commands that write or check files without one
+would wait for it.
+"""
 
 from __future__ import annotations
 
@@ -11,10 +15,9 @@ import time
 from collections.abc import Callable, Collection, Iterable
 from dataclasses import asdict
 from pathlib import Path
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
-import xarray as xr
 
 from crackfront.core.resources import TooLargeError, check_memory
 from crackfront.simulate.checksums import (
@@ -26,6 +29,9 @@ from crackfront.simulate.checksums import (
     sums_text,
 )
 from crackfront.simulate.provenance import Provenance, utc_now
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 PACKED: dict[str, Any] = {"zlib": True, "shuffle": True, "complevel": 1}
 """How arrays are compressed."""
@@ -229,6 +235,8 @@ def read_dataset(
     TooLargeError if they need more than there is, even if the file stores them compressed;
     UnreadableFileError if the file is missing, damaged or not a complete netCDF file.
     """
+    import xarray as xr
+
     if not path.is_file():
         problem = "is not a file" if path.exists() else "does not exist"
         raise UnreadableFileError(f"{path} {problem}; check the name")

@@ -160,16 +160,16 @@ def test_a_damaged_kernel_is_compiled_again_and_one_line_says_so(fresh_cache, ca
 def test_a_file_of_another_signature_is_not_executed(fresh_cache):
     def answers():
         kernel = compiled.jit(quotient)
-        assert (kernel(1.0, 4.0), kernel(1, 4), kernel(1j, 4j)) == (0.25, 0.25, 0.25)
+        assert (kernel(1.0, 4.0), kernel(1, 4)) == (0.25, 0.25)
         return sum(kernel.stats.cache_hits.values())
 
-    assert (answers(), answers()) == (0, 3)
-    first, second, _ = sorted(fresh_cache.rglob("*.nbc"))
+    assert (answers(), answers()) == (0, 2)
+    first, second = sorted(fresh_cache.rglob("*.nbc"))
     content = first.read_bytes()
     first.write_bytes(second.read_bytes())
     second.write_bytes(content)
-    assert answers() < 3
-    assert answers() == 3
+    assert answers() < 2
+    assert answers() == 2
 
 
 @pytest.mark.usefixtures("fresh_cache")

@@ -43,7 +43,7 @@ def test_a_run_goes_on_from_any_state_to_the_same_bits(tmp_path, simulation):
     undisturbed, saved = checkpoints(simulation)
     directions = undisturbed.record.states.direction
     assert {1, -1} == set(directions.tolist())
-    for partial in saved[:: 1 + len(saved) // 20]:
+    for partial in saved[:: 1 + len(saved) // 10]:
         path = write_checkpoint(tmp_path, "checkpoint", partial, provenance())
         resumed = read_checkpoint(path, simulation)
         computed = []

@@ -7,6 +7,6 @@ import pytest
 
 @pytest.fixture(scope="module")
 def _few_draws():
-    """Intervals of power laws from fewer draws, which scatter by a tenth to a fifth."""
-    with mock.patch.multiple("studies.paper.power_law", _N_BOOTSTRAP=50, _N_JOINT_BOOTSTRAP=15):
+    """Intervals of power laws from fewer draws, which scatter by a seventh to a quarter."""
+    with mock.patch.multiple("studies.paper.power_law", _N_BOOTSTRAP=25, _N_JOINT_BOOTSTRAP=8):
         yield

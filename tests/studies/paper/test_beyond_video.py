@@ -15,7 +15,7 @@ SCENE = figure("beyond-video")
 
 @pytest.fixture(scope="module")
 def shown():
-    coarse = {"error": 0.5, "short_cutoff": 1.05e-6, "step": 480e-9, "retraction_step": 960e-9}
+    coarse = {"error": 0.5, "short_cutoff": 1.05e-6, "step": 960e-9, "retraction_step": 1920e-9}
     return computed("beyond-video", parameters("beyond-video", **coarse))
 
 
@@ -28,8 +28,8 @@ def test_the_cycle_is_whole_and_no_site_moves_back(shown):
 def test_time_passes_at_the_speed_of_the_sphere(shown):
     steps = np.diff(shown.time)
     approach = shown.direction[1:] > 0
-    np.testing.assert_allclose(steps[approach], 480e-9 / 60e-9)
-    np.testing.assert_allclose(steps[~approach], 960e-9 / 60e-9)
+    np.testing.assert_allclose(steps[approach], 960e-9 / 60e-9)
+    np.testing.assert_allclose(steps[~approach], 1920e-9 / 60e-9)
 
 
 def test_the_contact_is_as_wide_as_its_fronts_in_micrometres_and_gone_at_the_end(shown):

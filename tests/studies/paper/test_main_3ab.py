@@ -10,7 +10,7 @@ from tests.studies.paper.made import computed, failed, parameters
 
 SCENE = figure("main-3ab")
 COARSE = {
-    "short_cutoff": 0.14,
+    "short_cutoff": 0.2,
     "load_step": 0.1,
     "precision": 1e-4,
     "error": 0.3,

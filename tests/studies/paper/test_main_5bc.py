@@ -23,7 +23,7 @@ def film_parameters(**changes):
         "retraction_step": 480e-9,
         "line_step": 480e-9,
         "n_surface": 2,
-        "precision": 2e-9,
+        "precision": 2e-8,
     }
     return parameters("main-5bc", **coarse | changes)
 
