@@ -67,8 +67,8 @@ def stored(folder):
 
 
 def table(path):
-    """A table or shard without its costs, and what it says of its origin."""
-    return xr.load_dataset(path).drop_vars(COSTS).drop_attrs()
+    """A table or shard without its costs; `equals` compares two of any origin."""
+    return xr.load_dataset(path).drop_vars(COSTS)
 
 
 def dataset_of_rows(sweep, rows):

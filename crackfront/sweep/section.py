@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import re
 from collections.abc import Iterator, Sequence
 from itertools import count
@@ -162,9 +163,7 @@ def _text(path: Path) -> str:
 def _parsed(path: Path, text: str) -> Any:
     """Value of a YAML text; ConfigurationError, with the path of its file, if it is not valid."""
     try:
-        reader = YAML(typ="safe", pure=True)
-        reader.Constructor = _Constructor
-        return _frozen(reader.load(text), count())
+        return _frozen(_loaded(text), count())
     except MarkedYAMLError as error:
         line = f" in line {error.problem_mark.line + 1}" if error.problem_mark else ""
         raise ConfigurationError(f"{path} is not valid YAML{line}: {error.problem}") from error
@@ -174,6 +173,14 @@ def _parsed(path: Path, text: str) -> Any:
         ) from error
     except Exception as error:  # constructors raise various errors, as at impossible dates
         raise ConfigurationError(f"{path} is not valid YAML: {error}") from error
+
+
+@functools.lru_cache(maxsize=8)
+def _loaded(text: str) -> Any:
+    """Value of a YAML text; commands ask several times for the same one."""
+    reader = YAML(typ="safe", pure=True)
+    reader.Constructor = _Constructor
+    return reader.load(text)
 
 
 def _frozen(value: Any, counted: Iterator[int]) -> Any:
