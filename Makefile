@@ -129,7 +129,7 @@ nightly: env  ## Run all tests, the slow ones and those on a Slurm too, and the 
 	@mkdir -p $(dir $(REPORT))
 	@echo "Test report: $(REPORT)"
 	@$(IN_ENV) .venv/bin/python -m studies canaries; canaries=$$?; \
-	  $(IN_ENV) .venv/bin/python -m pytest --junitxml=$(REPORT); passed=$$?; \
+	  $(IN_ENV) .venv/bin/python -m pytest $(PARALLEL) --junitxml=$(REPORT); passed=$$?; \
 	  [ $$passed -le 1 ] && $(ON_SLURM) && [ $$passed = 0 ] && exit $$canaries
 
 canaries: env  ## Measure some numbers of every study again, and compare them with the stored ones (a minute)
