@@ -43,9 +43,9 @@ class BatchWriter:
 
     def flush(self) -> None:
         """Write what is finished, and remove its checkpoints."""
-        self._written = time.monotonic()
         if not self._finished:
             return
+        self._written = time.monotonic()
         self._count += 1
         # In the order of a shard, so that a batch with all of it need not be written again.
         self._finished.sort(
