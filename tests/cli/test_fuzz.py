@@ -31,7 +31,7 @@ from tests.commands import curve_paths
 from tests.yaml_texts import to_yaml
 
 SEED = 20261122
-FEW = 6
+FEW = 3
 """Cases of each kind by day; the others are left to the night."""
 ANSWERS = (0, 3)
 """Exit codes of a command that has an answer, without or with reservations."""

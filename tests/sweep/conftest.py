@@ -4,6 +4,7 @@ import itertools
 from dataclasses import replace
 
 import pytest
+from matplotlib.figure import Figure
 
 from crackfront.simulate.run_simulation import run_simulation
 from crackfront.sweep import tasks
@@ -24,6 +25,13 @@ def made(tmp_path_factory):
 @pytest.fixture(autouse=True)
 def _empty_pictures(empty_pictures):
     """How the figures of a sweep look is tested elsewhere."""
+
+
+@pytest.fixture
+def empty_figures(monkeypatch):
+    """Figures have no axes: what a fit draws is tested in the folders `cli` and `plots`."""
+    for drawn in ("sweep_figures.hysteresis", "sweep_figures.factor", "loop_figures.simulation"):
+        monkeypatch.setattr(f"crackfront.plots.{drawn}_figure", lambda _: Figure())
 
 
 @pytest.fixture(scope="session")

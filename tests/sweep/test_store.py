@@ -47,7 +47,7 @@ from tests.places import TEST
 LINE = Path(__file__).parents[1] / "line-test.yaml"
 SWEEP = load_sweep(TEST)
 ALL = {item.label for item in SWEEP.simulations()}
-pytestmark = pytest.mark.usefixtures("remembered")
+pytestmark = pytest.mark.usefixtures("remembered", "empty_figures")
 FLAT, ROUGH = ({label for label in ALL if name in label} for name in ("flat", "rough"))
 
 
