@@ -25,7 +25,7 @@ class DoctestsThatExist:
         collectors = yield
         if file_path.suffix != ".py" or b">>>" in file_path.read_bytes():
             return collectors
-        return [collector for collector in collectors if type(collector) is pytest.Module]
+        return [item for item in collectors if isinstance(item, pytest.Module)]
 
 
 def pytest_configure(config: pytest.Config) -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import os
 from dataclasses import asdict
 from pathlib import Path
@@ -233,7 +232,4 @@ def _example_spectrum(sweep: Sweep) -> NamedSpectrum:
     self_affine = [
         item for item in sweep.spectra if item.spectrum.longest_feature > item.spectrum.short_cutoff
     ]
-    candidates = self_affine or sweep.spectra
-    if math.isnan(candidates[0].spring):
-        return candidates[0]
-    return max(candidates, key=lambda item: item.spring)
+    return max(self_affine or sweep.spectra, key=lambda item: item.spring)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import functools
-import math
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 
@@ -23,13 +22,13 @@ class NamedSpectrum:
     """A spectrum, lengths in the reduced lateral unit, and what the configuration calls it.
 
     The ensemble makes its surfaces. `spring` is the length of the springs that pull a straight
-    front, in the unit of the load.
+    front, in the unit of the load, and 0 for a sphere.
     """
 
     name: str
     spectrum: Spectrum
     ensemble: Ensemble = GAUSSIAN
-    spring: float = math.nan
+    spring: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
