@@ -20,11 +20,8 @@ from crackfront.measured.loops.rig import Rig
 _TRIED_ZEROS = 151
 """Displacements among which the zero is first sought: 50 for each travel of the mount."""
 
-_NO_CURVE = 1e6
-"""Misfit at a displacement with too few contacts; any curve has less."""
-
-_SMALLEST_VARIANCE = np.finfo(float).tiny
-"""Smallest variance of the force that divides another. (Units: squared reduced force)"""
+_NO_CURVE = 1e300
+"""Misfit at a displacement with too few contacts; finite, as the minimiser computes with it."""
 
 _AT_ONCE = 2**14
 """Rows times zeros whose misfits are computed at once, so that their numbers stay in the cache."""
@@ -102,8 +99,6 @@ class _Part(NamedTuple):
     force: Array
     displacement: Array
     """Displacement without what bends in the machine: penetration plus zero."""
-    variance: float
-    """Variance of the force."""
 
 
 def _part(loop: CalibratedLoop, rows: Rows) -> _Part:
@@ -112,13 +107,12 @@ def _part(loop: CalibratedLoop, rows: Rows) -> _Part:
     force = np.asarray(recording.force)[rows] / scales.force
     displacement = np.asarray(recording.displacement)[rows] / scales.vertical
     displacement = displacement - loop.compliance * force
-    variance = max(float(np.nanvar(force)), _SMALLEST_VARIANCE)
     known = np.isfinite(displacement)
-    return _Part(force[known], displacement[known], variance)
+    return _Part(force[known], displacement[known])
 
 
 def _misfits(parts: Sequence[_Part], zeros: Array) -> Array:
-    """Variance of the forces about a JKR curve for each part, over the variance of the forces.
+    """Mean squares of the forces about a JKR curve for each part, added up.
 
     The parts share each of the zeros of the displacement (Units: reduced vertical length).
     """
@@ -142,7 +136,7 @@ def _misfits_of_part(part: _Part, zeros: Array) -> Array:
     misfits, enough = np.full(zeros.size, np.inf), count >= FEWEST_STATES
     mean = np.sum(work[enough], axis=1, where=is_contact[enough]) / count[enough]
     curve = force_at(penetration[enough], mean[:, None])
-    misfits[enough] = np.mean((part.force - curve) ** 2, axis=1) / part.variance
+    misfits[enough] = np.mean((part.force - curve) ** 2, axis=1)
     return misfits
 
 
