@@ -73,18 +73,11 @@ def error_tables(study_errors: Measured) -> dict[str, Table]:
     if scenes:
         tables["Time to an error of the hysteresis"] = _target_table(scenes.values())
     if study_errors.requested:
-        studies = study_errors.requested.values()
-        rows = [
-            [*_chosen(study, errors), *_factor_errors(study, errors)]
-            for study in studies
-            for errors in study.errors
-        ]
-        header = f"{_CHOSEN} | {_FACTOR_ERRORS}"
-        tables["Errors that were requested"] = make_table(header, rows)
+        tables["Errors that were requested"] = _request_table(study_errors.requested.values())
     if study_errors.unseen:
-        tables["Errors on unseen surfaces"] = _unseen_table(study_errors.unseen.values())
+        tables["Errors on unseen surfaces"] = _request_table(study_errors.unseen.values())
     if study_errors.expected:
-        tables["Errors on many surfaces"] = _unseen_table(study_errors.expected.values())
+        tables["Errors on many surfaces"] = _request_table(study_errors.expected.values())
     if study_errors.coverages:
         tables["Stated and true errors"] = _coverage_table(study_errors.coverages.values())
     sampled = study_errors.samples.values()
@@ -171,8 +164,8 @@ def _chosen(study: SceneErrors, errors: Errors) -> list[str]:
     return [study.scene.name, f"{errors.value:g}", *_numerics(errors), seconds]
 
 
-def _unseen_table(studies: Iterable[SceneErrors]) -> Table:
-    """Errors of k where the laws chose the numerics for surfaces unknown to them."""
+def _request_table(studies: Iterable[SceneErrors]) -> Table:
+    """Errors of k where the laws chose the numerics, of each row and of all."""
     rows = []
     pooled: dict[float, list[Array]] = {}
     for study in studies:
