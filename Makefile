@@ -151,7 +151,7 @@ timings: env  ## For a release: what depends on the machine (an hour)
 
 # For a release. It resumes: rules that are done are not run again, and boundary elements keep every
 # load step. The studies of scans begin again, each in minutes.
-reproduce: env  ## For a release: numbers and figures of the pages, but for timings and reproduce-boundary (4 core hours)
+reproduce: env  ## For a release: numbers and figures of the pages, but for timings and reproduce-boundary (6 core hours)
 	$(MAKE) --no-print-directory --jobs 2 reproduce-fronts reproduce-scans
 	$(MAKE) --no-print-directory accuracy
 	cp results/accuracy/laws.png results/accuracy/work-precision.png docs/figures/
@@ -225,7 +225,7 @@ reproduce-boundary: env  ## For a release: the numbers and figures of large boun
 	$(IN_ENV) .venv/bin/python -m studies boundary-elements numbers --keep
 	$(IN_ENV) .venv/bin/python -m studies pages
 
-accuracy: env  ## Errors of all numerics of docs/experiments/numerics.md (45 minutes, two cores)
+accuracy: env  ## Errors of all numerics of docs/experiments/numerics.md (2.3 core hours)
 	$(SNAKE) accuracy
 	@echo "Results: results/accuracy/"
 
