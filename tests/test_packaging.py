@@ -10,6 +10,7 @@ import sysconfig
 import tarfile
 import tomllib
 import zipfile
+from itertools import chain
 
 import numpy as np
 import pytest
@@ -140,6 +141,17 @@ def test_the_recipe_has_the_version_and_needs_of_the_package():
     ]
     assert requirements == ["python >=${{ python_min }}", *run]
     assert recipe["requirements"]["host"] == ["python ${{ python_min }}.*", "pip", *host]
+
+
+def test_contributing_says_what_every_package_is_for():
+    project = PROJECT["project"]
+    extras = project["optional-dependencies"].values()
+    needed = [*project["dependencies"], *PROJECT["build-system"]["requires"], *chain(*extras)]
+    packages = {re.match(r"[\w.-]+", line)[0] for line in needed} - {"crackfront"}
+    page = (ROOT / "CONTRIBUTING.md").read_text()
+    table = page[page.index("## Dependencies") : page.index("## Releases")]
+    named = set(chain(*(row.split("|")[1].strip().split(", ") for row in table.splitlines()[6:-1])))
+    assert named == packages
 
 
 def test_it_is_imported_in_the_folder_beside_its_clone(tmp_path):
